@@ -1,0 +1,110 @@
+// The scattering function at one surface point: a value type, evaluated once from a Material and its
+// textures, small enough to be stored in every path vertex.
+//
+// Conventions (methods.md 1, numerics.md 2-5, 23)
+//
+// * Directions are unit and point AWAY from the surface. Roles are physical, never "incoming or
+//   outgoing of the walk": `toEye` leads towards the camera's end of the path, `toLight` towards the
+//   light's end. f is the same function of (toEye, toLight) whichever walk asks, so the asymmetries
+//   (refraction's eta^2, shading normals) need no transport mode.
+// * f is taken against the PROJECTED SOLID ANGLE ABOUT THE GEOMETRIC NORMAL:
+//       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach 5.3.2]
+//   with f_ns the BSDF about the shading normal, in the radiance convention: refraction carries
+//   (eta_eye / eta_light)^2 of the radiance on the eye's side.
+//   A step of either walk multiplies its throughput by f |to . ng| / pdfW(to).
+// * Delta events (mirror, smooth glass, a smooth coat) are written with the same formulas after the
+//   common delta distribution has been dropped on both sides; this is the narrow-lobe limit, so the
+//   balance heuristic over generalised densities is the limit of the balance heuristic:
+//       pdfW = pmf eta_to^2 |to . ns|,    f_ns = coefficient eta_eye^2,
+//   where eta_to (eta_eye) is the index of refraction on the side `to` (the eye) lies on; for a
+//   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
+// * Directions with |to . ng| or |to . ns| below kMinCosine, or whose geometric and shading sides
+//   disagree, scatter nothing and have density zero: in evaluate and sample alike.
+// * ng is the geometric normal by the winding (front side = outside of a solid); ns lies on the same
+//   side as ng. Nothing is one-sided: back faces reflect like front faces; a solid's inside is
+//   the back.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "libcore/base/vec.h"
+
+namespace lacuna {
+
+class AlbedoTables;
+
+/// |cos| below this scatters nothing (numerics.md 23).
+inline constexpr float kMinCosine = 1e-6f;
+/// GGX alpha below this is a true delta (numerics.md 4).
+inline constexpr float kMinAlpha = 1e-4f;
+
+/// What happened at a vertex; part of the path, like its position.
+enum class ScatterEvent : std::uint8_t {
+    Smooth,  ///< through the lobes that have a density (diffuse, rough): the vertex is connectable
+    DeltaReflection,
+    DeltaTransmission,
+};
+inline bool isDelta(ScatterEvent e) {
+    return e != ScatterEvent::Smooth;
+}
+
+/// One evaluation: value and both densities, from the same half vector (numerics.md 3).
+struct BsdfEvaluation {
+    Rgb f;                  ///< see above; generalised (delta dropped) for delta events
+    float pdfWToLight = 0;  ///< density of toLight when the eye's walk samples it, given toEye
+    float pdfWToEye = 0;    ///< density of toEye when the light's walk samples it, given toLight
+};
+
+struct BsdfSample {
+    Vec3 to;  ///< unit
+    ScatterEvent event;
+    BsdfEvaluation evaluation;  ///< evaluate(...) of exactly this pair and event
+};
+
+/// Whose walk samples: an eye walk knows toEye and samples toLight; a light walk the other way round.
+enum class Side : std::uint8_t { Light, Eye };
+
+class Bsdf {
+  public:
+    /// What textures and factors gave at this point. All in [0, 1] but ior (>= 1).
+    struct Parameters {
+        Rgb baseColor{0.0f};
+        float metallic = 0.0f;
+        float roughness = 1.0f;  ///< alpha = roughness^2; alpha < kMinAlpha counts as 0 (delta)
+        float specular = 1.0f;   ///< factor on the dielectric layer's reflectance; 0: exactly Lambert
+        float ior = 1.5f;
+        float transmission = 0.0f;
+        bool thin = true;
+    };
+
+    Bsdf() = default;
+    /// `tables` must outlive the Bsdf; it is read only where a rough dielectric layer lies over a
+    /// diffuse base. Throws nothing.
+    Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
+
+    /// Value and densities of the Smooth event (all lobes with a density together).
+    BsdfEvaluation evaluate(Vec3 toEye, Vec3 toLight) const;
+    /// Generalised value and densities of one delta event; `toLight` must be the direction that the
+    /// event leads to from `toEye` (not checked). Zero for Smooth.
+    BsdfEvaluation evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event) const;
+    /// Dispatch on the event.
+    BsdfEvaluation evaluate(Vec3 toEye, Vec3 toLight, ScatterEvent event) const;
+
+    /// Samples the direction of `side`'s walk, given `from` (toEye for Side::Eye, toLight for
+    /// Side::Light). uLobe, u1, u2 in [0, 1). Empty where the draw scatters nothing.
+    std::optional<BsdfSample> sample(Side side, Vec3 from, float uLobe, float u1, float u2) const;
+
+    /// Whether any lobe has a density: only then may a path be connected here.
+    bool connectable() const;
+    bool isBlack() const;
+    /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
+    float survivalAlbedo() const;
+    /// Diffuse and specular colour together, for the albedo.* image layer.
+    Rgb layerAlbedo() const;
+
+    Vec3 ng() const;
+    Vec3 ns() const;
+};
+
+}  // namespace lacuna
