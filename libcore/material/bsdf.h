@@ -1,12 +1,12 @@
-// The scattering function at one surface point: a value type, evaluated once from a Material and its
-// textures, small enough to be stored in every path vertex.
+// The scattering function at one surface point: a value type, evaluated once from a Material and
+// its textures, small enough to be stored in every path vertex.
 //
 // Conventions (methods.md 1, numerics.md 2-5, 23)
 //
 // * Directions are unit and point AWAY from the surface. Roles are physical, never "incoming or
-//   outgoing of the walk": `toEye` leads towards the camera's end of the path, `toLight` towards the
-//   light's end. f is the same function of (toEye, toLight) whichever walk asks, so the asymmetries
-//   (refraction's eta^2, shading normals) need no transport mode.
+//   outgoing of the walk": `toEye` leads towards the camera's end of the path, `toLight` towards
+//   the light's end. f is the same function of (toEye, toLight) whichever walk asks, so the
+//   asymmetries (refraction's eta^2, shading normals) need no transport mode.
 // * f is taken against the PROJECTED SOLID ANGLE ABOUT THE GEOMETRIC NORMAL:
 //       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach 5.3.2]
 //   with f_ns the BSDF about the shading normal, in the radiance convention: refraction carries
@@ -20,7 +20,8 @@
 //   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
 // * Directions with |to . ng| or |to . ns| below kMinCosine, or whose geometric and shading sides
 //   disagree, scatter nothing and have density zero: in evaluate and sample alike.
-// * ng is the geometric normal by the winding (front side = outside of a solid); ns lies on the same
+// * ng is the geometric normal by the winding (front side = outside of a solid); ns lies on the
+// same
 //   side as ng. Nothing is one-sided: back faces reflect like front faces; a solid's inside is
 //   the back.
 #pragma once
@@ -32,6 +33,7 @@
 
 namespace lacuna {
 
+class AlbedoTable;
 class AlbedoTables;
 
 /// |cos| below this scatters nothing (numerics.md 23).
@@ -62,7 +64,8 @@ struct BsdfSample {
     BsdfEvaluation evaluation;  ///< evaluate(...) of exactly this pair and event
 };
 
-/// Whose walk samples: an eye walk knows toEye and samples toLight; a light walk the other way round.
+/// Whose walk samples: an eye walk knows toEye and samples toLight; a light walk the other way
+/// round.
 enum class Side : std::uint8_t { Light, Eye };
 
 class Bsdf {
@@ -72,15 +75,17 @@ class Bsdf {
         Rgb baseColor{0.0f};
         float metallic = 0.0f;
         float roughness = 1.0f;  ///< alpha = roughness^2; alpha < kMinAlpha counts as 0 (delta)
-        float specular = 1.0f;   ///< factor on the dielectric layer's reflectance; 0: exactly Lambert
+        float specular =
+            1.0f;  ///< factor on the dielectric layer's reflectance; 0: exactly Lambert
         float ior = 1.5f;
         float transmission = 0.0f;
         bool thin = true;
     };
 
     Bsdf() = default;
-    /// `tables` must outlive the Bsdf; it is read only where a rough dielectric layer lies over a
-    /// diffuse base. Throws nothing.
+    /// `tables` must outlive the Bsdf; it is read only where a dielectric layer lies over a diffuse
+    /// base (a smooth layer merely gets its mean reflectance faster from it). An ior without a
+    /// table of its own takes the nearest one's. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
 
     /// Value and densities of the Smooth event (all lobes with a density together).
@@ -103,8 +108,66 @@ class Bsdf {
     /// Diffuse and specular colour together, for the albedo.* image layer.
     Rgb layerAlbedo() const;
 
-    Vec3 ng() const;
-    Vec3 ns() const;
+    Vec3 ng() const { return ng_; }
+    Vec3 ns() const { return ns_; }
+
+  private:
+    // Which lobes exist. Layers: coat and metal share alpha, half vector and density.
+    enum Flag : std::uint8_t {
+        kDiffuse = 1,
+        kCoat = 2,
+        kMetal = 4,
+        kLayers = kCoat | kMetal,
+        kGlass = 8,
+        kThin = 16,
+        kRoughLayers = 32,  ///< coat and metal have a density
+        kRoughGlass = 64,
+        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass: nothing to choose
+    };
+
+    /// Probabilities of the lobes given the one known direction, and what the coat leaves to the
+    /// base.
+    struct Choice {
+        float diffuse = 0, layers = 0, glass = 0;
+        float open = 1;  ///< 1 - specular E(mu)
+    };
+    /// A pair of directions seen from both normals; signed cosines about ns.
+    struct Pair {
+        float eye, light;
+        float adjoint;  ///< |toLight . ns| / |toLight . ng|
+        float eyeAbs() const { return eye < 0 ? -eye : eye; }
+        float lightAbs() const { return light < 0 ? -light : light; }
+        bool reflects() const { return (eye > 0) == (light > 0); }
+    };
+
+    bool has(unsigned flags) const { return (flags_ & flags) != 0; }
+    bool makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const;
+    float coatAlbedo(float mu) const;
+    Choice choose(float mu) const;
+    Rgb layersReflectance(float cosine, float coatFresnel) const;
+    float indexOn(bool front) const { return front || has(kThin) ? 1.0f : ior_; }
+    /// Transmitted over incident index for light that arrives from this side.
+    float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
+
+    void addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
+                            const Choice& light, BsdfEvaluation& out) const;
+    BsdfEvaluation roughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair) const;
+    BsdfEvaluation roughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair) const;
+
+    // 80 bytes: it lives in every path vertex.
+    const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse
+    Vec3 ng_, ns_;
+    Rgb baseColor_;
+    float alpha_ = 0;
+    float ior_ = 1;
+    float plastic_ = 0, glass_ = 0, metal_ = 0;  ///< mixture weights; they add up to 1
+    float specular_ = 0;
+    float diffuseScale_ = 0;   ///< plastic / (pi (1 - specular E_avg))
+    float diffuseChoice_ = 0;  ///< plastic x mean of the base colour
+    std::uint8_t flags_ = 0;
+    std::uint8_t rowIndex_ = 0;  ///< AlbedoTable::Row
+    std::uint16_t rowFraction_ = 0;
 };
+static_assert(sizeof(Bsdf) <= 80);
 
 }  // namespace lacuna

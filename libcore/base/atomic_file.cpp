@@ -1,0 +1,129 @@
+#include "libcore/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string directoryOf(const std::string& path) {
+    const std::string parent = fs::path(path).parent_path().string();
+    return parent.empty() ? "." : parent;
+}
+
+/// Where the bytes end up: links followed, unless they point nowhere.
+std::string resolved(const std::string& path) {
+    std::error_code ignored;
+    const fs::path real = fs::canonical(path, ignored);
+    return ignored ? path : real.string();
+}
+
+/// Opens a new file beside the target. The name does not grow with the target's (NAME_MAX), and is
+/// created with O_EXCL so that two tools never share one.
+int openTemporary(const std::string& directory, std::string& name) {
+    const std::string stem = directory + "/.lacuna-" + std::to_string(::getpid()) + "-";
+    for (int attempt = 0;; ++attempt) {
+        name = stem + std::to_string(attempt) + ".tmp";
+        const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || errno != EEXIST || attempt == 9999) return fd;
+    }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(resolved(path)) {
+    struct stat info {};
+    const bool exists = ::stat(target_.c_str(), &info) == 0;
+    if (path.empty() || path.back() == '/' || (exists && S_ISDIR(info.st_mode))) {
+        fail("expected the name of a file", EISDIR);
+    }
+    if (exists && ::access(target_.c_str(), W_OK) != 0) {
+        fail("expected a file that may be overwritten", errno);
+    }
+    if (exists && !S_ISREG(info.st_mode)) {
+        fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+        std::string name;
+        fd_ = openTemporary(directoryOf(target_), name);
+        if (fd_ >= 0) temporary_ = name;
+    }
+    if (fd_ < 0) {
+        const int error = errno;
+        fail("expected a directory '" + directoryOf(path_) + "' to write into", error);
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (fd_ >= 0) ::close(fd_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+    const char* from = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ::ssize_t written = ::write(fd_, from, bytes);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            fail("expected to write " + std::to_string(bytes) + " more bytes",
+                 written < 0 ? errno : EIO);
+        }
+        from += written;
+        bytes -= std::size_t(written);
+        position_ += std::uint64_t(written);
+    }
+}
+
+void AtomicFile::seek(std::uint64_t position) {
+    if (::lseek(fd_, off_t(position), SEEK_SET) < 0) fail("expected a seekable file", errno);
+    position_ = position;
+}
+
+void AtomicFile::commit() {
+    if (error_ != 0) fail("expected all of it to be written", error_);
+    if (temporary_.empty()) {
+        const int closed = ::close(fd_);
+        fd_ = -1;
+        if (closed != 0) fail("expected to close it", errno);
+        return;
+    }
+    // Data before name: after a crash the target is the old file or the new one, never a part of
+    // it.
+    if (::fsync(fd_) != 0) fail("expected to reach the disk", errno);
+    const int closed = ::close(fd_);
+    fd_ = -1;
+    if (closed != 0) fail("expected to close it", errno);
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+        fail("expected to rename " + temporary_ + " to it", errno);
+    }
+    temporary_.clear();
+    // The rename itself is made durable where the file system lets us; the file is whole either
+    // way.
+    const int directory = ::open(directoryOf(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory >= 0) {
+        (void)::fsync(directory);
+        ::close(directory);
+    }
+}
+
+void AtomicFile::fail(const std::string& expected, int error) {
+    if (error_ == 0) error_ = error;
+    throw RunError((path_.empty() ? "output" : path_) + ": " + expected + ", found: " +
+                   std::generic_category().message(error) + "; choose another output or make room");
+}
+
+void writeFileAtomically(const std::string& path, std::string_view content) {
+    AtomicFile file(path);
+    file.write(content.data(), content.size());
+    file.commit();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,44 @@
+// A table to pick one of n outcomes with given weights (numerics.md 18-20).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lacuna {
+
+/// Cumulative distribution over n outcomes. Accumulated in double; the last POSITIVE entry and all
+/// after it are one, so that no outcome of weight zero is ever returned and none of positive weight
+/// is lost. The reported pmf is the one that is realised: a difference of two stored entries.
+class DiscreteDistribution {
+  public:
+    DiscreteDistribution() = default;
+    /// Weights >= 0 and finite, any dynamic range, any sum. Throws std::invalid_argument naming the
+    /// first bad entry. A zero sum (or no entries) gives an empty distribution.
+    explicit DiscreteDistribution(std::span<const double> weights);
+
+    /// No outcome can be picked: all weights are zero, or there are none.
+    bool empty() const { return total_ <= 0.0; }
+    std::size_t size() const { return cdf_.size(); }
+    /// Sum of the weights.
+    double total() const { return total_; }
+    /// Realised probability of `index`, zero out of range.
+    double pmf(std::size_t index) const {
+        if (index >= cdf_.size()) return 0.0;
+        return index == 0 ? cdf_[0] : cdf_[index] - cdf_[index - 1];
+    }
+
+    struct Pick {
+        std::uint32_t index;
+        double pmf;
+        double remapped;  ///< u, stretched to [0, 1) inside the outcome: to be used again
+    };
+    /// u in [0, 1). Not to be called when empty().
+    Pick sample(double u) const;
+
+  private:
+    std::vector<double> cdf_;
+    double total_ = 0.0;
+};
+
+}  // namespace lacuna

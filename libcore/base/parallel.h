@@ -1,0 +1,35 @@
+// Parallel loops over oneTBB. Every loop of ours writes to places that belong to one index alone, so
+// results never depend on the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace lacuna {
+
+/// The worker threads of one tool run. `threads` = 0 means all of the machine's. Keeps the floating
+/// point environment of the constructing thread in every worker (Embree would otherwise leave
+/// flush-to-zero set in some of them, so that denormals depended on the order of calls).
+class ThreadPool {
+  public:
+    explicit ThreadPool(int threads = 0);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    int threads() const;
+    /// Calls body(i) for i in [0, n), in any order, on all threads; returns when all are done.
+    /// Exceptions of the body are rethrown here.
+    void forEach(std::size_t n, const std::function<void(std::size_t)>& body) const;
+    /// Runs `body` inside the pool's arena, so that TBB algorithms of libraries use its threads.
+    void run(const std::function<void()>& body) const;
+    /// Index of the calling worker in [0, threads()): for scratch memory, never for results.
+    int workerIndex() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lacuna

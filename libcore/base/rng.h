@@ -1,0 +1,59 @@
+// Counter-based random numbers: a stream is addressed, never advanced from a shared state, so that any
+// sample of any iteration can be drawn again alone and no result depends on the number of threads.
+#pragma once
+
+#include <Random123/philox.h>
+
+#include <cstdint>
+
+namespace lacuna {
+
+/// What a stream is used for; streams of different kinds are independent.
+enum class StreamKind : std::uint32_t {
+    LightPath,   ///< index = light path
+    EyePath,     ///< index = pixel (row * width + column)
+    Connection,  ///< the selector's own numbers along an eye path, index = pixel
+    Warmup,      ///< light paths of the warm-up iterations that are thrown away
+    Features,    ///< albedo, normal and depth layers
+    User,        ///< tests and tools
+};
+
+/// One stream of uniform numbers: Philox4x32-10 [Salmon et al. 2011] keyed by (seed, iteration),
+/// counted by (block, kind, index).
+class Rng {
+  public:
+    Rng(std::uint64_t seed, std::uint32_t iteration, StreamKind kind, std::uint64_t index)
+        : key_{{std::uint32_t(seed), iteration}},
+          counter_{{0, std::uint32_t(kind) | std::uint32_t(index >> 32) << 8, std::uint32_t(index),
+                    std::uint32_t(seed >> 32)}} {}
+
+    std::uint32_t bits() {
+        if (used_ == 4) {
+            block_ = generate_(counter_, key_);
+            ++counter_.v[0];
+            used_ = 0;
+        }
+        return block_.v[used_++];
+    }
+    /// Uniform float in [0, 1): 24 bits, never 1.
+    float uniform() { return float(bits() >> 8) * 0x1p-24f; }
+    /// Uniform double in [0, 1): 53 bits, for choices among very many or very unequal outcomes.
+    double uniformDouble() {
+        const std::uint64_t high = bits(), low = bits();
+        return double((high << 32 | low) >> 11) * 0x1p-53;
+    }
+    /// Uniform integer in [0, n), n >= 1, without the bias of a remainder beyond 2^-64 n.
+    std::uint32_t below(std::uint32_t n) {
+        return std::uint32_t((std::uint64_t(bits()) * n) >> 32);
+    }
+
+  private:
+    using Philox = r123::Philox4x32;
+    Philox generate_{};
+    Philox::key_type key_;
+    Philox::ctr_type counter_;
+    Philox::ctr_type block_{};
+    unsigned used_ = 4;
+};
+
+}  // namespace lacuna

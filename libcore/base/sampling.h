@@ -1,0 +1,58 @@
+// Maps from the unit square to directions, and orthonormal frames. No trigonometric call: the
+// angles of the concentric map lie in [-pi/4, pi/4], where short polynomials are exact to float
+// precision.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/vec.h"
+
+namespace lacuna {
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kInvPi = 0.31830988618379067154f;
+
+/// Right-handed orthonormal frame around a unit normal [Duff et al. 2017].
+struct Frame {
+    Vec3 s, t, n;
+
+    Frame() = default;
+    explicit Frame(Vec3 normal) : n(normal) {
+        const float sign = std::copysign(1.0f, n.z);
+        const float a = -1.0f / (sign + n.z);
+        const float b = n.x * n.y * a;
+        s = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+        t = {b, sign + n.y * n.y * a, -n.y};
+    }
+    Vec3 toWorld(Vec3 v) const { return s * v.x + t * v.y + n * v.z; }
+    Vec3 toLocal(Vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+};
+
+/// Uniform point of the unit disk, area-preserving and continuous [Shirley and Chiu 1997].
+inline Vec2 concentricDisk(float u1, float u2) {
+    const float a = 2.0f * u1 - 1.0f;
+    const float b = 2.0f * u2 - 1.0f;
+    const bool aLonger = std::abs(a) > std::abs(b);
+    const float radius = aLonger ? a : b;
+    if (radius == 0.0f) {
+        return {0.0f, 0.0f};
+    }
+    const float x = (kPi / 4) * ((aLonger ? b : a) / radius);
+    const float z = x * x;
+    // Cephes' sinf and cosf kernels on [-pi/4, pi/4].
+    const float sine =
+        x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f));
+    const float cosine =
+        1.0f - 0.5f * z +
+        z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+    return aLonger ? Vec2{radius * cosine, radius * sine} : Vec2{radius * sine, radius * cosine};
+}
+
+/// Local direction (z up) with pdfW = z / pi.
+inline Vec3 cosineHemisphere(float u1, float u2) {
+    const Vec2 p = concentricDisk(u1, u2);
+    return {p.x, p.y, std::sqrt(std::max(0.0f, 1.0f - p.x * p.x - p.y * p.y))};
+}
+
+}  // namespace lacuna

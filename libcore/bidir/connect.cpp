@@ -1,0 +1,150 @@
+#include "libcore/bidir/connect.h"
+
+#include <cmath>
+
+namespace lacuna {
+
+namespace {
+
+/// x_0 .. x_{s-1} from the light subpath, as its walk left them.
+void fillLightPart(FullPath& path, Subpath light) {
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const PathVertex& y = light[i];
+        path.vertex[i] = &y;
+        path.lightPdfA[i] = y.pdfA;
+        path.eyePdfA[i] = y.pdfReverseA;
+        path.survival[i] = y.survival;
+        path.delta[i] = isDelta(y.event);
+        path.scatter[i] = y.scatter;
+    }
+}
+
+/// x_k .. x_{k-t+1} from the eye subpath.
+void fillEyePart(FullPath& path, Subpath eye) {
+    for (std::size_t j = 0; j < eye.size(); ++j) {
+        const PathVertex& z = eye[j];
+        const std::size_t i = std::size_t(path.edges) - j;
+        path.vertex[i] = &z;
+        path.lightPdfA[i] = z.pdfReverseA;
+        path.eyePdfA[i] = z.pdfA;
+        path.survival[i] = z.survival;
+        path.delta[i] = isDelta(z.event);
+        path.scatter[i] = z.scatter;
+    }
+}
+
+void setSource(FullPath& path, const Lights& lights, const PathVertex& source, const Rgb& beta) {
+    const LightKind kind = lights.kind(source.light);
+    path.sourceBeta = beta;
+    path.hittable = isHittable(kind);
+    path.splattable = kind != LightKind::Directional;
+    path.survival[0] = 1.0f;
+    path.delta[0] = false;
+}
+
+/// What leaves a connection's end: its BSDF, or the emission profile of y_0.
+struct EndValue {
+    Rgb f;
+    float pdfWToOther = 0;     ///< density of the direction to the other end, by this end's own walk
+    float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
+};
+
+EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye) {
+    if (y.index == 0) {
+        const Lights::Emission e = lights.emission(lightPointOf(lights, y), toEye);
+        return {e.profile, e.pdfW, 0.0f};
+    }
+    const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
+    return {e.f, e.pdfWToEye, e.pdfWToLight};
+}
+
+}  // namespace
+
+std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
+    const PathVertex& z = eye.back();
+    if (z.light == kNone || z.index == 0) return std::nullopt;
+    const Lights& lights = walker.scene().lights();
+    const LightPoint point = lightPointOf(lights, z);
+    const Lights::Emission emission = lights.emission(point, z.toPrevious);
+    const Closed closed{z.throughput * point.exitance * emission.profile, int(eye.size()), {}};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    path.edges = int(eye.size()) - 1;
+    fillEyePart(path, eye);
+    // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
+    setSource(path, lights, z,
+              point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
+    path.scatter[0] = emission.profile;
+    path.lightPdfA[0] = point.pdf;
+    if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
+    return closed;
+}
+
+std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
+                                 FullPath& path) {
+    const PathVertex& y = light.back();
+    const Lights& lights = walker.scene().lights();
+    // A directional light in the picture itself is a point of no size: no strategy makes that path.
+    if (y.index == 0 && lights.kind(y.light) == LightKind::Directional) return std::nullopt;
+    const Edge edge = edgeBetween(z0, y);
+    if (!(edge.geometry > 0.0f)) return std::nullopt;
+    const auto projection = walker.camera().project(z0.position, edge.direction);
+    if (!projection) return std::nullopt;
+    const EndValue end = lightEnd(lights, y, -edge.direction);
+    const Closed closed{y.throughput * end.f * (edge.geometry * projection->pdfW), 1,
+                        projection->raster};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    const int k = path.edges = int(light.size());
+    fillLightPart(path, light);
+    setSource(path, lights, light[0], light[0].throughput);
+    path.vertex[k] = &z0;
+    path.lightPdfA[k] = 0.0f;
+    path.eyePdfA[k] = 1.0f;
+    path.survival[k] = 1.0f;
+    path.delta[k] = path.delta[k - 1] = false;
+    path.scatter[k - 1] = end.f;
+    path.eyePdfA[k - 1] = projection->pdfW * edge.toSecond;
+    if (k >= 2) path.eyePdfA[k - 2] = end.pdfWToPrevious * y.toPreviousFactor;
+    return closed;
+}
+
+std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
+                                      FullPath& path) {
+    const PathVertex& y = light.back();
+    const PathVertex& z = eye.back();
+    const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
+    if (!(edge.geometry > 0.0f)) return std::nullopt;
+    const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
+    if (isBlack(atEye.f)) return std::nullopt;
+    const Lights& lights = walker.scene().lights();
+    const EndValue atLight = lightEnd(lights, y, edge.direction);
+    const Closed closed{z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry,
+                        int(eye.size()),
+                        {}};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    const int s = int(light.size());
+    path.edges = s + int(eye.size()) - 1;
+    fillLightPart(path, light);
+    fillEyePart(path, eye);
+    setSource(path, lights, light[0], light[0].throughput);
+    path.delta[s - 1] = path.delta[s] = false;
+    path.scatter[s - 1] = atLight.f;
+    path.scatter[s] = atEye.f;
+    path.lightPdfA[s] = atLight.pdfWToOther * edge.toSecond;
+    path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
+    if (s >= 2) path.eyePdfA[s - 2] = atLight.pdfWToPrevious * y.toPreviousFactor;
+    if (s + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
+    return closed;
+}
+
+bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
+               RayTally& tally) {
+    if (light.infinite()) {
+        return scene.visibleToInfinity(eye.position, eye.ng, light.position, kind, tally);
+    }
+    return scene.visible(eye.position, eye.ng, light.position, light.ng, kind, tally);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,37 @@
+// Full paths from subpaths: the three ways in which a strategy closes a path (hit, splat, connect),
+// each giving the contribution without its weight, and the FullPath that the weight is made from.
+#pragma once
+
+#include <optional>
+
+#include "libcore/bidir/mis.h"
+#include "libcore/bidir/walk.h"
+
+namespace lacuna {
+
+/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight, without
+/// the selector's weight and without visibility.
+struct Closed {
+    Rgb contribution;
+    int t = 0;
+    Vec2 raster;  ///< splats: where the lens sees it
+};
+
+/// s = 0: the eye path's last vertex lies on a light. Empty where it emits nothing this way. Fills
+/// `path`.
+std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path);
+
+/// t = 1: the lens vertex `z0` sees the light subpath's last vertex. Fills `path`. Empty where the
+/// contribution is zero; visibility is not looked at.
+std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
+                                 FullPath& path);
+
+/// s >= 1, t >= 2. Both last vertices must be connectable. Likewise.
+std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
+                                      FullPath& path);
+
+/// Whether the two vertices see each other.
+bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
+               RayTally& tally);
+
+}  // namespace lacuna

@@ -1,0 +1,382 @@
+#include "libcore/bidir/integrator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace lacuna {
+
+namespace {
+constexpr std::uint64_t kPathsPerChunk = 1024;   // light subpaths per task
+constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
+constexpr int kTile = 16;                        // eye paths: tiles of kTile^2 pixels
+constexpr std::size_t kReplaysKept = 8;
+
+/// Adds the time between construction and destruction to a phase.
+class PhaseTimer {
+  public:
+    PhaseTimer(IterationStatistics& statistics, const char* phase)
+        : seconds_(statistics.phaseSeconds[phase]), start_(Clock::now()) {}
+    ~PhaseTimer() {
+        seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_;
+};
+}  // namespace
+
+std::uint64_t IterationStatistics::totalRays() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t n : rays) sum += n;
+    return sum;
+}
+
+void IterationStatistics::add(const IterationStatistics& other) {
+    for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += other.rays[i];
+    invalidSamples += other.invalidSamples;
+    for (const std::string& r : other.invalidReplays) {
+        if (invalidReplays.size() < kReplaysKept) invalidReplays.push_back(r);
+    }
+    for (const auto& [phase, seconds] : other.phaseSeconds) phaseSeconds[phase] += seconds;
+}
+
+/// A splat's technique and its value without the weight: only where --techniques asks for it.
+struct TechniqueSplat {
+    int s;
+    Splat weighted;
+    Rgb unweighted;
+};
+
+/// What one task leaves behind; merged in the order of tasks.
+struct BidirIntegrator::Chunk {
+    std::vector<Splat> splats;
+    std::vector<TechniqueSplat> techniqueSplats;
+    std::vector<PathVertex> vertices;  // of the subpaths that go into the pool
+    RayTally tally;
+    std::vector<RecordedRay> rays;
+    std::uint64_t invalidSamples = 0;
+    std::vector<std::string> invalidReplays;
+};
+
+/// Scratch memory of one thread.
+struct BidirIntegrator::Worker {
+    std::vector<PathVertex> eye, light;
+    ProposalSink proposals;
+    FullPath path;
+};
+
+BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, TechniqueSet techniques,
+                                 Method& method, const RenderSettings& settings,
+                                 const ThreadPool& pool)
+    : scene_(scene),
+      camera_(camera),
+      techniqueSet_(techniques),
+      method_(method),
+      settings_(settings),
+      threads_(pool),
+      walker_(scene, camera, settings.limits),
+      lightPaths_(settings.lightPaths ? settings.lightPaths
+                                      : std::uint64_t(camera.film().width) *
+                                            std::uint64_t(camera.film().height)) {
+    for (int i = 0; i < pool.threads(); ++i) {
+        workers_.push_back(std::make_unique<Worker>());
+        workers_.back()->eye.reserve(std::size_t(settings.limits.maxDepth) + 1);
+        workers_.back()->light.reserve(std::size_t(settings.limits.maxDepth) + 1);
+    }
+}
+
+BidirIntegrator::~BidirIntegrator() = default;
+
+Techniques BidirIntegrator::freeze(std::uint32_t iteration) {
+    Techniques t;
+    t.hit = techniqueSet_.hits;
+    t.splats = techniqueSet_.splats ? double(lightPaths_) : 0.0;
+    const ConnectionDensity& density = method_.freeze(iteration);
+    t.connections = techniqueSet_.connects ? &density : nullptr;
+    t.rouletteDepth = settings_.limits.rouletteDepth;
+    return t;
+}
+
+bool BidirIntegrator::warmUp(const std::atomic<bool>& cancel, IterationStatistics& statistics) {
+    PhaseTimer timer(statistics, "warm-up");
+    for (int i = 0; i < method_.warmupIterations(); ++i) {
+        method_.freeze(std::uint32_t(i));
+        if (!lightPass(std::uint32_t(i), StreamKind::Warmup, false, cancel, statistics)) {
+            return false;
+        }
+        method_.prepare(pool_);
+        method_.observe(pool_);
+    }
+    return true;
+}
+
+bool BidirIntegrator::render(std::uint32_t iteration, std::span<Rgb> pixels,
+                             const std::atomic<bool>& cancel, IterationStatistics& statistics) {
+    pixels_ = pixels;
+    std::fill(pixels_.begin(), pixels_.end(), Rgb{});
+    techniques_ = freeze(iteration);
+    {
+        PhaseTimer timer(statistics, "light paths");
+        if (!lightPass(iteration, StreamKind::LightPath, true, cancel, statistics)) return false;
+    }
+    {
+        PhaseTimer timer(statistics, "prepare");
+        method_.prepare(pool_);
+    }
+    if (techniqueSet_.hits || techniqueSet_.connects) {
+        PhaseTimer timer(statistics, "eye paths");
+        if (!eyePass(iteration, cancel, statistics)) return false;
+    }
+    method_.observe(pool_);
+    if (techniqueFilm_) techniqueFilm_->countIteration();
+    return true;
+}
+
+bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool splat,
+                                const std::atomic<bool>& cancel, IterationStatistics& statistics) {
+    const std::uint64_t pooled = method_.pool().subpaths;
+    const bool splats = splat && techniqueSet_.splats;
+    const std::uint64_t total = std::max(pooled, splats ? lightPaths_ : 0);
+    pool_.vertices.clear();
+    pool_.connectable.clear();
+    pool_.subpaths = pooled;
+
+    // Where pixels trace their own light subpaths, those are left to the eye pass.
+    const int filmWidth = camera_.film().width;
+    const auto filmPixels = std::uint64_t(filmWidth) * std::uint64_t(camera_.film().height);
+    const auto tracedByPixel = [&](std::uint64_t i) {
+        return techniqueSet_.ownLightPath && i < filmPixels &&
+               settings_.crop.contains(int(i % std::uint64_t(filmWidth)),
+                                       int(i / std::uint64_t(filmWidth)));
+    };
+
+    for (std::uint64_t begin = 0; begin < total; begin += kPathsPerBatch) {
+        const std::uint64_t end = std::min(total, begin + kPathsPerBatch);
+        std::vector<Chunk> chunks((end - begin + kPathsPerChunk - 1) / kPathsPerChunk);
+        threads_.forEach(chunks.size(), [&](std::size_t c) {
+            if (cancel) return;
+            Chunk& chunk = chunks[c];
+            if (recording_) chunk.tally.recording = &chunk.rays;
+            Worker& worker = *workers_[std::size_t(threads_.workerIndex())];
+            const std::uint64_t first = begin + c * kPathsPerChunk;
+            for (std::uint64_t i = first; i < std::min(end, first + kPathsPerChunk); ++i) {
+                if (tracedByPixel(i)) continue;
+                Rng rng(settings_.seed, iteration, kind, i);
+                walker_.traceLight(rng, chunk.tally, worker.light);
+                if (i < pooled) {
+                    chunk.vertices.insert(chunk.vertices.end(), worker.light.begin(),
+                                          worker.light.end());
+                }
+                if (splats && i < lightPaths_) {
+                    splatLightPath(worker.light, iteration, i, rng, worker, chunk);
+                }
+            }
+        });
+        if (cancel) return false;
+
+        // A vertex y_{s-1} can be connected while s + t - 1 <= maxDepth for t = 2.
+        const int lastConnected = settings_.limits.maxDepth - 2;
+        for (const Chunk& chunk : chunks) {
+            for (const PathVertex& v : chunk.vertices) {
+                if (int(v.index) <= lastConnected && v.connectable()) {
+                    pool_.connectable.push_back(std::uint32_t(pool_.vertices.size()));
+                }
+                pool_.vertices.push_back(v);
+            }
+        }
+        collect(chunks, statistics);
+    }
+    return true;
+}
+
+bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& cancel,
+                              IterationStatistics& statistics) {
+    const PixelRect& crop = settings_.crop;
+    const int tilesX = (crop.width() + kTile - 1) / kTile;
+    const int tilesY = (crop.height() + kTile - 1) / kTile;
+    // Tile rows at a time: bounds the memory of splats.
+    const int rowsPerBatch = std::max(1, int(kPathsPerBatch / std::uint64_t(kTile * kTile * tilesX)));
+    for (int row = 0; row < tilesY; row += rowsPerBatch) {
+        const int rows = std::min(rowsPerBatch, tilesY - row);
+        std::vector<Chunk> chunks(std::size_t(rows) * std::size_t(tilesX));
+        threads_.forEach(chunks.size(), [&](std::size_t c) {
+            if (cancel) return;
+            Chunk& chunk = chunks[c];
+            if (recording_) chunk.tally.recording = &chunk.rays;
+            Worker& worker = *workers_[std::size_t(threads_.workerIndex())];
+            const int x0 = crop.x0 + int(c % std::size_t(tilesX)) * kTile;
+            const int y0 = crop.y0 + (row + int(c / std::size_t(tilesX))) * kTile;
+            for (int y = y0; y < std::min(y0 + kTile, crop.y1); ++y) {
+                for (int x = x0; x < std::min(x0 + kTile, crop.x1); ++x) {
+                    const std::size_t pixel =
+                        std::size_t(y - crop.y0) * std::size_t(crop.width()) +
+                        std::size_t(x - crop.x0);
+                    eyePath(iteration, x, y, worker, chunk, pixels_[pixel]);
+                }
+            }
+        });
+        if (cancel) return false;
+        collect(chunks, statistics);
+    }
+    return true;
+}
+
+void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& worker, Chunk& chunk,
+                              Rgb& pixel) {
+    const PixelRect& crop = settings_.crop;
+    const auto filmIndex = std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x);
+    const auto pixelIndex =
+        std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
+
+    worker.light.clear();
+    if (techniqueSet_.ownLightPath) {
+        Rng rng(settings_.seed, iteration, StreamKind::LightPath, filmIndex);
+        walker_.traceLight(rng, chunk.tally, worker.light);
+        if (techniqueSet_.splats && filmIndex < lightPaths_) {
+            splatLightPath(worker.light, iteration, filmIndex, rng, worker, chunk);
+        }
+    }
+
+    Rng rng(settings_.seed, iteration, StreamKind::EyePath, filmIndex);
+    const float jitterX = rng.uniform(), jitterY = rng.uniform();
+    walker_.traceEye({float(x) + jitterX, float(y) + jitterY}, rng, chunk.tally, worker.eye);
+
+    Rng selection(settings_.seed, iteration, StreamKind::Connection, filmIndex);
+    for (std::size_t t = 2; t <= worker.eye.size(); ++t) {
+        const Subpath eye(worker.eye.data(), t);
+        const PathVertex& z = eye.back();
+        if (techniqueSet_.hits) {
+            if (const auto closed = closeHit(walker_, eye, worker.path)) {
+                deliver(*closed, nullptr, 1.0, iteration, filmIndex, pixelIndex, &pixel, worker,
+                        chunk);
+            }
+        }
+        if (!techniqueSet_.connects || z.infinite() || !z.connectable() ||
+            int(t) > settings_.limits.maxDepth) {
+            continue;
+        }
+        worker.proposals.clear();
+        method_.select({z, eye, worker.light, filmIndex, iteration, walker_}, selection,
+                       worker.proposals);
+        for (const Proposal& proposal : worker.proposals.proposals()) {
+            if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
+            const auto closed = closeConnection(walker_, proposal.light, eye, worker.path);
+            if (!closed || !connected(scene_, proposal.light.back(), z, RayKind::Connection,
+                                      chunk.tally)) {
+                continue;
+            }
+            deliver(*closed, &proposal, proposal.weight, iteration, filmIndex, pixelIndex, &pixel,
+                    worker, chunk);
+        }
+    }
+}
+
+void BidirIntegrator::splatLightPath(Subpath path, std::uint32_t iteration, std::uint64_t index,
+                                     Rng& rng, Worker& worker, Chunk& chunk) {
+    const PixelRect& crop = settings_.crop;
+    const PathVertex z0 = walker_.sampleLens(rng);
+    for (std::size_t s = 1; s <= path.size(); ++s) {
+        const Subpath light = path.first(s);
+        if (!light.back().connectable()) continue;
+        const auto closed = closeSplat(walker_, light, z0, worker.path);
+        if (!closed) continue;
+        const int x = int(closed->raster.x), y = int(closed->raster.y);
+        if (!crop.contains(x, y)) continue;
+        if (!connected(scene_, light.back(), z0, RayKind::Splat, chunk.tally)) continue;
+        const auto pixel =
+            std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
+        deliver(*closed, nullptr, 1.0 / double(lightPaths_), iteration, index, pixel, nullptr,
+                worker, chunk);
+    }
+}
+
+void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, double scale,
+                              std::uint32_t iteration, std::uint64_t sample,
+                              std::uint32_t pixelIndex, Rgb* ownPixel, Worker& worker,
+                              Chunk& chunk) {
+    const double weight = misWeight(worker.path, techniques_, closed.t);
+    const Rgb unweighted = closed.contribution * float(scale);
+    const Rgb value = unweighted * float(weight);
+    if (!isFinite(value)) {
+        ++chunk.invalidSamples;
+        if (chunk.invalidReplays.size() < kReplaysKept) {
+            const int width = camera_.film().width;
+            chunk.invalidReplays.push_back(
+                closed.t == 1 ? "light:" + std::to_string(sample) + "," + std::to_string(iteration)
+                              : std::to_string(sample % std::uint64_t(width)) + "," +
+                                    std::to_string(sample / std::uint64_t(width)) + "," +
+                                    std::to_string(iteration));
+        }
+        return;
+    }
+    if (observer_) {
+        observer_({worker.path, closed.t, weight, value, pixelIndex, proposal, techniques_});
+    }
+    const int s = worker.path.edges + 1 - closed.t;
+    if (ownPixel) {
+        *ownPixel += value;
+        if (techniqueFilm_) techniqueFilm_->add(s, closed.t, pixelIndex, value, unweighted);
+    } else {
+        chunk.splats.push_back({pixelIndex, value});
+        if (techniqueFilm_) {
+            chunk.techniqueSplats.push_back({s, {pixelIndex, value}, unweighted});
+        }
+    }
+}
+
+void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& statistics) {
+    std::vector<std::vector<Splat>> splats;
+    for (Chunk& chunk : chunks) {
+        for (std::size_t i = 0; i < kRayKinds; ++i) statistics.rays[i] += chunk.tally.counts[i];
+        statistics.invalidSamples += chunk.invalidSamples;
+        for (std::string& r : chunk.invalidReplays) {
+            if (statistics.invalidReplays.size() < kReplaysKept) {
+                statistics.invalidReplays.push_back(std::move(r));
+            }
+        }
+        for (const TechniqueSplat& t : chunk.techniqueSplats) {
+            techniqueFilm_->add(t.s, 1, t.weighted.pixel, t.weighted.value, t.unweighted);
+        }
+        recorded_.insert(recorded_.end(), chunk.rays.begin(), chunk.rays.end());
+        splats.push_back(std::move(chunk.splats));
+    }
+    if (!pixels_.empty()) addSplats(splats, pixels_, threads_);
+}
+
+void BidirIntegrator::replayEyePath(std::uint32_t iteration, int x, int y,
+                                    const PathObserver& observer) {
+    const std::atomic<bool> never{false};
+    IterationStatistics ignored;
+    techniques_ = freeze(iteration);
+    pixels_ = {};
+    if (method_.pool().subpaths > 0) {
+        lightPass(iteration, StreamKind::LightPath, false, never, ignored);
+    }
+    method_.prepare(pool_);
+    Chunk chunk;
+    Rgb pixel;
+    const PathObserver before = std::exchange(observer_, observer);
+    eyePath(iteration, x, y, *workers_[0], chunk, pixel);
+    observer_ = before;
+}
+
+void BidirIntegrator::replayLightPath(std::uint32_t iteration, std::uint64_t index,
+                                      const PathObserver& observer) {
+    techniques_ = freeze(iteration);
+    Chunk chunk;
+    Rng rng(settings_.seed, iteration, StreamKind::LightPath, index);
+    Worker& worker = *workers_[0];
+    walker_.traceLight(rng, chunk.tally, worker.light);
+    const PathObserver before = std::exchange(observer_, observer);
+    splatLightPath(worker.light, iteration, index, rng, worker, chunk);
+    observer_ = before;
+}
+
+std::vector<RecordedRay> BidirIntegrator::takeRecording() {
+    return std::exchange(recorded_, {});
+}
+
+}  // namespace lacuna

@@ -1,0 +1,118 @@
+// The seam between the one integrator and the methods: how a light vertex is picked for an eye vertex
+// (with its realised probability), and what the weights believe about that pick. These are two
+// different numbers, so they are two interfaces (architecture.md).
+//
+// A Method lives for the whole render and owns its caches. Per iteration:
+//   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libcore/base/rng.h"
+#include "libcore/bidir/mis.h"
+#include "libcore/bidir/path.h"
+
+namespace lacuna {
+
+/// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
+/// prefix of any vertex is the `index + 1` entries that end with it.
+class LightPool {
+  public:
+    std::vector<PathVertex> vertices;
+    std::vector<std::uint32_t> connectable;  ///< indices of those that a connection may end at
+    std::uint64_t subpaths = 0;              ///< M, those without any vertex included
+
+    /// y_0 .. y_{s-1} for the i-th connectable vertex.
+    Subpath prefix(std::size_t i) const { return prefixOf(connectable[i]); }
+    Subpath prefixOf(std::uint32_t vertex) const {
+        const std::size_t s = std::size_t(vertices[vertex].index) + 1;
+        return {vertices.data() + vertex + 1 - s, s};
+    }
+};
+
+/// A light vertex proposed for an eye vertex. `weight` holds everything about the pick, so that
+/// E[sum weight g] = (1/M) sum of g over this iteration's pool.
+struct Proposal {
+    Subpath light;            ///< y_0 .. y_{s-1}
+    double weight = 1.0;
+    std::uint32_t label = 0;  ///< routes the contribution to a layer (distribution, node, subspace)
+};
+
+/// Collects the proposals for one eye vertex; fresh light vertices live in it until it is cleared.
+class ProposalSink {
+  public:
+    static constexpr std::size_t kFreshCapacity = 64;
+
+    void clear() {
+        proposals_.clear();
+        freshCount_ = 0;
+    }
+    void add(const Proposal& proposal) { proposals_.push_back(proposal); }
+    /// Room for a fresh light vertex; at most kFreshCapacity between two calls of clear().
+    PathVertex& newVertex() { return fresh_.at(freshCount_++); }
+    std::span<const Proposal> proposals() const { return proposals_; }
+
+  private:
+    std::vector<Proposal> proposals_;
+    std::array<PathVertex, kFreshCapacity> fresh_;
+    std::size_t freshCount_ = 0;
+};
+
+/// Draws fresh y_0: next event. Implemented by the walker (and by tests on finite spaces).
+class LightSampler {
+  public:
+    virtual ~LightSampler() = default;
+    /// False where the scene has no light with power.
+    virtual bool sampleLight(Rng& rng, PathVertex& out) const = 0;
+};
+
+/// What a selector may look at.
+struct EyeContext {
+    const PathVertex& vertex;       ///< z_{t-1}
+    Subpath eyePath;                ///< z_0 .. z_{t-1}
+    Subpath ownLightPath;           ///< the pixel's own light subpath, where the row asks for it
+    std::uint32_t pixel;
+    std::uint32_t iteration;
+    const LightSampler& lights;
+
+    int t() const { return int(eyePath.size()); }
+    const PathVertex& predecessor() const { return eyePath[eyePath.size() - 2]; }
+};
+
+/// Which techniques a method takes part in; fixed for the render.
+struct TechniqueSet {
+    bool hits = false;          ///< s = 0: eye paths that run into a light
+    bool connects = false;      ///< t >= 2, s >= 1 through select()
+    bool splats = false;        ///< t = 1: light paths seen by the lens
+    bool ownLightPath = false;  ///< every pixel traces a light subpath of its own
+};
+
+/// Light subpaths of one iteration.
+struct PoolRequest {
+    std::uint64_t subpaths = 0;  ///< M: stored for selection; 0: no pool
+};
+
+class Method {
+  public:
+    virtual ~Method() = default;
+
+    /// Iterations to run and throw away before the first one that counts.
+    virtual int warmupIterations() const { return 0; }
+    virtual PoolRequest pool() const { return {}; }
+
+    /// What the weights believe in the coming iteration: may depend on earlier iterations alone. Valid
+    /// until the next call.
+    virtual const ConnectionDensity& freeze(std::uint32_t iteration) = 0;
+    /// Builds this iteration's pmfs, trees, bins. `pool` stays valid and unchanged until observe().
+    virtual void prepare(const LightPool& pool) { (void)pool; }
+    /// Appends 0..n proposals. Called from many threads at once.
+    virtual void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const = 0;
+    /// What later iterations may learn from; after warm-ups as well.
+    virtual void observe(const LightPool& pool) { (void)pool; }
+};
+
+}  // namespace lacuna

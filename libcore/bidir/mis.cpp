@@ -1,0 +1,65 @@
+#include "libcore/bidir/mis.h"
+
+namespace lacuna {
+
+bool FullPath::exists(int t) const {
+    const int s = edges + 1 - t;
+    if (s == 0) return hittable;
+    if (edges == 1 && t == 1 && !splattable) return false;
+    // The connection's two ends scatter smoothly; the light's own point and the lens always do.
+    return !(s >= 2 && delta[s - 1]) && !(t >= 2 && delta[s]);
+}
+
+void FullPath::fillLightThroughputs(int rouletteDepth) {
+    beta[0] = sourceBeta;
+    for (int i = 1; i < edges; ++i) {
+        // beta_i = beta_{i-1} f G / p(x_i): both steps of the measure in double.
+        const double g = edgeBetween(*vertex[i - 1], *vertex[i]).geometry;
+        const double pdf = double(lightPdfA[i]) * lightRoulette(i, rouletteDepth);
+        beta[i] = pdf > 0.0 ? beta[i - 1] * scatter[i - 1] * float(g / pdf) : Rgb{};
+    }
+}
+
+double effectiveCount(const FullPath& path, const Techniques& techniques, int t) {
+    if (!path.exists(t)) return 0.0;
+    const int s = path.edges + 1 - t;
+    if (s == 0) return techniques.hit ? 1.0 : 0.0;
+    if (t == 1) return techniques.splats;
+    if (!techniques.connections) return 0.0;
+    if (const auto constants = techniques.connections->constants()) {
+        return s == 1 ? constants->direct : constants->indirect;
+    }
+    const ConnectionEnd eye{path.vertex[s], path.vertex[s + 1], t};
+    const ConnectionEnd light{path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s};
+    return techniques.connections->effectiveSamples(eye, light, path.beta[s - 1]);
+}
+
+double misWeight(FullPath& path, const Techniques& techniques, int t) {
+    const int k = path.edges;
+    if (techniques.connections && !techniques.connections->constants()) {
+        path.fillLightThroughputs(techniques.rouletteDepth);
+    }
+    const double own = effectiveCount(path, techniques, t);
+    if (own <= 0.0) return 0.0;
+    double sum = own;
+
+    // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0.
+    double ratio = 1.0;
+    for (int i = k - t; i >= 0; --i) {
+        ratio *= double(path.eyePdfA[i]) * path.eyeRoulette(i, techniques.rouletteDepth) /
+                 (double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth));
+        if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
+        sum += ratio * effectiveCount(path, techniques, k - i + 1);
+    }
+    // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}.
+    ratio = 1.0;
+    for (int i = k - t + 1; i <= k - 1; ++i) {
+        ratio *= double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth) /
+                 (double(path.eyePdfA[i]) * path.eyeRoulette(i, techniques.rouletteDepth));
+        if (!(ratio > 0.0)) break;
+        sum += ratio * effectiveCount(path, techniques, k - i);
+    }
+    return own / sum;
+}
+
+}  // namespace lacuna

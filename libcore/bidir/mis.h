@@ -1,0 +1,92 @@
+// The balance heuristic over all strategies of one full path: the only place where weights are made.
+//
+//     w_t(x) = n_t p_t(x) r_t(x) / sum_i n_i p_i(x) r_i(x)                            (methods.md 1)
+//
+// Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k + 1.
+// Neighbouring strategies differ in one vertex:  p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so the sum
+// is a sweep of ratios in double and products of densities never occur (numerics.md 9, 10).
+// Delta events keep their generalised densities in the ratios; strategies that would connect through
+// one do not exist (numerics.md 2).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "libcore/bidir/path.h"
+
+namespace lacuna {
+
+/// Longest path in edges that can be asked for.
+inline constexpr int kMaxEdges = 254;
+
+/// One end of a connection as the density sees it, whichever walk made the vertex.
+struct ConnectionEnd {
+    const PathVertex* vertex;
+    const PathVertex* predecessor;  ///< in this role: towards the light, or towards the lens; may be null
+    int count;                      ///< s for the light's end, t for the eye's
+};
+
+/// What MIS believes about the selector: the effective number of samples n r of methods.md that
+/// strategy (s, t) has for this connection. A function of the path and of frozen data alone; positive
+/// only where the selector can pick the vertex.
+class ConnectionDensity {
+  public:
+    /// For densities that depend on nothing but whether s = 1.
+    struct Constants {
+        double direct;    ///< s = 1
+        double indirect;  ///< s >= 2
+    };
+
+    virtual ~ConnectionDensity() = default;
+    /// Set: effectiveSamples is never asked.
+    virtual std::optional<Constants> constants() const { return std::nullopt; }
+    /// `beta` is the throughput that light tracing would have had at the light's end.
+    virtual double effectiveSamples(const ConnectionEnd& eye, const ConnectionEnd& light,
+                                    const Rgb& beta) const = 0;
+};
+
+/// How many samples each technique has, as seen from every other one: fixed for an iteration.
+struct Techniques {
+    bool hit = false;        ///< s = 0: eye paths that run into a light
+    double splats = 0;       ///< t = 1: light paths that splat (L); 0: there is no such technique
+    const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
+    int rouletteDepth = 1;   ///< first vertex index (own end = 0) at which roulette is played
+};
+
+/// A full path with the densities of both walks: what misWeight reads. All arrays by vertex, x_0
+/// first; valid up to `edges`.
+struct FullPath {
+    int edges = 0;
+    std::array<const PathVertex*, kMaxEdges + 1> vertex;
+    std::array<float, kMaxEdges + 1> lightPdfA;  ///< pL(x_i | x_{i-1}, x_{i-2}), no roulette
+    std::array<float, kMaxEdges + 1> eyePdfA;    ///< pE(x_i | x_{i+1}, x_{i+2}), no roulette
+    std::array<float, kMaxEdges + 1> survival;   ///< 1 at both ends
+    std::array<bool, kMaxEdges + 1> delta;       ///< of the event at x_i on THIS path
+    std::array<Rgb, kMaxEdges + 1> scatter;      ///< f at x_i (x_0: emission profile)
+    Rgb sourceBeta;                              ///< exitance over density at x_0
+    bool hittable = false;                       ///< an eye walk can run into this light
+    bool splattable = true;                      ///< k = 1 under a directional light cannot be splatted
+
+    /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
+    bool exists(int t) const;
+    /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
+    double lightRoulette(int i, int rouletteDepth) const {
+        return i >= 2 && i - 1 >= rouletteDepth ? survival[i - 1] : 1.0;
+    }
+    double eyeRoulette(int i, int rouletteDepth) const {
+        return i <= edges - 2 && edges - i - 1 >= rouletteDepth ? survival[i + 1] : 1.0;
+    }
+    /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
+    std::array<Rgb, kMaxEdges + 1> beta;
+    void fillLightThroughputs(int rouletteDepth);
+};
+
+/// n_t r_t of strategy t on this path; zero where it does not exist. Reads path.beta where the density
+/// has no constants.
+double effectiveCount(const FullPath& path, const Techniques& techniques, int t);
+
+/// Weight of the strategy t that made the path (1 <= t <= edges + 1), in [0, 1]. O(k). Fills path.beta
+/// where the density asks for it.
+double misWeight(FullPath& path, const Techniques& techniques, int t);
+
+}  // namespace lacuna

@@ -1,0 +1,71 @@
+// Vertices of eye and light subpaths, and how densities change measure between them.
+//
+// A full path x_0 .. x_k starts on a light and ends on the lens (methods.md 1). A subpath is stored
+// from its own end: y_0 on the light, z_0 on the lens.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "libcore/base/vec.h"
+#include "libcore/material/bsdf.h"
+#include "libcore/scene/light.h"
+
+namespace lacuna {
+
+enum class VertexKind : std::uint8_t {
+    Lens,
+    Surface,
+    LightSource,  ///< y_0 of a finite light (area, point, spot)
+    Infinite,     ///< y_0 of a light at infinity, or where an eye path left the scene
+};
+
+/// One vertex, as its own subpath's walk left it. Never written after the walk.
+struct PathVertex {
+    Vec3 position;    ///< Infinite: unit direction from the scene towards the light
+    Vec3 ng;          ///< zero where there is no surface (lens, point lights, infinity)
+    Vec3 toPrevious;  ///< unit, towards the own subpath's previous vertex
+    Bsdf bsdf;        ///< Surface only
+    /// Throughput that arrives AT the vertex, before its BSDF: `beta` of methods.md for light
+    /// subpaths, importance over density for eye subpaths. Roulette included.
+    Rgb throughput;
+    Rgb scatter;             ///< f of the scatter that was sampled here (light: emission profile)
+    float pdfA = 0;          ///< density in the own walk, given the previous vertex; no roulette
+    float pdfReverseA = 0;   ///< density in the other walk, once the own one has gone two steps on
+    float survival = 1;      ///< probability of going on from here, before rr-depth is looked at
+    float toPreviousFactor = 0;  ///< |cos at the previous| / d^2: solid angle here to its measure
+    std::uint32_t light = kNone;  ///< light of this point, if it emits
+    Vec2 lightUv;                 ///< barycentric on it
+    VertexKind kind = VertexKind::Surface;
+    ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
+    std::uint16_t index = 0;                    ///< 0 on the light or the lens
+
+    bool infinite() const { return kind == VertexKind::Infinite; }
+    /// Whether a connection may end here.
+    bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
+};
+static_assert(std::is_trivially_copyable_v<PathVertex>);
+
+/// y_0 .. y_{s-1} or z_0 .. z_{t-1}; the last vertex is the one that is connected.
+using Subpath = std::span<const PathVertex>;
+
+/// Geometry of the edge between two vertices; symmetric but for the cosines.
+struct Edge {
+    Vec3 direction;          ///< unit, from the first vertex to the second
+    float distance = 0;      ///< infinity: not set
+    float toSecond = 0;      ///< density per solid angle at the first -> measure of the second
+    float toFirst = 0;       ///< and back
+    float geometry = 0;      ///< G without visibility
+};
+
+/// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the measure
+/// of the infinite vertex is solid angle, and the factor towards the finite one is its cosine (from
+/// a disk's area). Coincident points give an edge whose geometry is 0: nothing is carried.
+Edge edgeBetween(const PathVertex& a, const PathVertex& b);
+
+/// The vertex as a point on its light, for Lights' questions. `vertex.light` must be set.
+LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex);
+
+}  // namespace lacuna

@@ -1,0 +1,45 @@
+// Own accessor reader: every component type, normalised or not, any stride, sparse with and without
+// a base. All arithmetic on the file's numbers is checked before it is used.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libcore/base/vec.h"
+#include "libcore/gltf/document.h"
+
+namespace lacuna::gltf {
+
+/// An accessor whose ranges have been checked: element i < count is `components` values of
+/// `componentType` at base + i * stride (zeros where base is null), then overwritten by `sparse`.
+struct AccessorView {
+    std::size_t count = 0;
+    int components = 0;
+    int componentType = 0;
+    bool normalized = false;
+    const std::uint8_t* base = nullptr;
+    std::size_t stride = 0;
+
+    struct Sparse {
+        std::vector<std::uint32_t> indices;  ///< each below `count`
+        const std::uint8_t* values = nullptr;
+    } sparse;
+};
+
+/// Checks accessor `index` (in range already) and says where its elements are. Throws InputError if
+/// it does not have `components` components, is empty, or any of its bytes lies outside its view.
+AccessorView viewAccessor(const Document& document, int index, int components);
+
+/// As floats, `components` per element; normalised integers become [0, 1] or [-1, 1], others their
+/// value. Elements 0..count-1, or only those `which` names (ascending, unique, below count).
+std::vector<float> readFloats(const AccessorView& view);
+std::vector<float> readFloats(const AccessorView& view, std::span<const std::uint32_t> which);
+
+/// Accessor `index` as vertex indices: SCALAR of unsigned integers, not normalised. Throws
+/// InputError.
+std::vector<std::uint32_t> readIndices(const Document& document, int index);
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,151 @@
+#include "libcore/gltf/document.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/gltf/guard.h"
+#include "libcore/gltf/limits.h"
+
+namespace lacuna::gltf {
+namespace {
+
+using nlohmann::json;
+
+json parseJson(const std::string& file, std::string_view text) {
+    checkJsonDepth(file, text);
+    try {
+        return json::parse(text.begin(), text.end());
+    } catch (const json::exception& error) {
+        refuse(file, "", "valid JSON", error.what(), "copy or export the file again");
+    }
+}
+
+/// Buffer `index`: the BIN chunk, a data URI or an external file.
+std::span<const std::uint8_t> loadBuffer(Document& document, const json& buffer, std::size_t index,
+                                         std::span<const std::uint8_t> binary) {
+    const std::string place = "buffers[" + std::to_string(index) + "]";
+    const auto length = buffer.find("byteLength");
+    if (length == buffer.end()) refuse(document.file, place + ".byteLength", "a number", "none");
+    const std::uint64_t size = length->get<std::uint64_t>();
+
+    std::span<const std::uint8_t> bytes;
+    const auto uri = buffer.find("uri");
+    if (uri != buffer.end()) {
+        const auto& text = uri->get_ref<const std::string&>();
+        document.external.push_back(
+            isDataUri(text) ? decodeDataUri(document.file, place + ".uri", text)
+                            : document.readExternal(resolveUri(document.file, place + ".uri", text),
+                                                    document.file + ", " + place));
+        bytes = document.external.back().span();
+    } else if (index == 0 && !binary.empty()) {
+        bytes = binary;
+    } else if (size > 0) {
+        refuse(document.file, place, "a uri (or a .glb with binary data)", "none");
+    }
+    if (size > bytes.size()) {
+        refuse(document.file, place, std::to_string(size) + " bytes, as byteLength says",
+               std::to_string(bytes.size()), "copy or export the files again");
+    }
+    return bytes.first(std::size_t(size));
+}
+
+void loadBuffers(Document& document, std::span<const std::uint8_t> binary) {
+    const auto buffers = document.json.find("buffers");
+    if (buffers == document.json.end()) return;
+    for (std::size_t i = 0; i < buffers->size(); ++i) {
+        document.buffers.push_back(loadBuffer(document, (*buffers)[i], i, binary));
+        (*buffers)[i].erase("uri");  // a data URI can be half the file
+    }
+}
+
+/// tinygltf's messages have one line per fault: the first is enough.
+std::string firstLine(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+/// Fills document.model. Leaves in document.json only what is read from there later.
+void parseModel(Document& document) {
+    constexpr std::array kKept = {"buffers", "images", "animations", "skins"};
+    constexpr std::array kDone = {"accessors", "bufferViews", "meshes", "nodes"};
+    json& root = document.json;
+    json kept = json::object();
+    for (const char* key : kKept) {
+        if (const auto member = root.find(key); member != root.end()) {
+            kept[key] = std::move(*member);
+            root.erase(member);
+        }
+    }
+    const std::string text = root.dump();
+    for (const char* key : kDone) root.erase(key);
+    root.update(kept);
+    if (text.size() > Limits::kFileBytes) {
+        refuse(document.file, "", "less JSON", std::to_string(text.size()) + " bytes",
+               "split the scene");
+    }
+
+    tinygltf::TinyGLTF parser;
+    std::string error, warning;
+    bool parsed = false;
+    try {
+        parsed = parser.LoadASCIIFromString(&document.model, &error, &warning, text.data(),
+                                            static_cast<unsigned int>(text.size()), "");
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    // It also goes on after dropping what it cannot parse, and then only leaves a message.
+    if (!parsed || !error.empty()) {
+        refuse(document.file, "", "valid glTF 2.0",
+               error.empty() ? "what tinygltf cannot parse" : firstLine(error));
+    }
+}
+
+void checkBufferViews(const Document& document) {
+    const auto& views = document.model.bufferViews;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::size_t size = document.buffers[std::size_t(views[i].buffer)].size();
+        if (views[i].byteOffset > size || views[i].byteLength > size - views[i].byteOffset) {
+            refuse(document.file, "bufferViews[" + std::to_string(i) + "]",
+                   "a range within the " + std::to_string(size) + " bytes of its buffer",
+                   std::to_string(views[i].byteLength) + " bytes at " +
+                       std::to_string(views[i].byteOffset));
+        }
+    }
+}
+
+}  // namespace
+
+std::span<const std::uint8_t> Document::view(int bufferView) const {
+    const tinygltf::BufferView& range = model.bufferViews[std::size_t(bufferView)];
+    return buffers[std::size_t(range.buffer)].subspan(range.byteOffset, range.byteLength);
+}
+
+Bytes Document::readExternal(const std::filesystem::path& path, const std::string& place) {
+    Bytes read =
+        readFile(path, std::min(Limits::kFileBytes, Limits::kTotalBytes - bytesRead), place);
+    bytesRead += read.size;
+    hash.add(read.span());
+    return read;
+}
+
+void loadDocument(const std::string& file, Document& document, Warnings& warnings) {
+    document.file = file;
+    document.bytes = readFile(file, Limits::kFileBytes);
+    document.bytesRead = document.bytes.size;
+    document.hash.add(document.bytes.span());
+
+    const Chunks chunks = splitContainer(file, document.bytes.span());
+    document.json = parseJson(file, chunks.json);
+    if (!document.json.is_object()) {
+        refuse(file, "", "a JSON object", document.json.type_name(), "convert to glTF 2.0");
+    }
+    checkRules(file, document.json);
+    checkVersionAndExtensions(file, document.json, warnings);
+    loadBuffers(document, chunks.binary);
+    parseModel(document);
+    checkBufferViews(document);
+    document.scene = std::size_t(std::max(document.model.defaultScene, 0));
+}
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,125 @@
+#include "libcore/gltf/extras.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+
+namespace lacuna::gltf {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kCorrect = "correct scene.extras";
+
+/// A member of an extras object, by name, with its place for messages.
+class Members {
+  public:
+    Members(const Document& document, const json& object, std::string place)
+        : document_(document), object_(object), place_(std::move(place)) {}
+
+    std::optional<int> integer(const char* name, int least, int most) const {
+        const auto found = object_.find(name);
+        if (found == object_.end()) return {};
+        if (!found->is_number_integer() || *found < least || *found > most) {
+            refuse(document_.file, place_ + "." + name,
+                   "an integer from " + std::to_string(least) + " to " + std::to_string(most),
+                   printable(found->dump(), 60), kCorrect);
+        }
+        return found->get<int>();
+    }
+
+    std::optional<double> number(const char* name, double least, double most,
+                                 const std::string& expected) const {
+        const auto found = object_.find(name);
+        if (found == object_.end()) return {};
+        if (!found->is_number() || !(found->get<double>() >= least) ||
+            !(found->get<double>() <= most)) {
+            refuse(document_.file, place_ + "." + name, expected, printable(found->dump(), 60),
+                   kCorrect);
+        }
+        return found->get<double>();
+    }
+
+    void warnAboutOthers(std::initializer_list<const char*> known, Warnings& warnings) const {
+        for (auto member = object_.begin(); member != object_.end(); ++member) {
+            const bool isKnown = std::any_of(
+                known.begin(), known.end(), [&](const char* name) { return member.key() == name; });
+            warnings.add("unknown members of scene.extras are ignored", !isKnown,
+                         place_ + "." + member.key());
+        }
+    }
+
+  private:
+    const Document& document_;
+    const json& object_;
+    std::string place_;
+};
+
+void readPicture(const Document& document, const json& extras, SceneDescription& scene,
+                 Warnings& warnings) {
+    const auto lacuna = extras.find("lacuna");
+    if (lacuna == extras.end()) return;
+    const std::string place = "scene.extras.lacuna";
+    if (!lacuna->is_object()) {
+        refuse(document.file, place, "an object", printable(lacuna->dump(), 60), kCorrect);
+    }
+    const Members members(document, *lacuna, place);
+    scene.width = members.integer("width", 1, 65536);
+    scene.height = members.integer("height", 1, 65536);
+    scene.maxDepth = members.integer("max_depth", 1, 1000);
+    scene.aperture = members.number("aperture", 0.0, 1e30, "a radius from 0 on");
+    scene.focus = members.number("focus", 1e-30, 1e30, "a distance above 0");
+    members.warnAboutOthers({"width", "height", "max_depth", "aperture", "focus"}, warnings);
+}
+
+void readEnvironment(Document& document, const json& extras, SceneDescription& scene,
+                     Warnings& warnings) {
+    const auto entry = extras.find("environment");
+    if (entry == extras.end()) return;
+    const std::string place = "scene.extras.environment";
+    EnvironmentDescription environment;
+    const json* name = &*entry;
+    if (entry->is_object()) {
+        const Members members(document, *entry, place);
+        environment.scale =
+            members.number("scale", 0.0, 1e30, "a number from 0 to 1e30").value_or(1.0);
+        environment.rotationDegrees =
+            members.number("rotation_degrees", -1e6, 1e6, "an angle in degrees").value_or(0.0);
+        members.warnAboutOthers({"file", "scale", "rotation_degrees"}, warnings);
+        const auto file = entry->find("file");
+        if (file == entry->end())
+            refuse(document.file, place + ".file", "a name", "none", kCorrect);
+        name = &*file;
+    }
+    if (!name->is_string()) {
+        refuse(document.file, place, "a file name, or an object with `file`",
+               printable(name->dump(), 60), kCorrect);
+    }
+    const std::filesystem::path path =
+        resolveFileName(document.file, place, name->get_ref<const std::string&>());
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (ending != ".exr" && ending != ".hdr") {
+        refuse(document.file, place, "a .exr or .hdr file", '"' + path.string() + '"',
+               "convert the environment");
+    }
+    hashFile(path, document.hash, document.file + ", " + place);
+    environment.file = path.string();
+    scene.environment = std::move(environment);
+}
+
+}  // namespace
+
+void readExtras(Document& document, SceneDescription& scene, Warnings& warnings) {
+    const auto scenes = document.json.find("scenes");
+    if (scenes == document.json.end() || document.scene >= scenes->size()) return;
+    const json& source = (*scenes)[document.scene];
+    const auto extras = source.find("extras");
+    if (extras == source.end() || !extras->is_object()) return;
+    readPicture(document, *extras, scene, warnings);
+    readEnvironment(document, *extras, scene, warnings);
+}
+
+}  // namespace lacuna::gltf

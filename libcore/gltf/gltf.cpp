@@ -1,0 +1,120 @@
+#include "libcore/gltf/gltf.h"
+
+#include <chrono>
+#include <new>
+
+#include "libcore/gltf/document.h"
+#include "libcore/gltf/entities.h"
+#include "libcore/gltf/extras.h"
+#include "libcore/gltf/image.h"
+#include "libcore/gltf/limits.h"
+#include "libcore/gltf/material.h"
+#include "libcore/gltf/mesh.h"
+#include "libcore/gltf/node.h"
+
+namespace lacuna {
+namespace {
+
+using namespace gltf;
+
+/// Seconds since the last call (or construction).
+class Stopwatch {
+  public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> passed = now - last_;
+        last_ = now;
+        return passed.count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// One instance per placed primitive. Negative determinants stay in toWorld; without one there is
+/// no surface to hit.
+void addInstances(const Document& document, const Placement& placement, const MeshTable& table,
+                  SceneDescription& scene, Warnings& warnings) {
+    const int mesh = document.model.nodes[placement.node].mesh;
+    if (mesh < 0) return;
+    const std::string place = "nodes[" + std::to_string(placement.node) + "]";
+    warnings.add("skins are not rendered: the mesh keeps its own pose",
+                 document.model.nodes[placement.node].skin >= 0, place);
+    if (placement.toWorld.determinant() == 0.0) {
+        warnings.add("objects scaled to nothing are left out", 1, place);
+        return;
+    }
+    for (const std::uint32_t index : table.ofPrimitive[std::size_t(mesh)]) {
+        if (index == MeshTable::kNone) continue;
+        if (scene.instances.size() >= Limits::kInstances) {
+            refuse(document.file, place,
+                   "at most " + std::to_string(Limits::kInstances) + " instances", "more",
+                   "simplify the scene");
+        }
+        scene.instances.push_back({index, placement.toWorld});
+    }
+}
+
+/// Primitives without a material got the index behind the file's own: glTF's default goes there.
+void addDefaultMaterial(SceneDescription& scene) {
+    bool needed = scene.materials.empty();
+    for (const Mesh& mesh : scene.meshes) needed |= mesh.material == scene.materials.size();
+    if (!needed) return;
+    scene.materials.emplace_back();
+    scene.materials.back().name = "default";
+}
+
+void load(const std::string& path, SceneDescription& scene, Warnings& warnings) {
+    Stopwatch watch;
+    Document document;
+    loadDocument(path, document, warnings);
+    warnings.add("animations are ignored: the scene is rendered at rest",
+                 document.json.contains("animations"));
+    const std::vector<Placement> placements = flattenScene(document, warnings);
+    TextureTable textures(document);
+    scene.materials = readMaterials(document, textures, warnings);
+    scene.phaseSeconds["parse"] = watch.lap();
+
+    scene.textures = textures.decode(document);
+    readExtras(document, scene, warnings);
+    scene.phaseSeconds["decode"] = watch.lap();
+
+    std::vector<bool> used(document.model.meshes.size());
+    for (const Placement& placement : placements) {
+        const int mesh = document.model.nodes[placement.node].mesh;
+        if (mesh >= 0) used[std::size_t(mesh)] = true;
+    }
+    MeshTable table = readMeshes(document, used, warnings);
+    scene.meshes = std::move(table.meshes);
+    for (const Placement& placement : placements) {
+        addInstances(document, placement, table, scene, warnings);
+        addCamera(document, placement.node, placement.toWorld, scene, warnings);
+        addLight(document, placement.node, placement.toWorld, scene, warnings);
+    }
+    addDefaultMaterial(scene);
+    scene.phaseSeconds["meshes"] = watch.lap();
+    scene.contentHash = document.hash.hex();
+}
+
+}  // namespace
+
+SceneDescription loadGltf(const std::string& path) {
+    SceneDescription scene;
+    scene.file = path;
+    Warnings warnings;
+    try {
+        load(path, scene, warnings);
+    } catch (const std::bad_alloc&) {
+        refuse(path, "", "a scene that fits into memory", "a larger one", "simplify the scene");
+    }
+    scene.warnings = warnings.lines();
+    return scene;
+}
+
+void requireCamera(const SceneDescription& scene) {
+    if (!scene.cameras.empty()) return;
+    refuse(scene.file, "", "a perspective camera in the scene", "none",
+           "add a camera and export again");
+}
+
+}  // namespace lacuna

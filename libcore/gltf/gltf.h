@@ -1,0 +1,29 @@
+// Reads a glTF 2.0 file (.glb, or .gltf with external files and data URIs) into a SceneDescription.
+//
+// Every byte of the file is treated as possibly wrong: sizes, indices, offsets, types and numbers
+// are checked before they are used, and what cannot be used is an InputError that says what was
+// expected. tinygltf turns the structural JSON into structs; it sees neither payload bytes nor URIs
+// (document.h).
+#pragma once
+
+#include <string>
+
+#include "libcore/scene/description.h"
+
+namespace lacuna {
+
+/// The default scene (the file's `scene`, else 0) of the glTF file `path`.
+///
+/// What the file says in terms that are not rendered yet is left out with one warning per kind
+/// (`warnings`: plain sentences without the file's name). `cameras` may come back empty: see
+/// requireCamera. `phaseSeconds` has "parse", "decode" and "meshes". Meshes and images are read
+/// with tbb::parallel_for, in the caller's arena; the result does not depend on the number of
+/// threads.
+///
+/// Throws InputError: `path: expected ..., found ...; what to do`, one line.
+SceneDescription loadGltf(const std::string& path);
+
+/// Throws InputError if the scene has no perspective camera to render from.
+void requireCamera(const SceneDescription& scene);
+
+}  // namespace lacuna

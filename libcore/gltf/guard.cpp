@@ -1,0 +1,158 @@
+#include "libcore/gltf/guard.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "libcore/gltf/limits.h"
+
+namespace lacuna::gltf {
+namespace {
+
+constexpr std::array<std::string_view, 7> kSupported = {
+    "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",     "KHR_materials_specular",
+    "KHR_materials_volume",  "KHR_materials_transmission",
+    "KHR_mesh_quantization",
+};
+
+/// Known by name and warned about where they are used (material.cpp): no second warning here.
+constexpr std::array<std::string_view, 2> kWarnedWhereUsed = {"KHR_materials_clearcoat",
+                                                              "KHR_texture_transform"};
+
+template <std::size_t N>
+bool contains(const std::array<std::string_view, N>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Little-endian 32-bit number at `offset`, which the caller has checked.
+std::uint32_t littleEndian(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return std::uint32_t(bytes[offset]) | std::uint32_t(bytes[offset + 1]) << 8 |
+           std::uint32_t(bytes[offset + 2]) << 16 | std::uint32_t(bytes[offset + 3]) << 24;
+}
+
+Chunks splitGlb(const std::string& file, std::span<const std::uint8_t> bytes) {
+    constexpr std::uint32_t kJson = 0x4E4F534A, kBin = 0x004E4942;
+    constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+    const char* again = "copy or export the file again";
+    if (bytes.size() < kHeader + kChunkHeader) {
+        refuse(file, "", "a GLB header of 20 bytes", std::to_string(bytes.size()) + " bytes",
+               again);
+    }
+    const std::uint32_t version = littleEndian(bytes, 4), length = littleEndian(bytes, 8);
+    if (version != 2) refuse(file, "", "GLB version 2", std::to_string(version));
+    if (length > bytes.size() || length < kHeader + kChunkHeader) {
+        refuse(file, "", "a GLB of " + std::to_string(length) + " bytes, as its header says",
+               std::to_string(bytes.size()), again);
+    }
+    const auto glb = bytes.first(length);
+
+    Chunks chunks;
+    std::size_t offset = kHeader;
+    for (int index = 0; offset < glb.size(); ++index) {
+        const std::size_t left = glb.size() - offset;
+        if (left < kChunkHeader && index > 0) break;  // padding behind the last chunk
+        if (left < kChunkHeader) refuse(file, "", "a GLB chunk header", "the end", again);
+        const std::uint32_t size = littleEndian(glb, offset), type = littleEndian(glb, offset + 4);
+        if (size > left - kChunkHeader) {
+            refuse(file, "", "at most " + std::to_string(left - kChunkHeader) + " bytes of chunk",
+                   std::to_string(size), again);
+        }
+        const auto body = glb.subspan(offset + kChunkHeader, size);
+        if (index == 0 && type != kJson) {
+            refuse(file, "", "JSON as the first GLB chunk", "another type", again);
+        }
+        if (index == 0) {
+            chunks.json = {reinterpret_cast<const char*>(body.data()), body.size()};
+        } else if (index == 1 && type == kBin) {
+            chunks.binary = body;
+        }  // further chunks are extensions, to be skipped (glTF 2.0, 4.4.3)
+        offset += kChunkHeader + size;
+    }
+    return chunks;
+}
+
+}  // namespace
+
+Chunks splitContainer(const std::string& file, std::span<const std::uint8_t> bytes) {
+    Chunks chunks;
+    if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
+        chunks = splitGlb(file, bytes);
+    } else {
+        chunks.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+        if (chunks.json.starts_with("\xEF\xBB\xBF")) chunks.json.remove_prefix(3);
+        const std::size_t first = chunks.json.find_first_not_of(" \t\r\n");
+        if (first == std::string_view::npos || chunks.json[first] != '{') {
+            refuse(file, "", "a glTF 2.0 file (.glb or .gltf)",
+                   bytes.empty() ? "an empty file" : "something else",
+                   "convert the scene to glTF 2.0");
+        }
+    }
+    if (chunks.json.size() > Limits::kJsonBytes) {
+        refuse(file, "", "at most " + std::to_string(Limits::kJsonBytes) + " bytes of JSON",
+               std::to_string(chunks.json.size()), "export as .glb");
+    }
+    return chunks;
+}
+
+void checkJsonDepth(const std::string& file, std::string_view text) {
+    int depth = 0;
+    bool inString = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (inString) {
+            if (c == '\\') ++i;
+            if (c == '"') inString = false;
+        } else if (c == '"') {
+            inString = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > Limits::kJsonDepth) {
+                refuse(file, "",
+                       "JSON nested at most " + std::to_string(Limits::kJsonDepth) + " deep",
+                       "deeper nesting", "remove the nested extras");
+            }
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+}
+
+void checkVersionAndExtensions(const std::string& file, const nlohmann::json& root,
+                               Warnings& warnings) {
+    const auto asset = root.find("asset");
+    const auto version =
+        asset != root.end() ? asset->find("version") : nlohmann::json::const_iterator();
+    if (asset == root.end() || version == asset->end()) {
+        refuse(file, "asset.version", "2.0", "none", "convert the scene to glTF 2.0");
+    }
+    const auto& text = version->get_ref<const std::string&>();
+    if (!text.starts_with("2.")) {
+        refuse(file, "asset.version", "2.0", text, "convert the scene to glTF 2.0");
+    }
+    const std::string least = asset->value("minVersion", std::string("2.0"));
+    if (least != "2.0") refuse(file, "asset.minVersion", "2.0", least);
+
+    if (const auto required = root.find("extensionsRequired"); required != root.end()) {
+        for (const auto& name : *required) {
+            if (!contains(kSupported, name.get_ref<const std::string&>())) {
+                refuse(file, "extensionsRequired", "extensions that lacuna has",
+                       name.get<std::string>(), "export without it");
+            }
+        }
+    }
+    if (const auto used = root.find("extensionsUsed"); used != root.end()) {
+        std::string unknown;
+        for (const auto& entry : *used) {
+            const auto& name = entry.get_ref<const std::string&>();
+            if (contains(kSupported, name) || contains(kWarnedWhereUsed, name)) continue;
+            unknown += (unknown.empty() ? "" : ", ") + printable(name);
+        }
+        if (!unknown.empty()) {
+            warnings.add("extensions that are not known are ignored: " + printable(unknown, 400),
+                         1);
+        }
+    }
+}
+
+}  // namespace lacuna::gltf

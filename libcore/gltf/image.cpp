@@ -1,0 +1,188 @@
+#include "libcore/gltf/image.h"
+
+#include <stb/stb_image.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "libcore/gltf/limits.h"
+
+namespace lacuna::gltf {
+namespace {
+
+/// A used image: its coded bytes, then its texels (8-bit RGBA).
+struct Picture {
+    int image = 0;
+    std::string place;
+    Bytes owned;
+    std::span<const std::uint8_t> coded;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+    int uses = 0;  ///< textures still to be made of it
+    std::exception_ptr error;
+};
+
+/// The coded bytes of image `index`: a checked buffer view, a data URI or an external file.
+void readCoded(Document& document, Picture& picture) {
+    const nlohmann::json& image = document.json["images"][std::size_t(picture.image)];
+    const auto uri = image.find("uri");
+    const auto view = image.find("bufferView");
+    if ((uri == image.end()) == (view == image.end())) {
+        refuse(document.file, picture.place, "either a uri or a bufferView",
+               uri == image.end() ? "neither" : "both");
+    }
+    if (view != image.end()) {
+        picture.coded = document.view(view->get<int>());
+        return;
+    }
+    const auto& text = uri->get_ref<const std::string&>();
+    picture.owned = isDataUri(text) ? decodeDataUri(document.file, picture.place + ".uri", text)
+                                    : document.readExternal(
+                                          resolveUri(document.file, picture.place + ".uri", text),
+                                          document.file + ", " + picture.place);
+    picture.coded = picture.owned.span();
+}
+
+bool isPngOrJpeg(std::span<const std::uint8_t> bytes) {
+    constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
+    const auto startsWith = [&](std::span<const std::uint8_t> magic) {
+        return bytes.size() > magic.size() &&
+               std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+    };
+    return startsWith(kPng) || startsWith(kJpeg);
+}
+
+/// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
+void readSize(const Document& document, Picture& picture) {
+    const auto coded = picture.coded;
+    if (!isPngOrJpeg(coded)) {
+        refuse(document.file, picture.place, "a PNG or JPEG image", "something else",
+               "convert the image");
+    }
+    int channels = 0;
+    if (coded.size() > std::size_t(std::numeric_limits<int>::max()) ||
+        !stbi_info_from_memory(coded.data(), int(coded.size()), &picture.width, &picture.height,
+                               &channels)) {
+        refuse(document.file, picture.place, "a PNG or JPEG image", "a damaged header",
+               "save the image again");
+    }
+    const std::uint64_t texels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    if (picture.width < 1 || picture.height < 1 || picture.width > Limits::kImageSide ||
+        picture.height > Limits::kImageSide || texels > Limits::kImageTexels) {
+        refuse(document.file, picture.place,
+               "an image of at most " + std::to_string(Limits::kImageTexels) + " texels",
+               std::to_string(picture.width) + " x " + std::to_string(picture.height),
+               "scale the image down");
+    }
+}
+
+void decodePicture(const Document& document, Picture& picture) {
+    struct Free {
+        void operator()(stbi_uc* texels) const { stbi_image_free(texels); }
+    };
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, Free> texels(
+        stbi_load_from_memory(picture.coded.data(), int(picture.coded.size()), &width, &height,
+                              &channels, STBI_rgb_alpha));
+    if (!texels || width != picture.width || height != picture.height) {
+        const char* reason = texels ? nullptr : stbi_failure_reason();
+        refuse(document.file, picture.place, "a PNG or JPEG image",
+               std::string("a damaged one (") + (reason ? reason : "size") + ")",
+               "save the image again");
+    }
+    const std::size_t size = std::size_t(width) * std::size_t(height) * 4;
+    picture.rgba.assign(texels.get(), texels.get() + size);
+    picture.owned = {};
+}
+
+}  // namespace
+
+Texture::Wrap TextureTable::wrap(int sampler, int mode, const char* name) const {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return Texture::Wrap::Repeat;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Texture::Wrap::MirroredRepeat;
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Texture::Wrap::ClampToEdge;
+        default:
+            refuse(document_.file, "samplers[" + std::to_string(sampler) + "]." + name,
+                   "10497, 33071 or 33648", std::to_string(mode));
+    }
+}
+
+TextureIndex TextureTable::request(int texture, bool srgb, Warnings& warnings) {
+    const tinygltf::Texture& entry = document_.model.textures[std::size_t(texture)];
+    if (entry.source < 0) {
+        warnings.add("textures without a PNG or JPEG image are left out", 1,
+                     "textures[" + std::to_string(texture) + "]");
+        return {};
+    }
+    Key key{entry.source, Texture::Wrap::Repeat, Texture::Wrap::Repeat, srgb};
+    if (entry.sampler >= 0) {
+        const tinygltf::Sampler& sampler = document_.model.samplers[std::size_t(entry.sampler)];
+        key.wrapU = wrap(entry.sampler, sampler.wrapS, "wrapS");
+        key.wrapV = wrap(entry.sampler, sampler.wrapT, "wrapT");
+    }
+    const auto [at, isNew] = known_.try_emplace(key, std::int32_t(keys_.size()));
+    if (isNew) keys_.push_back(key);
+    return {at->second};
+}
+
+std::vector<Texture> TextureTable::decode(Document& document) const {
+    std::vector<int> images;
+    for (const Key& key : keys_) images.push_back(key.image);
+    std::sort(images.begin(), images.end());
+    images.erase(std::unique(images.begin(), images.end()), images.end());
+
+    std::vector<Picture> pictures(images.size());
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        pictures[i].image = images[i];
+        pictures[i].place = "images[" + std::to_string(images[i]) + "]";
+        readCoded(document, pictures[i]);
+        readSize(document, pictures[i]);
+    }
+    const auto pictureOf = [&](const Key& key) -> Picture& {
+        const auto at = std::lower_bound(images.begin(), images.end(), key.image);
+        return pictures[std::size_t(at - images.begin())];
+    };
+    std::uint64_t total = 0;
+    for (const Key& key : keys_) {
+        Picture& picture = pictureOf(key);
+        ++picture.uses;
+        total += std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    }
+    if (total > Limits::kTotalTexels) {
+        refuse(document.file, "textures",
+               "at most " + std::to_string(Limits::kTotalTexels) + " texels in all",
+               std::to_string(total), "scale the images down");
+    }
+
+    tbb::parallel_for(std::size_t(0), pictures.size(), [&](std::size_t i) {
+        try {
+            decodePicture(document, pictures[i]);
+        } catch (...) {
+            pictures[i].error = std::current_exception();
+        }
+    });
+    for (const Picture& picture : pictures) {
+        if (picture.error) std::rethrow_exception(picture.error);
+    }
+
+    std::vector<Texture> textures;
+    for (const Key& key : keys_) {
+        Picture& picture = pictureOf(key);
+        const bool isLast = --picture.uses == 0;
+        textures.push_back({picture.width, picture.height,
+                            isLast ? std::move(picture.rgba) : picture.rgba, key.srgb, key.wrapU,
+                            key.wrapV});
+    }
+    return textures;
+}
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,269 @@
+#include "libcore/gltf/mesh.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <exception>
+
+#include "libcore/gltf/accessor.h"
+#include "libcore/gltf/limits.h"
+
+namespace lacuna::gltf {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// One primitive on its way: what was read, and what the user is to be told about it.
+struct Task {
+    std::size_t mesh = 0, primitive = 0;
+    Mesh result;
+    std::size_t flatTriangles = 0, zeroNormals = 0;
+    bool skippedMode = false, leftOver = false;
+    std::exception_ptr error;
+
+    std::string place() const {
+        return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
+    }
+};
+
+const tinygltf::Primitive& primitiveOf(const Document& document, const Task& task) {
+    return document.model.meshes[task.mesh].primitives[task.primitive];
+}
+
+/// Number of triangles in `count` vertices or indices of `mode` (4, 5 or 6).
+std::size_t triangleCount(int mode, std::size_t count) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) return count / 3;
+    return count < 3 ? 0 : count - 2;
+}
+
+/// Accessor of attribute `name`, or -1.
+int attribute(const tinygltf::Primitive& primitive, const char* name) {
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+/// Vertex numbers of triangle `i`, glTF 2.0, 3.7.2.1.
+Triangle corners(int mode, std::uint32_t i) {
+    switch (mode) {
+        case TINYGLTF_MODE_TRIANGLE_STRIP:
+            return {i, i + 1 + i % 2, i + 2 - i % 2};
+        case TINYGLTF_MODE_TRIANGLE_FAN:
+            return {i + 1, i + 2, 0};
+        default:
+            return {3 * i, 3 * i + 1, 3 * i + 2};
+    }
+}
+
+/// Reads `accessor` as one V (Vec2, Vec3) per vertex, or per vertex of `which` if that is not
+/// empty. Refuses another number of vertices than `count` and values that are not finite.
+template <class V, int kComponents>
+std::vector<V> readVertices(const Document& document, const Task& task, const char* name,
+                            int accessor, std::size_t count,
+                            const std::vector<std::uint32_t>& which) {
+    static_assert(sizeof(V) == kComponents * sizeof(float));
+    const AccessorView view = viewAccessor(document, accessor, kComponents);
+    if (view.count != count) {
+        refuse(document.file, task.place() + "." + name,
+               std::to_string(count) + " elements, as many as POSITION has",
+               std::to_string(view.count));
+    }
+    const std::vector<float> values = which.empty() ? readFloats(view) : readFloats(view, which);
+    const auto bad =
+        std::find_if_not(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+    if (bad != values.end()) {
+        const std::size_t element = std::size_t(bad - values.begin()) / kComponents;
+        refuse(document.file, task.place() + "." + name, "finite numbers",
+               std::to_string(*bad) + " at vertex " +
+                   std::to_string(which.empty() ? element : which[element]));
+    }
+    std::vector<V> result(values.size() / kComponents);
+    std::memcpy(static_cast<void*>(result.data()), values.data(), values.size() * sizeof(float));
+    return result;
+}
+
+/// Vertex index lists may share one large vertex buffer of which each uses a part: reading all of
+/// it for every primitive would be quadratic. Returns the vertices used, ascending, and renumbers
+/// `indices`; returns nothing where (nearly) all are used.
+std::vector<std::uint32_t> keepUsed(std::vector<std::uint32_t>& indices, std::size_t vertexCount) {
+    if (indices.size() >= vertexCount) return {};
+    std::vector<std::uint32_t> which = indices;
+    std::sort(which.begin(), which.end());
+    which.erase(std::unique(which.begin(), which.end()), which.end());
+    for (std::uint32_t& index : indices) {
+        index = std::uint32_t(std::lower_bound(which.begin(), which.end(), index) - which.begin());
+    }
+    return which;
+}
+
+/// Twice the area along the winding's normal. In double, where differences of floats and their
+/// products are all but exact: collinear corners give exactly or nearly zero.
+Vec3d areaNormal(const Mesh& mesh, const Triangle& t) {
+    const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+    return cross(b - a, c - a);
+}
+
+void dropFlatTriangles(Task& task) {
+    Mesh& mesh = task.result;
+    const auto isFlat = [&](const Triangle& t) {
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
+        return !(float(length(areaNormal(mesh, t))) > 0.0f);
+    };
+    const auto kept = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), isFlat);
+    task.flatTriangles = std::size_t(mesh.triangles.end() - kept);
+    mesh.triangles.erase(kept, mesh.triangles.end());
+}
+
+/// Replaces normals of no length by those of the faces around them, and scales those whose squares
+/// float cannot hold.
+void repairNormals(Task& task) {
+    constexpr double kLeast = 1e-12, kShort = 1e-6, kLong = 1e6;
+    Mesh& mesh = task.result;
+    std::vector<bool> isZero(mesh.normals.size());
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+        const Vec3d n(mesh.normals[i]);
+        const double l = length(n);
+        if (!(l > kLeast)) {
+            isZero[i] = true;
+            mesh.normals[i] = {};
+            ++task.zeroNormals;
+        } else if (l < kShort || l > kLong) {
+            mesh.normals[i] = Vec3(n / l);
+        }
+    }
+    if (task.zeroNormals == 0) return;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 face(normalize(areaNormal(mesh, t)));
+        for (const std::uint32_t v : t) {
+            if (!isZero[v]) continue;
+            const Vec3 sum = mesh.normals[v] + face;
+            if (length(sum) > 1e-3f) mesh.normals[v] = sum;  // else: faces back to back, keep one
+        }
+    }
+}
+
+void readPrimitive(const Document& document, Task& task) {
+    const tinygltf::Primitive& primitive = primitiveOf(document, task);
+    const int positions = attribute(primitive, "POSITION");
+    const std::size_t vertexCount = viewAccessor(document, positions, 3).count;
+
+    std::vector<std::uint32_t> indices, which;
+    std::size_t cornerCount = vertexCount;
+    if (primitive.indices >= 0) {
+        indices = readIndices(document, primitive.indices);
+        cornerCount = indices.size();
+        const std::uint32_t largest = *std::max_element(indices.begin(), indices.end());
+        if (largest >= vertexCount) {
+            refuse(document.file, task.place() + ".indices",
+                   "vertex indices below " + std::to_string(vertexCount), std::to_string(largest));
+        }
+        which = keepUsed(indices, vertexCount);
+    }
+
+    Mesh& mesh = task.result;
+    mesh.positions =
+        readVertices<Vec3, 3>(document, task, "POSITION", positions, vertexCount, which);
+    if (const int normals = attribute(primitive, "NORMAL"); normals >= 0) {
+        mesh.normals = readVertices<Vec3, 3>(document, task, "NORMAL", normals, vertexCount, which);
+    }
+    if (const int uvs = attribute(primitive, "TEXCOORD_0"); uvs >= 0) {
+        mesh.uvs = readVertices<Vec2, 2>(document, task, "TEXCOORD_0", uvs, vertexCount, which);
+    }
+    mesh.material = primitive.material >= 0 ? std::uint32_t(primitive.material)
+                                            : std::uint32_t(document.model.materials.size());
+
+    mesh.triangles.resize(triangleCount(primitive.mode, cornerCount));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        Triangle t = corners(primitive.mode, std::uint32_t(i));
+        if (!indices.empty()) t = {indices[t[0]], indices[t[1]], indices[t[2]]};
+        mesh.triangles[i] = t;
+    }
+    task.leftOver =
+        primitive.mode == TINYGLTF_MODE_TRIANGLES ? cornerCount % 3 != 0 : cornerCount < 3;
+    dropFlatTriangles(task);
+    repairNormals(task);
+}
+
+/// One task per primitive of the used meshes that has triangles; refuses too many in all.
+std::vector<Task> planTasks(const Document& document, const std::vector<bool>& used) {
+    std::vector<Task> tasks;
+    std::size_t triangles = 0;
+    for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
+        if (!used[m]) continue;
+        for (std::size_t p = 0; p < document.model.meshes[m].primitives.size(); ++p) {
+            Task task;
+            task.mesh = m;
+            task.primitive = p;
+            const tinygltf::Primitive& primitive = primitiveOf(document, task);
+            const int mode = primitive.mode;
+            if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+                refuse(document.file, task.place() + ".mode", "0 to 6", std::to_string(mode));
+            }
+            task.skippedMode = mode < TINYGLTF_MODE_TRIANGLES;
+            if (!task.skippedMode) {
+                const int positions = attribute(primitive, "POSITION");
+                if (positions < 0) {
+                    refuse(document.file, task.place() + ".attributes", "POSITION", "none");
+                }
+                const int source = primitive.indices >= 0 ? primitive.indices : positions;
+                const std::size_t count = document.model.accessors[std::size_t(source)].count;
+                const std::size_t more = triangleCount(mode, count);
+                if (more > Limits::kTriangles || triangles + more > Limits::kTriangles) {
+                    refuse(document.file, task.place(),
+                           "at most " + std::to_string(Limits::kTriangles) + " triangles in all",
+                           "more", "simplify the scene");
+                }
+                triangles += more;
+            }
+            tasks.push_back(std::move(task));
+        }
+    }
+    return tasks;
+}
+
+void warnAbout(const Document& document, const Task& task, Warnings& warnings) {
+    const tinygltf::Primitive& primitive = primitiveOf(document, task);
+    const std::string place = task.place();
+    warnings.add("points and lines are not rendered", task.skippedMode, place);
+    warnings.add("vertices that do not complete a triangle are ignored", task.leftOver, place);
+    warnings.add("triangles without area are dropped", task.flatTriangles, place);
+    warnings.add("vertex normals of zero length are replaced by the faces' normals",
+                 task.zeroNormals, place);
+    warnings.add("morph targets are not rendered", !primitive.targets.empty(), place);
+    warnings.add("vertex colours (COLOR_0) are not rendered yet",
+                 primitive.attributes.contains("COLOR_0"), place);
+}
+
+}  // namespace
+
+MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Warnings& warnings) {
+    std::vector<Task> tasks = planTasks(document, used);
+    tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
+        if (tasks[i].skippedMode) return;
+        try {
+            readPrimitive(document, tasks[i]);
+        } catch (...) {
+            tasks[i].error = std::current_exception();
+        }
+    });
+
+    MeshTable table;
+    table.ofPrimitive.resize(document.model.meshes.size());
+    for (Task& task : tasks) {
+        // Which thread met an error first must not decide which one the user sees.
+        if (task.error) std::rethrow_exception(task.error);
+        warnAbout(document, task, warnings);
+        auto& ofPrimitive = table.ofPrimitive[task.mesh];
+        if (task.result.triangles.empty()) {
+            ofPrimitive.push_back(MeshTable::kNone);
+            continue;
+        }
+        ofPrimitive.push_back(std::uint32_t(table.meshes.size()));
+        table.meshes.push_back(std::move(task.result));
+    }
+    return table;
+}
+
+}  // namespace lacuna::gltf

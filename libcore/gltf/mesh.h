@@ -1,0 +1,28 @@
+// glTF primitives as indexed triangles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libcore/gltf/document.h"
+#include "libcore/scene/description.h"
+
+namespace lacuna::gltf {
+
+/// The meshes of the description, and where those of each glTF mesh are.
+struct MeshTable {
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+    std::vector<Mesh> meshes;
+    /// By glTF mesh and primitive: index into `meshes`, or kNone where nothing is left to draw.
+    std::vector<std::vector<std::uint32_t>> ofPrimitive;
+};
+
+/// Reads the primitives of the glTF meshes that `used` marks (one flag per mesh), in parallel.
+/// Strips and fans are unrolled; points and lines are skipped and triangles without area dropped,
+/// with one warning each. Primitives without a material get index model.materials.size(). Throws
+/// InputError, always that of the first faulty primitive.
+MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Warnings& warnings);
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,142 @@
+#include "libcore/gltf/node.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna::gltf {
+namespace {
+
+std::string placeOf(std::size_t node) {
+    return "nodes[" + std::to_string(node) + "]";
+}
+
+bool isFinite(const Affine& a) {
+    return std::all_of(a.m.begin(), a.m.end(), [](const Vec3d& c) { return lacuna::isFinite(c); });
+}
+
+Affine fromMatrix(const Document& document, std::size_t node, const std::vector<double>& m) {
+    // The last row of a column-major matrix, which an affine map does not have.
+    constexpr double kTolerance = 1e-6;
+    const double off =
+        std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
+    if (!(off <= kTolerance)) {
+        refuse(document.file, placeOf(node) + ".matrix", "0, 0, 0, 1 as the last row",
+               "a projective matrix");
+    }
+    return {{Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]},
+             Vec3d{m[12], m[13], m[14]}}};
+}
+
+Affine fromTrs(const Document& document, std::size_t index, const tinygltf::Node& node) {
+    Affine a;
+    if (!node.rotation.empty()) {
+        double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2],
+               w = node.rotation[3];
+        const double l = std::sqrt(x * x + y * y + z * z + w * w);
+        if (!(l > 0.0) || !std::isfinite(l)) {
+            refuse(document.file, placeOf(index) + ".rotation", "a unit quaternion",
+                   "one of length " + std::to_string(l));
+        }
+        x /= l, y /= l, z /= l, w /= l;
+        a.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+        a.m[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+        a.m[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+    }
+    if (!node.scale.empty()) {
+        for (std::size_t i = 0; i < 3; ++i) a.m[i] *= node.scale[i];
+    }
+    if (!node.translation.empty()) {
+        a.m[3] = {node.translation[0], node.translation[1], node.translation[2]};
+    }
+    return a;
+}
+
+Affine localTransform(const Document& document, std::size_t index) {
+    const tinygltf::Node& node = document.model.nodes[index];
+    return node.matrix.empty() ? fromTrs(document, index, node)
+                               : fromMatrix(document, index, node.matrix);
+}
+
+/// Which nodes are some node's child. Refuses two parents and cycles, in any scene of the file.
+std::vector<bool> checkForest(const Document& document) {
+    const auto& nodes = document.model.nodes;
+    std::vector<bool> isChild(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (const int child : nodes[i].children) {
+            if (isChild[std::size_t(child)]) {
+                refuse(document.file, placeOf(std::size_t(child)), "one parent",
+                       "two (or the same twice)", "export the hierarchy as a tree");
+            }
+            isChild[std::size_t(child)] = true;
+        }
+    }
+    // With at most one parent each, whatever no root leads to is on or below a cycle.
+    std::vector<bool> reached(nodes.size());
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!isChild[i]) open.push_back(i);
+    }
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        reached[node] = true;
+        for (const int child : nodes[node].children) open.push_back(std::size_t(child));
+    }
+    const auto lost = std::find(reached.begin(), reached.end(), false);
+    if (lost != reached.end()) {
+        refuse(document.file, placeOf(std::size_t(lost - reached.begin())), "a tree of nodes",
+               "a cycle", "export the hierarchy as a tree");
+    }
+    return isChild;
+}
+
+std::vector<std::size_t> sceneRoots(const Document& document, std::vector<bool> isChild,
+                                    Warnings& warnings) {
+    std::vector<std::size_t> roots;
+    if (document.model.scenes.empty()) {
+        for (std::size_t i = 0; i < isChild.size(); ++i) {
+            if (!isChild[i]) roots.push_back(i);
+        }
+        warnings.add("the file has no scene: all its nodes are rendered", roots.empty() ? 0 : 1);
+        return roots;
+    }
+    for (const int node : document.model.scenes[document.scene].nodes) {
+        const std::size_t root = std::size_t(node);
+        if (isChild[root]) {
+            refuse(document.file, "scenes[" + std::to_string(document.scene) + "].nodes",
+                   "root nodes, once each", placeOf(root) + " again",
+                   "export the hierarchy as a tree");
+        }
+        isChild[root] = true;  // a second listing would draw it twice
+        roots.push_back(root);
+    }
+    return roots;
+}
+
+}  // namespace
+
+std::vector<Placement> flattenScene(const Document& document, Warnings& warnings) {
+    const auto& nodes = document.model.nodes;
+    std::vector<std::size_t> roots = sceneRoots(document, checkForest(document), warnings);
+
+    // A stack of our own: chains of nodes may be as long as the file.
+    std::vector<Placement> result, open;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
+    while (!open.empty()) {
+        Placement at = open.back();
+        open.pop_back();
+        at.toWorld = at.toWorld * localTransform(document, at.node);
+        if (!isFinite(at.toWorld) || !std::isfinite(at.toWorld.determinant())) {
+            refuse(document.file, placeOf(at.node), "a finite transform", "one that overflows",
+                   "check the scales in the hierarchy");
+        }
+        const std::vector<int>& children = nodes[at.node].children;
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            open.push_back({std::size_t(*child), at.toWorld});
+        }
+        result.push_back(at);
+    }
+    return result;
+}
+
+}  // namespace lacuna::gltf

@@ -1,0 +1,22 @@
+// The node hierarchy of the default scene, flattened.
+#pragma once
+
+#include <vector>
+
+#include "libcore/base/vec.h"
+#include "libcore/gltf/document.h"
+
+namespace lacuna::gltf {
+
+struct Placement {
+    std::size_t node = 0;
+    Affine toWorld;
+};
+
+/// Every node of the default scene once, parents before children, siblings in the file's order. A
+/// file without scenes gets all its root nodes (with a warning). Throws InputError for cycles, a
+/// node with two parents (or listed as a root and a child), and transforms that are not finite or
+/// not affine.
+std::vector<Placement> flattenScene(const Document& document, Warnings& warnings);
+
+}  // namespace lacuna::gltf

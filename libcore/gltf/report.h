@@ -1,0 +1,37 @@
+// What the reader says to the user: one way to refuse a file, one place that collects warnings.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace lacuna::gltf {
+
+/// Text of a file's own (names, URIs) made safe for one line of a terminal: control characters
+/// become blanks, long text is cut.
+std::string printable(const std::string& text, std::size_t longest = 120);
+
+/// Throws InputError `file: expected E, found F; todo`. `place` (may be empty) is a JSON path such
+/// as `accessors[3].count`.
+[[noreturn]] void refuse(const std::string& file, const std::string& place,
+                         const std::string& expected, const std::string& found,
+                         const std::string& todo = "export the scene again");
+
+/// Warnings, one per kind however often it occurs, in order of first occurrence.
+class Warnings {
+  public:
+    /// Notes `count` occurrences of `kind` (nothing if 0); `where` is remembered for the first.
+    void add(const std::string& kind, std::size_t count, const std::string& where = "");
+    /// `KIND (3 times, first WHERE)`.
+    std::vector<std::string> lines() const;
+
+  private:
+    struct Entry {
+        std::string kind;
+        std::size_t count;
+        std::string where;
+    };
+    std::vector<Entry> entries_;
+};
+
+}  // namespace lacuna::gltf

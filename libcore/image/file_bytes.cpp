@@ -1,0 +1,56 @@
+#include "libcore/image/file_bytes.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "libcore/base/error.h"
+#include "libcore/image/image.h"
+
+namespace lacuna {
+
+std::vector<std::uint8_t> readFileBytes(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        throw InputError(path + ": expected an image, found: " +
+                         (error ? error.message() : "No such file or directory") + "; check the name");
+    }
+    if (!fs::is_regular_file(status)) {
+        throw InputError(path + ": expected an image, found " +
+                         (fs::is_directory(status) ? "a directory" : "no regular file") +
+                         "; name a file");
+    }
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    const int openError = errno;
+    if (!in) {
+        throw InputError(path + ": expected an image that can be read, found: " +
+                         std::generic_category().message(openError) + "; check its permissions");
+    }
+    const auto size = std::streamoff(in.tellg());
+    if (size <= 0) {
+        throw InputError(path + ": expected an image, found an empty file; write it again");
+    }
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+    in.seekg(0);
+    if (!in.read(reinterpret_cast<char*>(bytes.data()), size)) {
+        throw InputError(path + ": expected " + std::to_string(size) + " bytes, found " +
+                         std::to_string(in.gcount()) + "; is the file being written to?");
+    }
+    return bytes;
+}
+
+void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t height) {
+    const bool sane = width >= 1 && height >= 1 && width <= kMaxImageSide &&
+                      height <= kMaxImageSide &&
+                      std::size_t(width) * std::size_t(height) <= kMaxImagePixels;
+    if (!sane) {
+        throw InputError(path + ": expected 1 to " + std::to_string(kMaxImageSide) +
+                         " pixels a side and at most 2^28 in all, found " + std::to_string(width) +
+                         " x " + std::to_string(height) + "; is the file damaged?");
+    }
+}
+
+}  // namespace lacuna

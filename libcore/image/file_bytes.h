@@ -1,0 +1,18 @@
+// A file read whole and then taken apart in memory, where every step can be checked against its
+// end.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+/// All bytes of a regular file. Throws InputError if there is none, it cannot be read or is empty.
+std::vector<std::uint8_t> readFileBytes(const std::string& path);
+
+/// Throws InputError if a picture of that size, as a header claims it, is not to be allocated.
+void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t height);
+
+}  // namespace lacuna

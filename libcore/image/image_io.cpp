@@ -1,0 +1,50 @@
+#include "libcore/image/image_io.h"
+
+#include <cctype>
+#include <filesystem>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/image/exr.h"
+
+namespace lacuna {
+
+std::string endingOf(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return ending;
+}
+
+Image readImage(const std::string& path) {
+    const std::string ending = endingOf(path);
+    if (ending == ".exr") return readExr(path);
+    if (ending == ".hdr") return readHdr(path);
+    if (ending == ".pfm") return readPfm(path);
+    if (ending == ".png") return readPng(path);
+    throw UsageError(path + ": expected an image .exr, .hdr, .pfm or .png, found the ending '" +
+                     ending + "'; convert the image");
+}
+
+void writeImage(const std::string& path, const LayeredImage& image, double exposure) {
+    const std::string ending = endingOf(path);
+    if (ending == ".exr") {
+        writeExr(path, image);
+    } else if (ending == ".pfm") {
+        writePfm(path, image.rgb());
+    } else if (ending == ".png") {
+        writePng(path, image.rgb(), exposure);
+    } else {
+        requireWritable(path);  // throws: one place that says which endings there are
+    }
+}
+
+void requireWritable(const std::string& path) {
+    const std::string ending = endingOf(path);
+    if (ending != ".exr" && ending != ".pfm" && ending != ".png") {
+        throw UsageError(path + ": expected an output .exr, .pfm or .png, found the ending '" +
+                         ending + "'; choose one of these");
+    }
+    const AtomicFile probe(path);  // dropped without a commit: leaves no trace
+}
+
+}  // namespace lacuna

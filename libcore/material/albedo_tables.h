@@ -1,0 +1,91 @@
+// E(mu, alpha): the directional albedo of a rough dielectric layer (GGX x exact Fresnel), and its
+// cosine-weighted mean. What the layer does not reflect is what the diffuse base below it gets:
+//     f_diffuse = rho / pi (1 - s E(mu_i)) (1 - s E(mu_o)) / (1 - s E_avg),   s the specular factor
+// (reciprocal; its albedo is rho (1 - s E(mu_i)) if E_avg is the mean of the very E that is used).
+// So E is bilinear between nodes and E_avg is the exact integral of that bilinear function: what
+// the layer and a white base reflect together differs from 1 by the interpolation error of E alone
+// (kTableError).
+//
+// Both axes take index and fraction from the bits of a float: piecewise linear, a fixed number of
+// nodes per octave, no logarithm or root at look-up.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lacuna {
+
+/// Bound of |E - its table| for ior in [1.01, 3], angles up to the horizon, alpha in [1e-4, 1];
+/// tests measure it.
+inline constexpr float kTableError = 1.5e-3f;
+
+/// The table of one index of refraction.
+class AlbedoTable {
+  public:
+    /// Where alpha lies between two rows; quantised so that it fits in every Bsdf. E and E_avg must
+    /// be read with the same one.
+    struct Row {
+        std::uint8_t index = 0;
+        std::uint16_t fraction = 0;  ///< of 65536
+    };
+
+    explicit AlbedoTable(float ior);
+
+    float ior() const { return ior_; }
+    float smoothAverage() const { return smoothAverage_; }  ///< E_avg of the smooth layer
+    static Row row(float alpha);
+    float average(Row row) const {
+        return interpolate(averages_[row.index], averages_[row.index + 1u], weight(row));
+    }
+    /// E(mu), mu in [0, 1].
+    float directional(Row row, float mu) const {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(mu * (1.0f - kMuShift) + kMuShift) -
+                                   std::bit_cast<std::uint32_t>(kMuShift);
+        const float f = float(bits & ((1u << kMuBits) - 1u)) * (1.0f / float(1u << kMuBits));
+        const float* a = values_.data() + row.index * std::uint32_t(kMuNodes) + (bits >> kMuBits);
+        const float* b = a + kMuNodes;
+        return interpolate(interpolate(a[0], a[1], f), interpolate(b[0], b[1], f), weight(row));
+    }
+
+  private:
+    // mu: x = shift + mu (1 - shift) from 2^-13 to 1, 16 nodes per octave of x; the last is
+    // repeated so that mu one rounding error above 1 is no special case.
+    static constexpr float kMuShift = 0x1p-13f;
+    static constexpr int kMuBits = 23 - 4;
+    static constexpr int kMuNodes = 13 * 16 + 2;
+    // alpha: 2^-14 to 1, 8 nodes per octave, the last repeated.
+    static constexpr float kAlphaMin = 0x1p-14f;
+    static constexpr int kAlphaBits = 23 - 3;
+    static constexpr int kAlphaNodes = 14 * 8 + 2;
+
+    static float interpolate(float a, float b, float t) { return a + (b - a) * t; }
+    static float weight(Row row) { return float(row.fraction) * (1.0f / 65536.0f); }
+    static float muNode(int i);
+    static float alphaNode(int i);
+
+    float ior_;
+    float smoothAverage_;
+    std::vector<float> values_;    // [alpha][mu]
+    std::vector<float> averages_;  // [alpha]
+};
+
+/// One table per distinct index of refraction; immutable, read by all threads.
+class AlbedoTables {
+  public:
+    AlbedoTables() = default;
+    /// `iors`: those of the scene's materials that have a diffuse base under a dielectric layer;
+    /// repetitions are fine. About 50 ms of one core for each distinct one, in parallel.
+    explicit AlbedoTables(std::span<const float> iors);
+
+    /// The table of exactly this index, or null.
+    const AlbedoTable* find(float ior) const;
+    /// The table of the nearest index; null only where there is none at all.
+    const AlbedoTable* nearest(float ior) const;
+
+  private:
+    std::vector<AlbedoTable> tables_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,45 @@
+// Bidirectional path tracing [Veach97 10], [Lafortune93].
+//
+// Every pixel traces one light subpath of its own; every eye vertex is connected to each of its
+// vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way for
+// a fresh light point per eye vertex: the same density, so r = 1 as well, without the correlation of
+// all direct light along an eye path.
+#include "libcore/methods/methods.h"
+
+namespace lacuna {
+
+namespace {
+
+class Bidirectional final : public Method {
+  public:
+    explicit Bidirectional(bool nextEvent) : nextEvent_(nextEvent) {}
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        if (nextEvent_) proposeFreshLight(context, rng, sink);
+        for (std::size_t s = nextEvent_ ? 2 : 1; s <= context.ownLightPath.size(); ++s) {
+            const Subpath prefix = context.ownLightPath.first(s);
+            if (prefix.back().connectable()) sink.add({prefix, 1.0, 0});
+        }
+    }
+
+  private:
+    bool nextEvent_;
+    ConstantDensity density_{1.0, 1.0};
+};
+
+}  // namespace
+
+MethodRow bidirectionalRow() {
+    MethodRow row;
+    row.name = "bpt";
+    row.reference = "Veach97";
+    row.summary = "bidirectional path tracing: every eye vertex with the pixel's own light subpath";
+    row.techniques = {.hits = true, .connects = true, .splats = true, .ownLightPath = true};
+    row.parameters = {lightPathsParameter(), nextEventParameter(true)};
+    row.create = [](const Settings& s) {
+        return std::make_unique<Bidirectional>(s.on("next_event"));
+    };
+    return row;
+}
+
+}  // namespace lacuna

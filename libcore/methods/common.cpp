@@ -1,0 +1,26 @@
+#include "libcore/methods/methods.h"
+
+namespace lacuna {
+
+Parameter lightPathsParameter() {
+    return {"light_paths",
+            Parameter::Kind::Integer,
+            0,
+            0,
+            1e9,
+            "light subpaths traced for t = 1 in each iteration; 0: one per pixel of the full image",
+            {},
+            "width x height"};
+}
+
+Parameter nextEventParameter(bool defaultOn) {
+    return {"next_event", Parameter::Kind::Switch, defaultOn ? 1.0 : 0.0, 0, 1,
+            "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light points"};
+}
+
+void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {
+    PathVertex& y0 = sink.newVertex();
+    if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0, 0});
+}
+
+}  // namespace lacuna

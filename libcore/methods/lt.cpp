@@ -1,0 +1,33 @@
+// Light tracing [Arvo86], [Dutre93]: all light subpaths are seen by the lens (t = 1), nothing else.
+//
+// Exact for every path whose last scatter before the lens is smooth; what the lens sees through
+// mirrors or smooth glass stays black, because no splat can make such a path.
+#include "libcore/methods/methods.h"
+
+namespace lacuna {
+
+namespace {
+
+class LightTracing final : public Method {
+  public:
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+    void select(const EyeContext&, Rng&, ProposalSink&) const override {}
+
+  private:
+    ConstantDensity density_{0.0, 0.0};
+};
+
+}  // namespace
+
+MethodRow lightTracingRow() {
+    MethodRow row;
+    row.name = "lt";
+    row.reference = "Dutre93";
+    row.summary = "light tracing: light paths splatted to the lens (nothing seen through mirrors)";
+    row.techniques = {.splats = true};
+    row.parameters = {lightPathsParameter()};
+    row.create = [](const Settings&) { return std::make_unique<LightTracing>(); };
+    return row;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,35 @@
+// One function per row of the registry; each is defined in the file that bears the method's name.
+#pragma once
+
+#include "libcore/methods/registry.h"
+
+namespace lacuna {
+
+MethodRow pathTracingRow();    // pt.cpp
+MethodRow lightTracingRow();   // lt.cpp
+MethodRow bidirectionalRow();  // bpt.cpp
+MethodRow lvcRow();            // lvcbpt.cpp
+
+/// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
+Parameter lightPathsParameter();
+/// `next_event`: s = 1 by fresh light points instead of the pool's y_0.
+Parameter nextEventParameter(bool defaultOn);
+
+/// Proposes one fresh light point: next event (s = 1, r = 1).
+void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
+
+/// A density that depends on nothing but whether s = 1.
+class ConstantDensity final : public ConnectionDensity {
+  public:
+    ConstantDensity(double direct, double indirect) : constants_{direct, indirect} {}
+    std::optional<Constants> constants() const override { return constants_; }
+    double effectiveSamples(const ConnectionEnd&, const ConnectionEnd& light,
+                            const Rgb&) const override {
+        return light.count == 1 ? constants_.direct : constants_.indirect;
+    }
+
+  private:
+    Constants constants_;
+};
+
+}  // namespace lacuna

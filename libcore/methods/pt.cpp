@@ -1,0 +1,35 @@
+// Path tracing with next event estimation [Kajiya86], [Veach97 10.3].
+//
+// Every eye vertex z_{t-1} proposes one fresh light point y_0 (s = 1); eye paths that run into a light
+// count as well (s = 0). MIS sees n = 1 sample of both: the density of a fresh y_0 is that of the
+// light table, which is also p(y_0), so r = 1.
+#include "libcore/methods/methods.h"
+
+namespace lacuna {
+
+namespace {
+
+class PathTracing final : public Method {
+  public:
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        proposeFreshLight(context, rng, sink);
+    }
+
+  private:
+    ConstantDensity density_{1.0, 0.0};
+};
+
+}  // namespace
+
+MethodRow pathTracingRow() {
+    MethodRow row;
+    row.name = "pt";
+    row.reference = "Veach97";
+    row.summary = "path tracing: next event estimation and hits, combined by the balance heuristic";
+    row.techniques = {.hits = true, .connects = true};
+    row.create = [](const Settings&) { return std::make_unique<PathTracing>(); };
+    return row;
+}
+
+}  // namespace lacuna

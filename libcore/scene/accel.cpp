@@ -1,0 +1,189 @@
+#include "libcore/scene/accel.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+
+namespace lacuna {
+
+const char* name(RayKind kind) {
+    static constexpr const char* kNames[kRayKinds] = {"camera", "eye", "light", "connection",
+                                                      "splat"};
+    return kNames[std::size_t(kind)];
+}
+
+struct Accel::Impl {
+    /// What a filter callback needs to find the object behind one Embree geometry.
+    struct FilterData {
+        const Impl* impl;
+        std::uint32_t object;
+    };
+
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<RTCScene> meshScenes;  // per mesh, null where it is not instanced
+    std::vector<FilterData> filterData;
+    AlphaTest alphaTest;
+    std::string error;
+
+    ~Impl() {
+        for (RTCScene s : meshScenes) {
+            if (s) rtcReleaseScene(s);
+        }
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    void require(bool ok) const {
+        if (!ok || !error.empty()) {
+            throw RunError("ray acceleration structure: Embree failed: " +
+                           (error.empty() ? std::string("unknown error") : error));
+        }
+    }
+
+    RTCGeometry makeTriangles(const AccelMesh& mesh) const {
+        RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.positions.data(), 0, sizeof(Vec3),
+                                   mesh.positions.size() - 1);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles.data(), 0, 3 * sizeof(std::uint32_t),
+                                   mesh.triangles.size());
+        rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_MEDIUM);
+        return g;
+    }
+
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        const auto& data = *static_cast<const FilterData*>(args->geometryUserPtr);
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] != -1) continue;
+            const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0);
+            const Hit hit{instance != RTC_INVALID_GEOMETRY_ID ? instance : data.object,
+                          RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                          RTCHitN_v(args->hit, args->N, i)};
+            if (!data.impl->alphaTest(hit)) args->valid[i] = 0;
+        }
+    }
+
+    void attachFilter(RTCGeometry g, std::uint32_t object) {
+        filterData.push_back({this, object});
+        rtcSetGeometryUserData(g, &filterData.back());
+        rtcSetGeometryIntersectFilterFunction(g, &Impl::filter);
+        rtcSetGeometryOccludedFilterFunction(g, &Impl::filter);
+    }
+
+    RTCScene newScene() const {
+        RTCScene s = rtcNewScene(device);
+        // Without ROBUST rays slip through edges shared by triangles (dependencies.md 7).
+        rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_MEDIUM);
+        return s;
+    }
+};
+
+Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> objects,
+             AlphaTest alphaTest, const ThreadPool& pool)
+    : impl_(std::make_unique<Impl>()) {
+    Impl& a = *impl_;
+    a.alphaTest = std::move(alphaTest);
+    a.filterData.reserve(objects.size());
+    a.device = rtcNewDevice(nullptr);
+    a.require(a.device != nullptr);
+    rtcSetDeviceErrorFunction(
+        a.device,
+        [](void* self, RTCError, const char* text) { static_cast<Impl*>(self)->error = text; }, &a);
+
+    a.scene = a.newScene();
+    a.meshScenes.resize(meshes.size(), nullptr);
+    pool.run([&] {
+        for (std::uint32_t i = 0; i < objects.size(); ++i) {
+            const AccelObject& object = objects[i];
+            RTCGeometry g;
+            if (object.instanced) {
+                RTCScene& shared = a.meshScenes[object.mesh];
+                if (!shared) {
+                    shared = a.newScene();
+                    RTCGeometry triangles = a.makeTriangles(meshes[object.mesh]);
+                    if (object.alphaMasked) a.attachFilter(triangles, i);
+                    rtcCommitGeometry(triangles);
+                    rtcAttachGeometry(shared, triangles);
+                    rtcReleaseGeometry(triangles);
+                    rtcCommitScene(shared);
+                }
+                g = rtcNewGeometry(a.device, RTC_GEOMETRY_TYPE_INSTANCE);
+                rtcSetGeometryInstancedScene(g, shared);
+                float m[12];
+                for (int c = 0; c < 4; ++c) {
+                    for (int r = 0; r < 3; ++r) m[3 * c + r] = float(object.toWorld.m[c][r]);
+                }
+                rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+            } else {
+                g = a.makeTriangles(meshes[object.mesh]);
+                if (object.alphaMasked) a.attachFilter(g, i);
+            }
+            rtcCommitGeometry(g);
+            rtcAttachGeometryByID(a.scene, g, i);
+            rtcReleaseGeometry(g);
+        }
+        rtcCommitScene(a.scene);
+    });
+    a.require(true);
+}
+
+Accel::~Accel() = default;
+Accel::Accel(Accel&&) noexcept = default;
+Accel& Accel::operator=(Accel&&) noexcept = default;
+
+namespace {
+void fill(RTCRay& r, const Ray& ray) {
+    r.org_x = ray.origin.x;
+    r.org_y = ray.origin.y;
+    r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x;
+    r.dir_y = ray.direction.y;
+    r.dir_z = ray.direction.z;
+    r.tnear = 0.0f;
+    r.tfar = ray.tFar;
+    r.time = 0.0f;
+    r.mask = unsigned(-1);
+    r.id = 0;
+    r.flags = 0;
+}
+}  // namespace
+
+std::optional<Hit> Accel::intersect(const Ray& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit rh;
+    fill(rh.ray, ray);
+    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->scene, &context, &rh);
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const unsigned instance = rh.hit.instID[0];
+    return Hit{instance != RTC_INVALID_GEOMETRY_ID ? instance : rh.hit.geomID, rh.hit.primID,
+               rh.hit.u, rh.hit.v};
+}
+
+bool Accel::occluded(const Ray& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay r;
+    fill(r, ray);
+    rtcOccluded1(impl_->scene, &context, &r);
+    return r.tfar < 0.0f;
+}
+
+Vec3 offsetOrigin(Vec3 origin, Vec3 ng, Vec3 direction, float floor) {
+    const float magnitude = std::max(
+        floor, std::max(std::fabs(origin.x), std::max(std::fabs(origin.y), std::fabs(origin.z))));
+    const float step = dot(direction, ng) < 0.0f ? -0x1p-16f : 0x1p-16f;
+    return origin + ng * (step * magnitude);
+}
+
+}  // namespace lacuna

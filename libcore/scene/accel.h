@@ -1,0 +1,62 @@
+// Ray queries. accel.cpp is the only file that includes Embree.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libcore/base/vec.h"
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+class ThreadPool;
+
+/// One thing in the scene: a mesh that is already in world space, or an instance of a shared one.
+struct AccelObject {
+    std::uint32_t mesh = 0;
+    bool instanced = false;
+    Affine toWorld;          ///< used where instanced
+    bool alphaMasked = false;
+};
+
+/// Triangles as Embree reads them. `positions` must have one more element than vertices: Embree loads
+/// 16 bytes at a time.
+struct AccelMesh {
+    std::span<const Vec3> positions;
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+};
+
+class Accel {
+  public:
+    /// Tells whether the surface is there at this point of an alphaMasked object.
+    using AlphaTest = std::function<bool(const Hit&)>;
+
+    /// Builds the hierarchies (in `pool`'s threads). The spans must outlive the object. Throws
+    /// RunError if Embree cannot build (out of memory).
+    Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> objects,
+          AlphaTest alphaTest, const ThreadPool& pool);
+    ~Accel();
+    Accel(Accel&&) noexcept;
+    Accel& operator=(Accel&&) noexcept;
+
+    /// Closest surface along the ray.
+    std::optional<Hit> intersect(const Ray& ray) const;
+    /// Whether anything lies on the ray before its tFar.
+    bool occluded(const Ray& ray) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// `origin` moved off its surface along `ng`, towards the side that `direction` leads to, by 2^-16 of
+/// its largest coordinate (128 to 256 of the float steps there) or of `floor` where that is larger.
+/// Follows [Waechter and Binder 2019], but free of absolute constants: `floor`, a fixed share of the
+/// scene's radius, stands for the error of points that lie near the origin on large triangles.
+Vec3 offsetOrigin(Vec3 origin, Vec3 ng, Vec3 direction, float floor);
+
+}  // namespace lacuna

@@ -1,0 +1,59 @@
+// Pinhole or thin-lens camera. All densities are per pixel: a pixel's eye paths are drawn uniformly
+// over that pixel (box filter), so W_e and p(z_1) are normalised over one pixel (methods.md 1,
+// numerics.md 11-13).
+#pragma once
+
+#include <optional>
+
+#include "libcore/base/vec.h"
+#include "libcore/scene/description.h"
+
+namespace lacuna {
+
+class Camera {
+  public:
+    struct Film {
+        int width = 0, height = 0;
+    };
+    struct Lens {
+        float radius = 0.0f;  ///< scene units; 0: pinhole
+        float focus = 0.0f;   ///< distance of the plane in focus along the viewing axis, > 0
+    };
+
+    /// `offset` is subtracted from the camera's position (the scene's centre). Pixels are square: the
+    /// vertical angle is the file's, the horizontal one follows from the film.
+    Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens);
+
+    Film film() const { return film_; }
+    Vec3 forward() const { return forward_; }
+    Vec3 position() const { return position_; }
+
+    /// Uniform point on the lens (the pinhole itself where the radius is 0), u in [0, 1)^2.
+    Vec3 sampleLens(Vec2 u) const;
+
+    struct Direction {
+        Vec3 direction;  ///< unit, away from the lens
+        float pdfW;      ///< of that direction, per pixel, given the lens point
+    };
+    /// Ray from `lensPoint` through raster position (x right, y down, pixels).
+    Direction directionAt(Vec3 lensPoint, Vec2 raster) const;
+
+    struct Projection {
+        Vec2 raster;
+        /// What directionAt would report for this direction. It is also W_e |cos|, the lens's area
+        /// left out on both sides: the importance that a splat needs.
+        float pdfW;
+    };
+    /// Where a ray that leaves `lensPoint` along `direction` (unit) crosses the film; empty behind the
+    /// camera or outside the film.
+    std::optional<Projection> project(Vec3 lensPoint, Vec3 direction) const;
+
+  private:
+    Film film_;
+    Lens lens_;
+    Vec3 position_, right_, up_, forward_;
+    float tanX_, tanY_;
+    float pixelArea_;  ///< on the image plane at distance 1
+};
+
+}  // namespace lacuna

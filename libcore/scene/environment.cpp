@@ -1,0 +1,113 @@
+#include "libcore/scene/environment.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "libcore/base/error.h"
+#include "libcore/base/sampling.h"
+
+namespace lacuna {
+
+namespace {
+/// Solid angle of a texel in row y: exact, so that densities integrate to one.
+double texelSolidAngle(int y, int width, int height) {
+    const double top = std::cos(std::numbers::pi * y / height);
+    const double bottom = std::cos(std::numbers::pi * (y + 1) / height);
+    return 2.0 * std::numbers::pi / width * (top - bottom);
+}
+}  // namespace
+
+Environment::Environment(const Image& image, double scale, double rotationDegrees,
+                         const std::string& file)
+    : width_(image.width),
+      height_(image.height),
+      image_(image.pixels.begin(), image.pixels.end()),
+      turn_(float(rotationDegrees / 360.0 - std::floor(rotationDegrees / 360.0))) {
+    if (width_ < 1 || height_ < 1) {
+        throw InputError(file + ": expected an environment map, found an empty image");
+    }
+    for (std::size_t i = 0; i < image_.size(); ++i) {
+        const Rgb& c = image_[i];
+        if (!isFinite(c) || c.r < 0.0f || c.g < 0.0f || c.b < 0.0f) {
+            throw InputError(file + ": expected radiance that is finite and not negative, found " +
+                             std::to_string(c.r) + " " + std::to_string(c.g) + " " +
+                             std::to_string(c.b) + " at pixel " +
+                             std::to_string(i % std::size_t(width_)) + "," +
+                             std::to_string(i / std::size_t(width_)) + ": repair the image");
+        }
+        image_[i] *= float(scale);
+    }
+
+    // A texel's interpolated radiance reaches into all eight neighbours: the tent's integrals over
+    // one texel are 1/8, 6/8, 1/8 along each axis.
+    std::vector<double> weights(image_.size());
+    double sum[3] = {0, 0, 0};
+    for (int y = 0; y < height_; ++y) {
+        const double solidAngle = texelSolidAngle(y, width_, height_);
+        for (int x = 0; x < width_; ++x) {
+            Rgb meanRadiance{};
+            for (int dy = -1; dy <= 1; ++dy) {
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const float w = (dx ? 0.125f : 0.75f) * (dy ? 0.125f : 0.75f);
+                    meanRadiance += texel((x + dx + width_) % width_,
+                                          std::min(std::max(y + dy, 0), height_ - 1)) *
+                                    w;
+                }
+            }
+            weights[std::size_t(y) * width_ + x] = double(mean(meanRadiance)) * solidAngle;
+            sum[0] += meanRadiance.r * solidAngle;
+            sum[1] += meanRadiance.g * solidAngle;
+            sum[2] += meanRadiance.b * solidAngle;
+        }
+    }
+    integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
+    texels_ = DiscreteDistribution(weights);
+}
+
+Vec2 Environment::uvOf(Vec3 d) const {
+    float u = 0.5f + std::atan2(d.x, -d.z) / (2.0f * kPi) - turn_;
+    u -= std::floor(u);
+    const float v = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y) / kPi;
+    return {u, v};
+}
+
+Vec3 Environment::directionOf(Vec2 uv) const {
+    const float phi = (uv.x - 0.5f + turn_) * 2.0f * kPi, theta = uv.y * kPi;
+    const float s = std::sin(theta);
+    return {s * std::sin(phi), std::cos(theta), -s * std::cos(phi)};
+}
+
+Rgb Environment::radiance(Vec3 direction) const {
+    const Vec2 uv = uvOf(direction);
+    const float x = uv.x * float(width_) - 0.5f, y = uv.y * float(height_) - 0.5f;
+    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
+    const float fx = x - float(x0), fy = y - float(y0);
+    const auto row = [&](int r) { return std::min(std::max(r, 0), height_ - 1); };
+    const auto column = [&](int c) { return (c + width_) % width_; };
+    return texel(column(x0), row(y0)) * ((1 - fx) * (1 - fy)) +
+           texel(column(x0 + 1), row(y0)) * (fx * (1 - fy)) +
+           texel(column(x0), row(y0 + 1)) * ((1 - fx) * fy) +
+           texel(column(x0 + 1), row(y0 + 1)) * (fx * fy);
+}
+
+Environment::Sample Environment::sample(double uTexel, float u1, float u2) const {
+    const DiscreteDistribution::Pick pick = texels_.sample(uTexel);
+    const int x = int(pick.index) % width_, y = int(pick.index) / width_;
+    // Uniform in solid angle inside the texel: uniform in longitude and in the cosine.
+    const double top = std::cos(std::numbers::pi * y / height_);
+    const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
+    const double cosTheta = top + (bottom - top) * u2;
+    const Vec2 uv{(float(x) + u1) / float(width_), float(std::acos(cosTheta) / std::numbers::pi)};
+    return {directionOf(uv), float(pick.pmf / texelSolidAngle(y, width_, height_))};
+}
+
+float Environment::pdfW(Vec3 direction) const {
+    if (black()) return 0.0f;
+    const Vec2 uv = uvOf(direction);
+    const int x = std::min(int(uv.x * float(width_)), width_ - 1);
+    const int y = std::min(int(uv.y * float(height_)), height_ - 1);
+    return float(texels_.pmf(std::size_t(y) * width_ + x) / texelSolidAngle(y, width_, height_));
+}
+
+}  // namespace lacuna

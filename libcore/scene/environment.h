@@ -1,0 +1,46 @@
+// Latitude-longitude environment map: radiance by direction, and directions by radiance.
+#pragma once
+
+#include "libcore/base/discrete.h"
+#include "libcore/base/vec.h"
+#include "libcore/image/image.h"
+
+namespace lacuna {
+
+/// Centre of the image -Z, right half +X, top row +Y (interface.md). Radiance is the bilinear
+/// interpolation of the texels (periodic in longitude); the density is constant per texel and positive
+/// wherever that interpolation is.
+class Environment {
+  public:
+    /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError for
+    /// an empty image or negative or non-finite texels, naming `file`.
+    Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
+
+    Rgb radiance(Vec3 direction) const;
+
+    struct Sample {
+        Vec3 direction;  ///< unit, from the scene towards the sky
+        float pdfW;
+    };
+    /// Not to be called for a black map.
+    Sample sample(double uTexel, float u1, float u2) const;
+    /// Density of `sample` at `direction`, per solid angle; 0 for a black map.
+    float pdfW(Vec3 direction) const;
+
+    bool black() const { return texels_.empty(); }
+    /// Integral of the radiance over all directions (by texel means).
+    Rgb integral() const { return integral_; }
+
+  private:
+    Vec2 uvOf(Vec3 direction) const;
+    Vec3 directionOf(Vec2 uv) const;
+    const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
+
+    int width_, height_;
+    std::vector<Rgb> image_;
+    DiscreteDistribution texels_;
+    Rgb integral_;
+    float turn_;  ///< rotation as a fraction of a whole turn
+};
+
+}  // namespace lacuna

@@ -1,0 +1,244 @@
+#include "libcore/scene/light.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "libcore/base/sampling.h"
+#include "libcore/scene/texture.h"
+
+namespace lacuna {
+
+namespace {
+double triangleArea(const EmissiveTriangle& t) {
+    const Vec3d a(t.corners[0]);
+    return 0.5 * length(cross(Vec3d(t.corners[1]) - a, Vec3d(t.corners[2]) - a));
+}
+
+/// Solid angle of the cap within `angle` of an axis, without cancellation for narrow cones.
+double capSolidAngle(double angle) {
+    const double s = std::sin(0.5 * angle);
+    return 4.0 * std::numbers::pi * s * s;
+}
+
+/// KHR_lights_punctual: squared linear ramp in the cosine between the outer and the inner cone.
+float spotFalloff(const PunctualLight& light, float cosine) {
+    const double outer = std::cos(light.outerConeAngle), inner = std::cos(light.innerConeAngle);
+    if (double(cosine) <= outer) return 0.0f;
+    if (double(cosine) >= inner) return 1.0f;
+    const double x = (double(cosine) - outer) / (inner - outer);
+    return float(x * x);
+}
+
+/// Integral of the falloff over directions: inner cap plus 2 pi (cos i - cos o) / 3.
+double spotSolidAngle(const PunctualLight& light) {
+    const double inner = capSolidAngle(light.innerConeAngle);
+    return inner + (capSolidAngle(light.outerConeAngle) - inner) / 3.0;
+}
+
+/// Mean emitted colour of a triangle, never zero where any looked-at texel is not.
+Rgb meanTexture(const EmissiveTriangle& t) {
+    if (!t.texture) return Rgb(1.0f);
+    constexpr int kSteps = 8;
+    Rgb sum{};
+    int n = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        for (int j = 0; j < kSteps - i; ++j, ++n) {
+            const float u = (float(i) + 1.0f / 3) / kSteps, v = (float(j) + 1.0f / 3) / kSteps;
+            sum += sampleTexture(*t.texture, t.uvs[0] * (1 - u - v) + t.uvs[1] * u + t.uvs[2] * v)
+                       .rgb;
+        }
+    }
+    // A dark mean may still hide a bright texel between the samples: keep the light pickable.
+    return sum * (1.0f / float(n)) + Rgb(1e-3f);
+}
+}  // namespace
+
+Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const PunctualLight> punctual,
+               Vec3d offset, const Environment* environment, float sceneRadius)
+    : triangles_(std::move(triangles)),
+      punctual_(punctual.begin(), punctual.end()),
+      environment_(environment),
+      diskRadius_(sceneRadius > 0.0f ? sceneRadius * 1.0001f : 1.0f) {
+    std::vector<double> power;
+    const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
+    for (const EmissiveTriangle& t : triangles_) {
+        const double a = triangleArea(t);
+        area_.push_back(float(a));
+        kinds_.push_back(LightKind::Area);
+        power.push_back(double(mean(t.radiance * meanTexture(t))) * a * std::numbers::pi *
+                        (t.twoSided ? 2.0 : 1.0));
+    }
+    for (const PunctualLight& l : punctual_) {
+        punctualPosition_.push_back(Vec3(l.position - offset));
+        punctualDirection_.push_back(Vec3(normalize(l.direction)));
+        const double intensity = mean(l.intensity);
+        switch (l.kind) {
+            case PunctualLight::Kind::Point:
+                kinds_.push_back(LightKind::Point);
+                power.push_back(intensity * 4.0 * std::numbers::pi);
+                break;
+            case PunctualLight::Kind::Spot:
+                kinds_.push_back(LightKind::Spot);
+                power.push_back(intensity * spotSolidAngle(l));
+                break;
+            case PunctualLight::Kind::Directional:
+                kinds_.push_back(LightKind::Directional);
+                power.push_back(intensity * disk);
+                break;
+        }
+    }
+    if (environment_) {
+        environmentIndex_ = std::uint32_t(kinds_.size());
+        kinds_.push_back(LightKind::Environment);
+        power.push_back(environment_->black() ? 0.0 : double(mean(environment_->integral())) * disk);
+    }
+    selection_ = DiscreteDistribution(power);
+}
+
+Rgb Lights::triangleRadiance(const EmissiveTriangle& t, Vec2 b) const {
+    if (!t.texture) return t.radiance;
+    const Vec2 uv = t.uvs[0] * (1.0f - b.x - b.y) + t.uvs[1] * b.x + t.uvs[2] * b.y;
+    return t.radiance * sampleTexture(*t.texture, uv).rgb;
+}
+
+LightPoint Lights::areaPoint(std::uint32_t light, Vec3 position, Vec3 ng, Vec2 uv) const {
+    const EmissiveTriangle& t = triangles_[light];
+    LightPoint p;
+    p.light = light;
+    p.kind = LightKind::Area;
+    p.position = position;
+    p.ng = ng;
+    p.uv = uv;
+    p.pdf = float(selection_.pmf(light) / double(area_[light]));
+    p.exitance = triangleRadiance(t, uv) * (t.twoSided ? 2.0f * kPi : kPi);
+    return p;
+}
+
+LightPoint Lights::environmentPoint(Vec3 direction) const {
+    LightPoint p;
+    p.light = environmentIndex_;
+    p.kind = LightKind::Environment;
+    p.position = direction;
+    p.pdf = float(selection_.pmf(environmentIndex_)) * environment_->pdfW(direction);
+    p.exitance = environment_->radiance(direction);
+    return p;
+}
+
+LightPoint Lights::samplePoint(Rng& rng) const {
+    const DiscreteDistribution::Pick pick = selection_.sample(rng.uniformDouble());
+    const std::uint32_t light = pick.index;
+    const float u1 = rng.uniform(), u2 = rng.uniform();
+    switch (kinds_[light]) {
+        case LightKind::Area: {
+            const EmissiveTriangle& t = triangles_[light];
+            const float s = std::sqrt(u1);
+            const Vec2 b{1.0f - s, u2 * s};
+            const Vec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
+            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y, normalize(cross(e1, e2)),
+                             b);
+        }
+        case LightKind::Environment: {
+            const Environment::Sample s = environment_->sample(pick.remapped, u1, u2);
+            LightPoint p;
+            p.light = light;
+            p.kind = LightKind::Environment;
+            p.position = s.direction;
+            p.pdf = float(pick.pmf) * s.pdfW;
+            p.exitance = environment_->radiance(s.direction);
+            return p;
+        }
+        default:
+            break;
+    }
+    const std::size_t i = light - triangles_.size();
+    const PunctualLight& l = punctual_[i];
+    LightPoint p;
+    p.light = light;
+    p.kind = kinds_[light];
+    p.pdf = float(pick.pmf);
+    if (p.kind == LightKind::Directional) {
+        p.position = -punctualDirection_[i];
+        p.exitance = l.intensity;
+    } else {
+        p.position = punctualPosition_[i];
+        p.exitance = l.intensity * float(p.kind == LightKind::Point ? 4.0 * std::numbers::pi
+                                                                    : spotSolidAngle(l));
+    }
+    return p;
+}
+
+Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) const {
+    const std::size_t i = std::size_t(&l - punctual_.data());
+    const float cosine = dot(direction, punctualDirection_[i]);
+    const float falloff = spotFalloff(l, cosine);
+    if (falloff == 0.0f) return {};
+    // Sampled uniformly inside the outer cone.
+    return {Rgb(float(falloff / spotSolidAngle(l))), float(1.0 / capSolidAngle(l.outerConeAngle))};
+}
+
+Lights::Emission Lights::emission(const LightPoint& point, Vec3 direction) const {
+    switch (point.kind) {
+        case LightKind::Area: {
+            const float cosine = dot(point.ng, direction);
+            if (triangles_[point.light].twoSided) {
+                return {Rgb(0.5f / kPi), std::fabs(cosine) * (0.5f / kPi)};
+            }
+            if (cosine <= 0.0f) return {};
+            return {Rgb(1.0f / kPi), cosine / kPi};
+        }
+        case LightKind::Point:
+            return {Rgb(0.25f / kPi), 0.25f / kPi};
+        case LightKind::Spot:
+            return spotEmission(punctual_[point.light - triangles_.size()], direction);
+        case LightKind::Directional:
+        case LightKind::Environment:
+            break;
+    }
+    return {Rgb(1.0f), 1.0f / (kPi * diskRadius_ * diskRadius_)};
+}
+
+std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point,
+                                                          Rng& rng) const {
+    const float u1 = rng.uniform(), u2 = rng.uniform();
+    switch (point.kind) {
+        case LightKind::Area: {
+            const bool twoSided = triangles_[point.light].twoSided;
+            const bool back = twoSided && u1 >= 0.5f;
+            const float u = twoSided ? (back ? 2.0f * u1 - 1.0f : 2.0f * u1) : u1;
+            const Vec3 normal = back ? -point.ng : point.ng;
+            const Vec3 direction = Frame(normal).toWorld(cosineHemisphere(u, u2));
+            const Emission e = emission(point, direction);
+            if (e.pdfW <= 0.0f) return std::nullopt;
+            return EmissionRay{point.position, direction, e};
+        }
+        case LightKind::Point: {
+            const float z = 1.0f - 2.0f * u1, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+            const float phi = 2.0f * kPi * u2;
+            const Vec3 direction{r * std::cos(phi), r * std::sin(phi), z};
+            return EmissionRay{point.position, direction, emission(point, direction)};
+        }
+        case LightKind::Spot: {
+            const std::size_t i = point.light - triangles_.size();
+            const double halfSine = std::sin(0.5 * punctual_[i].outerConeAngle);
+            const double oneMinusCos = 2.0 * halfSine * halfSine * double(u1);
+            const double s = std::sqrt(std::max(0.0, oneMinusCos * (2.0 - oneMinusCos)));
+            const double phi = 2.0 * std::numbers::pi * double(u2);
+            const Vec3 local{float(s * std::cos(phi)), float(s * std::sin(phi)),
+                             float(1.0 - oneMinusCos)};
+            const Vec3 direction = Frame(punctualDirection_[i]).toWorld(local);
+            const Emission e = emission(point, direction);
+            if (e.pdfW <= 0.0f) return std::nullopt;
+            return EmissionRay{point.position, direction, e};
+        }
+        case LightKind::Directional:
+        case LightKind::Environment:
+            break;
+    }
+    // A disk that covers the scene's bounding sphere, seen from the light.
+    const Frame frame(point.position);
+    const Vec2 d = concentricDisk(u1, u2) * diskRadius_;
+    return EmissionRay{frame.toWorld(Vec3{d.x, d.y, diskRadius_}), -point.position,
+                       emission(point, -point.position)};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,118 @@
+// All lights of a scene behind one table: picked by power, sampled as the first vertex of light
+// subpaths (y_0), asked for the density of any point or direction on them.
+//
+// A vertex on a light carries (methods.md 1):
+//   area light     point and normal; pdf: pmf / area                  [area measure]
+//   point, spot    point;            pdf: pmf                         [delta position left out]
+//   environment    direction;        pdf: pmf * pdfW                  [solid angle]
+//   directional    direction;        pdf: pmf                         [delta direction left out]
+// `beta` of y_0 is its (spatial) exitance over that density; the emission profile
+// f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's density is
+// that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libcore/base/discrete.h"
+#include "libcore/base/rng.h"
+#include "libcore/base/vec.h"
+#include "libcore/scene/description.h"
+#include "libcore/scene/environment.h"
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+enum class LightKind : std::uint8_t { Area, Point, Spot, Directional, Environment };
+
+/// A world-space triangle that emits, from its front (counter-clockwise) side or from both.
+struct EmissiveTriangle {
+    std::array<Vec3, 3> corners;
+    std::array<Vec2, 3> uvs;
+    Rgb radiance;  ///< factor; times the texture where there is one
+    const Texture* texture = nullptr;
+    bool twoSided = false;
+    std::uint32_t object = kNone, primitive = kNone;
+};
+
+/// A point (or, at infinity, a direction) on a light: y_0.
+struct LightPoint {
+    std::uint32_t light = kNone;
+    LightKind kind = LightKind::Area;
+    Vec3 position;   ///< at infinity: unit direction from the scene towards the light
+    Vec3 ng;         ///< area lights: the emitting side
+    Vec2 uv;         ///< barycentric (area lights)
+    float pdf = 0;   ///< in the light's own measure, see above; includes the selection pmf
+    Rgb exitance;    ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr)
+};
+
+inline bool isInfinite(LightKind k) {
+    return k == LightKind::Directional || k == LightKind::Environment;
+}
+/// Whether an eye walk can run into it.
+inline bool isHittable(LightKind k) {
+    return k == LightKind::Area || k == LightKind::Environment;
+}
+
+class Lights {
+  public:
+    /// `sceneRadius`: of the bounding sphere about the origin. Environment may be null. Lights without
+    /// power are kept (so that indices stay) but never picked.
+    Lights(std::vector<EmissiveTriangle> triangles, std::span<const PunctualLight> punctual,
+           Vec3d offset, const Environment* environment, float sceneRadius);
+
+    /// No light has any power.
+    bool empty() const { return selection_.empty(); }
+    std::size_t size() const { return kinds_.size(); }
+    LightKind kind(std::uint32_t light) const { return kinds_[light]; }
+    const Environment* environment() const { return environment_; }
+    std::uint32_t environmentIndex() const { return environmentIndex_; }
+    /// Probability of picking this light (proportional to its power).
+    double pmf(std::uint32_t light) const { return selection_.pmf(light); }
+
+    /// Draws y_0. Not to be called when empty().
+    LightPoint samplePoint(Rng& rng) const;
+
+    /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
+    /// included).
+    LightPoint areaPoint(std::uint32_t light, Vec3 position, Vec3 ng, Vec2 uv) const;
+    /// The environment in `direction`, likewise. There must be one.
+    LightPoint environmentPoint(Vec3 direction) const;
+
+    struct Emission {
+        Rgb profile;     ///< f_0(w) = Le(w) / exitance, per projected solid angle (area) or solid angle
+        float pdfW = 0;  ///< of w given y_0; at infinity: of the point on the disk (area measure)
+    };
+    /// Profile and density for light that leaves `point` along the unit `direction`. At infinity the
+    /// direction is the light's own and is not read.
+    Emission emission(const LightPoint& point, Vec3 direction) const;
+
+    struct EmissionRay {
+        Vec3 origin;
+        Vec3 direction;
+        Emission emission;
+    };
+    /// Draws the light subpath's first ray; empty where the draw emits nothing.
+    std::optional<EmissionRay> sampleEmission(const LightPoint& point, Rng& rng) const;
+
+    /// Radius of the disk from which lights at infinity send their subpaths.
+    float diskRadius() const { return diskRadius_; }
+
+  private:
+    Rgb triangleRadiance(const EmissiveTriangle& t, Vec2 barycentric) const;
+    Emission spotEmission(const PunctualLight& light, Vec3 direction) const;
+
+    std::vector<LightKind> kinds_;
+    std::vector<EmissiveTriangle> triangles_;  // lights [0, triangles)
+    std::vector<PunctualLight> punctual_;      // then the punctual ones
+    std::vector<Vec3> punctualPosition_, punctualDirection_;
+    std::vector<float> area_;
+    const Environment* environment_;
+    std::uint32_t environmentIndex_ = kNone;  // the last one
+    DiscreteDistribution selection_;
+    float diskRadius_;
+};
+
+}  // namespace lacuna

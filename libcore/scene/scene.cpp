@@ -1,0 +1,329 @@
+#include "libcore/scene/scene.h"
+
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/image/image_io.h"
+#include "libcore/scene/texture.h"
+
+namespace lacuna {
+
+/// Vertices as rays see them: world space for a mesh that is used once, else the mesh's own space
+/// moved to its middle (so that large offsets in the file cost no precision).
+struct Scene::WorldMesh {
+    std::vector<Vec3> positions;  // one more than there are vertices (accel.h)
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::uint32_t material = 0;
+};
+
+struct Scene::Object {
+    std::uint32_t mesh = 0;
+    bool instanced = false;
+    bool mirrored = false;
+    std::array<Vec3, 4> toWorld;   // columns and translation
+    std::array<Vec3, 3> normal;    // cofactor columns, unit scale
+    std::uint32_t firstLight = kNone;
+
+    Vec3 point(Vec3 p) const {
+        return toWorld[0] * p.x + toWorld[1] * p.y + toWorld[2] * p.z + toWorld[3];
+    }
+    Vec3 normalTo(Vec3 n) const { return normal[0] * n.x + normal[1] * n.y + normal[2] * n.z; }
+};
+
+namespace {
+
+struct Box {
+    Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    void add(const Vec3d& p) {
+        low = min(low, p);
+        high = max(high, p);
+    }
+    bool empty() const { return !(low.x <= high.x); }
+    Vec3d centre() const { return empty() ? Vec3d{} : (low + high) * 0.5; }
+};
+
+Box boundsOf(const SceneDescription& scene, const ThreadPool& pool) {
+    std::vector<Box> boxes(scene.instances.size());
+    pool.forEach(boxes.size(), [&](std::size_t i) {
+        const Instance& instance = scene.instances[i];
+        for (const Vec3& p : scene.meshes[instance.mesh].positions) {
+            boxes[i].add(instance.toWorld.point(Vec3d(p)));
+        }
+    });
+    Box all;
+    for (const Box& b : boxes) {
+        if (b.empty()) continue;
+        all.add(b.low);
+        all.add(b.high);
+    }
+    return all;
+}
+
+Vec3d centreOf(const Mesh& mesh) {
+    Box box;
+    for (const Vec3& p : mesh.positions) box.add(Vec3d(p));
+    return box.centre();
+}
+
+bool degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+    return !(lengthSquared(n) > 0.0) || !isFinite(normalize(Vec3(n)));
+}
+
+}  // namespace
+
+Scene::Scene(SceneDescription description, const ThreadPool& pool)
+    : description_(std::move(description)) {
+    SceneDescription& d = description_;
+    const Box bounds = boundsOf(d, pool);
+    centre_ = bounds.centre();
+    if (!bounds.empty()) radius_ = float(0.5 * length(bounds.high - bounds.low));
+    offsetFloor_ = radius_ / 32.0f;
+
+    // One mesh per distinct use: meshes with one instance move to world space, the others stay.
+    std::vector<std::uint32_t> uses(d.meshes.size(), 0);
+    for (const Instance& i : d.instances) ++uses[i.mesh];
+    meshes_.resize(d.meshes.size());
+    objects_.resize(d.instances.size());
+    std::vector<Affine> meshTransform(d.meshes.size());  // applied to the mesh's own vertices
+    std::vector<bool> mirroredMesh(d.meshes.size(), false);
+    for (std::size_t i = 0; i < d.instances.size(); ++i) {
+        const Instance& instance = d.instances[i];
+        Object& object = objects_[i];
+        object.mesh = instance.mesh;
+        object.mirrored = instance.toWorld.determinant() < 0.0;
+        Affine toWorld = instance.toWorld;
+        if (uses[instance.mesh] == 1) {
+            toWorld.m[3] -= centre_;
+            meshTransform[instance.mesh] = toWorld;
+            mirroredMesh[instance.mesh] = object.mirrored;
+            continue;
+        }
+        const Vec3d middle = centreOf(d.meshes[instance.mesh]);
+        meshTransform[instance.mesh].m[3] = -middle;
+        toWorld.m[3] = toWorld.point(middle) - centre_;
+        object.instanced = true;
+        for (int c = 0; c < 4; ++c) object.toWorld[c] = Vec3(toWorld.m[c]);
+        const double sign = object.mirrored ? -1.0 : 1.0;
+        const double scale = std::pow(std::fabs(toWorld.determinant()), 2.0 / 3.0);
+        const Vec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (int c = 0; c < 3; ++c) {
+            object.normal[c] = Vec3(toWorld.normal(axes[c]) * (sign / scale));
+        }
+    }
+
+    pool.forEach(d.meshes.size(), [&](std::size_t m) {
+        if (uses[m] == 0) return;
+        Mesh& from = d.meshes[m];
+        WorldMesh& to = meshes_[m];
+        const Affine& transform = meshTransform[m];
+        to.material = from.material;
+        to.positions.reserve(from.positions.size() + 1);
+        for (const Vec3& p : from.positions) to.positions.push_back(Vec3(transform.point(Vec3d(p))));
+        to.positions.push_back({});
+        to.normals.reserve(from.normals.size());
+        const double sign = mirroredMesh[m] ? -1.0 : 1.0;
+        for (const Vec3& n : from.normals) {
+            to.normals.push_back(Vec3(normalize(transform.normal(Vec3d(n)) * sign)));
+        }
+        to.uvs = std::move(from.uvs);
+        to.triangles = std::move(from.triangles);
+        if (mirroredMesh[m]) {
+            for (auto& t : to.triangles) std::swap(t[1], t[2]);
+        }
+        std::erase_if(to.triangles, [&](const auto& t) {
+            return degenerate(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]);
+        });
+        from = Mesh{};
+    });
+
+    // A mesh without triangles makes Embree objects of no use.
+    std::erase_if(objects_, [&](const Object& o) { return meshes_[o.mesh].triangles.empty(); });
+
+    std::vector<EmissiveTriangle> emitters;
+    for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+        Object& object = objects_[i];
+        const WorldMesh& mesh = meshes_[object.mesh];
+        triangleCount_ += mesh.triangles.size();
+        const Material& material = d.materials[mesh.material];
+        if (isBlack(material.emission)) continue;
+        object.firstLight = std::uint32_t(emitters.size());
+        for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+            EmissiveTriangle e;
+            auto triangle = mesh.triangles[k];
+            // The front is the image of the mesh's front: for a mirrored instance, which still has the
+            // mesh's winding, two corners change places (barycentrics are swapped where it is hit).
+            if (object.instanced && object.mirrored) std::swap(triangle[1], triangle[2]);
+            for (int c = 0; c < 3; ++c) {
+                const Vec3 p = mesh.positions[triangle[c]];
+                e.corners[c] = object.instanced ? object.point(p) : p;
+                if (!mesh.uvs.empty()) e.uvs[c] = mesh.uvs[triangle[c]];
+            }
+            e.radiance = material.emission;
+            if (material.emissiveTexture) e.texture = &d.textures[material.emissiveTexture.value];
+            e.twoSided = material.doubleSided;
+            e.object = i;
+            e.primitive = k;
+            emitters.push_back(e);
+        }
+    }
+
+    if (d.environment) {
+        environment_ = std::make_unique<Environment>(readImage(d.environment->file),
+                                                     d.environment->scale,
+                                                     d.environment->rotationDegrees,
+                                                     d.environment->file);
+    }
+    lights_ = std::make_unique<Lights>(std::move(emitters), d.lights, centre_, environment_.get(),
+                                       radius_);
+
+    std::vector<float> iors;
+    for (const Material& m : d.materials) iors.push_back(m.ior);
+    tables_ = std::make_unique<AlbedoTables>(iors);
+
+    std::vector<AccelMesh> accelMeshes;
+    for (const WorldMesh& m : meshes_) accelMeshes.push_back({m.positions, m.triangles});
+    std::vector<AccelObject> accelObjects;
+    for (const Object& o : objects_) {
+        AccelObject a;
+        a.mesh = o.mesh;
+        a.instanced = o.instanced;
+        for (int c = 0; c < 4; ++c) a.toWorld.m[c] = Vec3d(o.toWorld[c]);
+        const Material& material = d.materials[meshes_[o.mesh].material];
+        a.alphaMasked = material.alphaMode == Material::Alpha::Mask;
+        accelObjects.push_back(a);
+    }
+    accel_ = std::make_unique<Accel>(
+        accelMeshes, accelObjects, [this](const Hit& hit) { return alphaTest(hit); }, pool);
+}
+
+Scene::~Scene() = default;
+
+Camera Scene::makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const {
+    const auto& cameras = description_.cameras;
+    if (cameras.empty()) {
+        throw InputError(description_.file +
+                         ": expected a perspective camera, found none: add one to the scene");
+    }
+    std::string names;
+    for (const CameraDescription& c : cameras) {
+        if (name.empty() || c.name == name) return Camera(c, centre_, film, lens);
+        names += (names.empty() ? "'" : ", '") + c.name + "'";
+    }
+    throw UsageError("--camera: expected one of " + names + ", found '" + name + "'");
+}
+
+Vec2 Scene::uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& t, float u,
+                 float v) const {
+    if (mesh.uvs.empty()) return {};
+    return mesh.uvs[t[0]] * (1.0f - u - v) + mesh.uvs[t[1]] * u + mesh.uvs[t[2]] * v;
+}
+
+bool Scene::alphaTest(const Hit& hit) const {
+    const WorldMesh& mesh = meshes_[objects_[hit.object].mesh];
+    const Material& material = description_.materials[mesh.material];
+    float alpha = material.baseAlpha;
+    if (material.baseColorTexture) {
+        const Vec2 uv = uvAt(mesh, mesh.triangles[hit.primitive], hit.u, hit.v);
+        alpha *= sampleTexture(description_.textures[material.baseColorTexture.value], uv).alpha;
+    }
+    return alpha >= material.alphaCutoff;
+}
+
+SurfacePoint Scene::surfaceAt(const Hit& hit) const {
+    const Object& object = objects_[hit.object];
+    const WorldMesh& mesh = meshes_[object.mesh];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    const float w = 1.0f - hit.u - hit.v;
+    Vec3 p0 = mesh.positions[t[0]], p1 = mesh.positions[t[1]], p2 = mesh.positions[t[2]];
+    if (object.instanced) {
+        p0 = object.point(p0);
+        p1 = object.point(p1);
+        p2 = object.point(p2);
+    }
+    SurfacePoint s;
+    s.position = p0 * w + p1 * hit.u + p2 * hit.v;
+    s.ng = normalize(cross(p1 - p0, p2 - p0));
+    s.barycentric = {hit.u, hit.v};
+    if (object.instanced && object.mirrored) {
+        s.ng = -s.ng;
+        s.barycentric = {hit.v, hit.u};
+    }
+    s.ns = s.ng;
+    if (!mesh.normals.empty()) {
+        Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
+        if (object.instanced) n = object.normalTo(n);
+        n = normalize(n);
+        const float side = dot(n, s.ng);
+        // Normals that contradict the winding are turned; ones at a right angle say nothing.
+        if (std::fabs(side) > 1e-3f) s.ns = side < 0.0f ? -n : n;
+    }
+    s.uv = uvAt(mesh, t, hit.u, hit.v);
+    s.material = mesh.material;
+    if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
+    return s;
+}
+
+std::optional<SurfacePoint> Scene::intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
+                                             RayTally& tally) const {
+    ++tally.counts[std::size_t(kind)];
+    const Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
+    const std::optional<Hit> hit = accel_->intersect(ray);
+    if (!hit) {
+        if (tally.recording) tally.recording->push_back({ray, kind});
+        return std::nullopt;
+    }
+    const SurfacePoint s = surfaceAt(*hit);
+    if (tally.recording) {
+        tally.recording->push_back({{ray.origin, direction, length(s.position - origin)}, kind});
+    }
+    return s;
+}
+
+bool Scene::visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& tally) const {
+    ++tally.counts[std::size_t(kind)];
+    const Vec3 direction = b - a;
+    const Vec3 from = offsetOrigin(a, ngA, direction, offsetFloor_);
+    const Vec3 to = offsetOrigin(b, ngB, -direction, offsetFloor_);
+    const Ray ray{from, to - from, 1.0f - 1e-6f};
+    if (tally.recording) tally.recording->push_back({ray, kind});
+    return !accel_->occluded(ray);
+}
+
+bool Scene::visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind,
+                              RayTally& tally) const {
+    ++tally.counts[std::size_t(kind)];
+    const Ray ray{offsetOrigin(a, ngA, direction, offsetFloor_), direction};
+    if (tally.recording) tally.recording->push_back({ray, kind});
+    return !accel_->occluded(ray);
+}
+
+Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
+    const Material& m = description_.materials[point.material];
+    const auto& textures = description_.textures;
+    Bsdf::Parameters p;
+    p.baseColor = m.baseColor;
+    p.metallic = m.metallic;
+    p.roughness = m.roughness;
+    p.specular = m.specular;
+    p.ior = m.ior;
+    p.transmission = m.transmission;
+    p.thin = m.thin;
+    if (m.baseColorTexture) {
+        p.baseColor *= sampleTexture(textures[m.baseColorTexture.value], point.uv).rgb;
+    }
+    if (m.metallicRoughnessTexture) {
+        const Rgb t = sampleTexture(textures[m.metallicRoughnessTexture.value], point.uv).rgb;
+        p.roughness *= t.g;
+        p.metallic *= t.b;
+    }
+    if (m.transmissionTexture) {
+        p.transmission *= sampleTexture(textures[m.transmissionTexture.value], point.uv).rgb.r;
+    }
+    return Bsdf(p, point.ng, point.ns, *tables_);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,92 @@
+// The scene as rays see it: recentred (the origin is the middle of the bounding box), in float, const
+// after construction.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libcore/material/albedo_tables.h"
+#include "libcore/material/bsdf.h"
+#include "libcore/scene/accel.h"
+#include "libcore/scene/camera.h"
+#include "libcore/scene/description.h"
+#include "libcore/scene/environment.h"
+#include "libcore/scene/light.h"
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+class ThreadPool;
+
+/// Where a ray met a surface, with everything a path vertex needs.
+struct SurfacePoint {
+    Vec3 position;
+    Vec3 ng;  ///< unit, by the winding (sign of the transform's determinant included)
+    Vec3 ns;  ///< unit, on ng's side
+    Vec2 uv;           ///< texture coordinates
+    Vec2 barycentric;
+    std::uint32_t material = 0;
+    std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
+};
+
+class Scene {
+  public:
+    /// Bakes meshes that are used once into world space, keeps the others as Embree instances, builds
+    /// lights, tables and hierarchies. Degenerate triangles are dropped. Throws InputError for an
+    /// environment that cannot be read, RunError if memory runs out.
+    Scene(SceneDescription description, const ThreadPool& pool);
+    ~Scene();
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    /// Replaces nothing, decides nothing: the camera of that name, or the first. Throws InputError if
+    /// the scene has no camera, UsageError if none has that name (both list what there is).
+    Camera makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const;
+
+    const SceneDescription& description() const { return description_; }
+    const Lights& lights() const { return *lights_; }
+    const Environment* environment() const { return environment_.get(); }
+    const Accel& accel() const { return *accel_; }
+    /// Middle of the file's bounding box: file coordinates = ours + centre().
+    Vec3d centre() const { return centre_; }
+    /// Radius of the bounding sphere about the origin; 0 without geometry.
+    float radius() const { return radius_; }
+    std::size_t triangleCount() const { return triangleCount_; }
+
+    /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no surface).
+    std::optional<SurfacePoint> intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
+                                          RayTally& tally) const;
+    /// Whether two points see each other; each is moved off its surface towards the other.
+    bool visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& tally) const;
+    /// Whether `a` sees infinitely far along `direction`.
+    bool visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind, RayTally& tally) const;
+
+    /// Evaluates the material's textures at the point.
+    Bsdf bsdfAt(const SurfacePoint& point) const;
+    const AlbedoTables& albedoTables() const { return *tables_; }
+
+  private:
+    struct Object;
+    struct WorldMesh;
+
+    SurfacePoint surfaceAt(const Hit& hit) const;
+    bool alphaTest(const Hit& hit) const;
+    Vec2 uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& triangle, float u,
+              float v) const;
+
+    SceneDescription description_;
+    Vec3d centre_;
+    float radius_ = 0.0f;
+    float offsetFloor_ = 0.0f;
+    std::size_t triangleCount_ = 0;
+    std::vector<WorldMesh> meshes_;
+    std::vector<Object> objects_;
+    std::unique_ptr<AlbedoTables> tables_;
+    std::unique_ptr<Environment> environment_;
+    std::unique_ptr<Lights> lights_;
+    std::unique_ptr<Accel> accel_;
+};
+
+}  // namespace lacuna

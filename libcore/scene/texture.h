@@ -1,0 +1,18 @@
+// Texture look-ups: bilinear, without mip maps, because f must not depend on the strategy that asks.
+#pragma once
+
+#include "libcore/base/vec.h"
+#include "libcore/scene/description.h"
+
+namespace lacuna {
+
+struct Rgba {
+    Rgb rgb;
+    float alpha = 1.0f;
+};
+
+/// Linear colour and alpha at `uv` (glTF: origin at the image's upper left corner, texel centres at
+/// half integers). The texture must have at least one texel.
+Rgba sampleTexture(const Texture& texture, Vec2 uv);
+
+}  // namespace lacuna
