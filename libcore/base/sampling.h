@@ -33,20 +33,26 @@ struct Frame {
 inline Vec2 concentricDisk(float u1, float u2) {
     const float a = 2.0f * u1 - 1.0f;
     const float b = 2.0f * u2 - 1.0f;
+    // Selections, not branches: no predictor could know which of two random numbers is larger.
     const bool aLonger = std::abs(a) > std::abs(b);
     const float radius = aLonger ? a : b;
-    if (radius == 0.0f) {
-        return {0.0f, 0.0f};
-    }
-    const float x = (kPi / 4) * ((aLonger ? b : a) / radius);
+    const float other = aLonger ? b : a;
+    const float x = (kPi / 4) * (other / (radius != 0.0f ? radius : 1.0f));
     const float z = x * x;
     // Cephes' sinf and cosf kernels on [-pi/4, pi/4].
     const float sine =
-        x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f));
+        radius * (x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f)));
     const float cosine =
-        1.0f - 0.5f * z +
-        z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
-    return aLonger ? Vec2{radius * cosine, radius * sine} : Vec2{radius * sine, radius * cosine};
+        radius *
+        (1.0f - 0.5f * z +
+         z * z *
+             (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f)));
+    return {aLonger ? cosine : sine, aLonger ? sine : cosine};
+}
+
+/// A vector that is unit but for rounding, unit again: one Newton step for 1 / sqrt.
+inline Vec3 renormalize(Vec3 v) {
+    return v * (1.5f - 0.5f * dot(v, v));
 }
 
 /// Local direction (z up) with pdfW = z / pi.

@@ -16,7 +16,8 @@ std::vector<std::uint8_t> readFileBytes(const std::string& path) {
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) {
         throw InputError(path + ": expected an image, found: " +
-                         (error ? error.message() : "No such file or directory") + "; check the name");
+                         (error ? error.message() : "No such file or directory") +
+                         "; check the name");
     }
     if (!fs::is_regular_file(status)) {
         throw InputError(path + ": expected an image, found " +

@@ -1,0 +1,60 @@
+#include "render/curve_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+namespace {
+
+/// Shortest text that gives the same double again; "inf" as CSV readers know it.
+std::string number(double value) {
+    char text[40];
+    for (int digits = 6; digits <= 17; ++digits) {
+        std::snprintf(text, sizeof text, "%.*g", digits, value);
+        if (std::strtod(text, nullptr) == value) break;
+    }
+    return text;
+}
+
+}  // namespace
+
+CurveLog::CurveLog(const std::string& path) : path_(path), file_(path, std::ios::trunc) {
+    file_ << "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse" << std::endl;
+    check();
+}
+
+void CurveLog::check() {
+    if (!file_) {
+        throw RunError(path_ +
+                       ": expected to write the curve, found it not writable or the disk full; "
+                       "choose another --log or make room");
+    }
+}
+
+bool CurveLog::wants(double seconds) {
+    const int tenth = int(std::floor(10.0 * std::log10(std::max(seconds, 1e-9))));
+    if (lastTenth_ && tenth <= *lastTenth_) return false;
+    lastTenth_ = tenth;
+    return true;
+}
+
+void CurveLog::write(const CurveRow& row) {
+    std::string text = std::to_string(row.iteration) + "," + number(row.seconds) + "," +
+                       number(row.setupSeconds) + "," + std::to_string(row.rays);
+    if (row.error) {
+        for (const double e :
+             {row.error->mae, row.error->rmse, row.error->mape, row.error->relmse}) {
+            text += "," + number(e);
+        }
+    } else {
+        text += ",,,,";
+    }
+    lastIteration_ = row.iteration;
+    file_ << text << std::endl;  // flushed: the row survives a crash
+    check();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,45 @@
+// Error against time, row by row, so that a crash loses no more than the row being written.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "libcore/image/error_metrics.h"
+
+namespace lacuna {
+
+struct CurveRow {
+    std::uint64_t iteration = 0;  ///< complete ones
+    double seconds = 0.0;         ///< rendering alone: no setup, no comparing, no saving
+    double setupSeconds = 0.0;
+    std::uint64_t rays = 0;
+    std::optional<ErrorMeasures> error;  ///< empty columns without
+};
+
+/// CSV: iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse. The first and the last iteration
+/// have a row, and at most ten iterations per decade of seconds in between.
+class CurveLog {
+  public:
+    /// Replaces the file by its header line. Throws RunError.
+    explicit CurveLog(const std::string& path);
+
+    /// Whether an iteration that ended at `seconds` gets a row: asked once per iteration, before
+    /// its error is measured.
+    bool wants(double seconds);
+    /// Throws RunError if the row did not reach the file.
+    void write(const CurveRow& row);
+    /// Iteration of the last row; 0: none yet.
+    std::uint64_t lastIteration() const { return lastIteration_; }
+
+  private:
+    void check();
+
+    std::string path_;
+    std::ofstream file_;
+    std::optional<int> lastTenth_;  // floor(10 log10 seconds)
+    std::uint64_t lastIteration_ = 0;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,168 @@
+#include "render/effects.h"
+
+#include <algorithm>
+#include <set>
+
+#include "libcore/material/bsdf.h"
+
+namespace lacuna {
+namespace {
+
+/// What the instances of a scene really use, counted once.
+struct Inventory {
+    std::vector<const Material*> materials;  // used by at least one triangle
+    std::size_t emissiveTriangles = 0;
+    bool emissiveTextures = false;
+    std::size_t points = 0, spots = 0, directionals = 0;
+
+    explicit Inventory(const SceneDescription& scene) {
+        std::set<std::uint32_t> used;
+        for (const Instance& instance : scene.instances) {
+            const Mesh& mesh = scene.meshes[instance.mesh];
+            if (mesh.triangles.empty()) continue;
+            used.insert(mesh.material);
+            const Material& m = scene.materials[mesh.material];
+            if (isBlack(m.emission)) continue;
+            emissiveTriangles += mesh.triangles.size();
+            emissiveTextures = emissiveTextures || bool(m.emissiveTexture);
+        }
+        for (const std::uint32_t i : used) materials.push_back(&scene.materials[i]);
+        for (const PunctualLight& light : scene.lights) {
+            if (isBlack(light.intensity)) continue;
+            points += light.kind == PunctualLight::Kind::Point;
+            spots += light.kind == PunctualLight::Kind::Spot;
+            directionals += light.kind == PunctualLight::Kind::Directional;
+        }
+    }
+
+    template <class Test>
+    std::size_t count(const Test& test) const {
+        return std::size_t(std::count_if(materials.begin(), materials.end(),
+                                         [&](const Material* m) { return test(*m); }));
+    }
+};
+
+// A texture may take a factor to any smaller value, so it can switch lobes on as well as off.
+bool mayBeRough(const Material& m) {
+    return m.roughness * m.roughness >= kMinAlpha;
+}
+bool mayBeSmooth(const Material& m) {
+    return !mayBeRough(m) || m.metallicRoughnessTexture;
+}
+bool reflects(const Material& m) {
+    const bool plastic = (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
+                         (m.transmission < 1.0f || m.transmissionTexture);
+    return m.metallic > 0.0f || (plastic && m.specular > 0.0f && m.ior > 1.0f);
+}
+bool transmits(const Material& m) {
+    return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
+}
+bool isDiffuse(const Material& m) {
+    return !isBlack(m.baseColor) && (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
+           (m.transmission < 1.0f || m.transmissionTexture);
+}
+
+class Table {
+  public:
+    /// `found` things call for the effect; zero: left out because of `missing`.
+    void add(const char* name, std::size_t found, const std::string& what,
+             const std::string& missing) {
+        const std::string text = std::to_string(found) + " " + what + (found == 1 ? "" : "s");
+        rows.push_back({name, found > 0, found > 0 ? text : missing});
+    }
+    void add(const char* name, bool simulated, const std::string& reason) {
+        rows.push_back({name, simulated, reason});
+    }
+    std::vector<Effect> rows;
+};
+
+void addTechniques(Table& table, const MethodRow& method, bool hittable, bool anyLight) {
+    const TechniqueSet& t = method.techniques;
+    table.add("hits", t.hits && hittable,
+              !t.hits    ? method.name + " has no technique s = 0"
+              : hittable ? "an eye path can run into a light"
+                         : "no light that an eye path can run into");
+    table.add("connections", t.connects && anyLight,
+              !t.connects ? method.name + " connects no vertices"
+              : anyLight  ? "eye vertices are connected with light vertices"
+                          : "no light");
+    table.add("splats", t.splats && anyLight,
+              !t.splats  ? method.name + " has no technique t = 1"
+              : anyLight ? "light paths are seen by the lens"
+                         : "no light");
+}
+
+}  // namespace
+
+std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
+                              const MethodRow* method) {
+    const Inventory have(scene);
+    Table t;
+    t.add("area_lights", have.emissiveTriangles, "emissive triangle", "no emissive material");
+    t.add("point_lights", have.points, "point light", "no point light");
+    t.add("spot_lights", have.spots, "spot light", "no spot light");
+    t.add("directional_lights", have.directionals, "directional light", "no directional light");
+    t.add("environment", scene.environment.has_value(),
+          scene.environment
+              ? scene.environment->file
+              : "no environment map: paths that leave the scene end, no disk sampling");
+    t.add("emissive_textures", have.emissiveTextures,
+          have.emissiveTextures ? "emission varies over triangles" : "no emissive texture");
+    t.add("textures", have.count([](const Material& m) {
+        return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture;
+    }),
+          "textured material", "no texture");
+    t.add("alpha_mask",
+          have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Mask; }),
+          "material with alphaMode MASK", "no material with alphaMode MASK: no alpha test");
+    const std::size_t blended =
+        have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Blend; });
+    t.add("alpha_blend", false,
+          blended ? "not implemented: " + std::to_string(blended) +
+                        " material(s) with alphaMode BLEND are rendered opaque"
+                  : "no material with alphaMode BLEND");
+
+    t.add("diffuse", have.count(isDiffuse), "material with a diffuse lobe", "no diffuse material");
+    t.add("glossy", have.count([](const Material& m) { return reflects(m) && mayBeRough(m); }),
+          "material with a rough reflection", "no rough metal or coat");
+    t.add("mirror", have.count([](const Material& m) { return reflects(m) && mayBeSmooth(m); }),
+          "material with a perfectly smooth reflection", "no metal or coat of roughness 0");
+    const auto glass = [](bool thin, bool rough) {
+        return [thin, rough](const Material& m) {
+            return transmits(m) && m.thin == thin && (rough ? mayBeRough(m) : mayBeSmooth(m));
+        };
+    };
+    const char* none = "no transmissive solid of that kind: no refraction, no eta factor";
+    t.add("rough_refraction", have.count(glass(false, true)), "rough solid of glass", none);
+    t.add("smooth_refraction", have.count(glass(false, false)), "smooth solid of glass", none);
+    t.add("rough_thin_transmission", have.count(glass(true, true)), "rough thin sheet",
+          "no rough thin sheet");
+    t.add("smooth_thin_transmission", have.count(glass(true, false)), "smooth thin sheet",
+          "no smooth thin sheet");
+    t.add("thin_lens", lensRadius > 0.0,
+          lensRadius > 0.0 ? "the aperture is above 0" : "the aperture is 0: a pinhole");
+
+    if (method) {
+        const bool hittable = have.emissiveTriangles > 0 || scene.environment.has_value();
+        const bool any = hittable || have.points + have.spots + have.directionals > 0;
+        addTechniques(t, *method, hittable, any);
+    }
+    return t.rows;
+}
+
+std::string effectsText(const std::vector<Effect>& effects) {
+    std::size_t width = 0;
+    for (const Effect& e : effects) width = std::max(width, e.name.size());
+    std::string text;
+    for (const bool simulated : {true, false}) {
+        for (const Effect& e : effects) {
+            if (e.simulated != simulated) continue;
+            std::string name = e.name;
+            name.resize(width + 2, ' ');
+            text += (simulated ? "simulated  " : "left_out   ") + name + e.reason + "\n";
+        }
+    }
+    return text;
+}
+
+}  // namespace lacuna

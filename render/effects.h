@@ -1,0 +1,26 @@
+// Which effects a scene calls for, what is therefore simulated and what is left out, with reasons.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libcore/methods/registry.h"
+#include "libcore/scene/description.h"
+
+namespace lacuna {
+
+struct Effect {
+    std::string name;  ///< stable, for scripts: "rough_refraction"
+    bool simulated = false;
+    std::string reason;  ///< what in the scene calls for it, or what is missing
+};
+
+/// One row per effect, always all of them, in a fixed order. `lensRadius` as it will be rendered.
+/// With a method: its techniques as well.
+std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
+                              const MethodRow* method);
+
+/// The table that --effects prints.
+std::string effectsText(const std::vector<Effect>& effects);
+
+}  // namespace lacuna

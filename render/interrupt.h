@@ -1,0 +1,29 @@
+// SIGINT and SIGTERM: the first asks for an orderly end, the second ends the process at once.
+#pragma once
+
+#include <signal.h>
+
+#include <atomic>
+
+namespace lacuna {
+
+/// Exit code of an interrupted tool (interface.md).
+inline constexpr int kInterruptedExit = 130;
+
+/// Installs the handlers for its lifetime; one at a time.
+class InterruptGuard {
+  public:
+    InterruptGuard();
+    ~InterruptGuard();
+    InterruptGuard(const InterruptGuard&) = delete;
+    InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+    /// Becomes true at the first signal.
+    const std::atomic<bool>& requested() const;
+
+  private:
+    struct sigaction oldInt_ {
+    }, oldTerm_{};
+};
+
+}  // namespace lacuna

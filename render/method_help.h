@@ -1,0 +1,17 @@
+// --list-methods and --help-method: the registry as text.
+#pragma once
+
+#include <string>
+
+#include "libcore/methods/registry.h"
+
+namespace lacuna {
+
+/// All methods, a line each: name, summary, reference.
+std::string listMethods();
+/// One method: what it is, which techniques it has, its parameters with ranges and defaults.
+std::string methodHelp(const MethodRow& row);
+/// A parameter's value as --set takes it: "on", "uniform", "200", "0.004".
+std::string valueText(const Parameter& parameter, double value);
+
+}  // namespace lacuna

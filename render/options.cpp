@@ -1,0 +1,292 @@
+#include "render/options.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/bidir/mis.h"
+#include "libcore/image/image_io.h"
+
+namespace lacuna {
+
+void declareOptions(CLI::App& app, RenderOptions& o) {
+    app.add_option("SCENE", o.scene, "Scene: .glb or .gltf")->type_name("SCENE.glb");
+    app.add_option("-o,--output", o.output, "Image: .exr (layers, statistics), .png or .pfm")
+        ->type_name("FILE");
+    app.add_option("--method", o.method, "How to render: see --list-methods")->type_name("NAME");
+    app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
+    app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
+        ->type_name("NAME");
+    app.add_option("--set", o.assignments, "Set a parameter of the method; may be repeated")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+
+    const std::string picture = "Picture and camera";
+    app.add_option("--width", o.width, "Pixels (default: extras.lacuna, else 1280)")
+        ->type_name("N")
+        ->group(picture);
+    app.add_option("--height", o.height, "Pixels (default: extras.lacuna, else by the aspect)")
+        ->type_name("N")
+        ->group(picture);
+    app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
+        ->type_name("x0,x1,y0,y1")
+        ->group(picture);
+    app.add_option("--camera", o.camera, "Camera of the scene (default: the first)")
+        ->type_name("NAME")
+        ->group(picture);
+    app.add_option("--aperture", o.aperture, "Radius of the thin lens, scene units; 0: pinhole")
+        ->type_name("R")
+        ->group(picture);
+    app.add_option("--focus", o.focus, "Distance in focus along the viewing axis, scene units")
+        ->type_name("D")
+        ->group(picture);
+    app.add_option("--exposure", o.exposure, "Stops, for .png only (default: 0)")
+        ->type_name("E")
+        ->group(picture);
+
+    const std::string light = "Environment";
+    app.add_option("--env", o.environment, "Latitude-longitude map instead of the scene's")
+        ->type_name("FILE")
+        ->group(light);
+    app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
+        ->type_name("DEG")
+        ->group(light);
+    app.add_option("--env-scale", o.environmentScale, "Multiply it")->type_name("S")->group(light);
+
+    const std::string effort = "Effort";
+    app.add_option("--iterations", o.iterations,
+                   "One eye path per pixel each (default: 64; unlimited with --time)")
+        ->type_name("N")
+        ->group(effort);
+    app.add_option("--time", o.timeText, "Wall clock from the first iteration on: 90s, 10m, 1h")
+        ->type_name("T")
+        ->group(effort);
+    app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
+        ->group(effort);
+    app.add_option("--max-depth", o.maxDepth, "Longest path in edges, 1 to 254 (default: 12)")
+        ->type_name("N")
+        ->group(effort);
+    app.add_option("--rr-depth", o.rouletteDepth,
+                   "First vertex of a subpath at which Russian roulette is played (default: 3)")
+        ->type_name("N")
+        ->group(effort);
+    app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
+
+    const std::string check = "Measuring and checking";
+    app.add_option("--reference", o.reference, "Image to compare with: .exr, .hdr, .pfm, .png")
+        ->type_name("FILE")
+        ->group(check);
+    app.add_option("--log", o.log, "Error and rays against time, a row per iteration at most")
+        ->type_name("CURVE.csv")
+        ->group(check);
+    app.add_flag("--techniques", o.techniques, "A layer per technique (s, t) in the .exr")
+        ->group(check);
+    app.add_flag("--verify", o.verify, "Recompute every weight by full products and compare")
+        ->group(check);
+    app.add_option("--replay", o.replayText, "Run one sample alone and print its path")
+        ->type_name("x,y,i|light:PATH,i")
+        ->group(check);
+    app.add_flag("--effects", o.effects, "Print what the scene calls for; renders nothing")
+        ->group(check);
+    app.add_option("--display-server", o.displayServer, "Not there yet")
+        ->type_name("H:P")
+        ->group(check);
+    app.add_option("--checkpoint", o.checkpoint, "Not there yet")->type_name("FILE")->group(check);
+    addCommonOptions(app, o.common);
+    app.footer(
+        "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
+        "a second one exits at once. Without --height the picture has extras.lacuna's height even\n"
+        "where --width is given. .exr: R G B, albedo, normal, Z (distance along the viewing axis,\n"
+        "0 where nothing is hit), variance (of the mean), technique layers, and in the header how\n"
+        "it was made; with --crop it has the size of the crop, `crop` in the header says where.\n"
+        "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene or an image cannot be\n"
+        "used, 130 interrupted.");
+}
+
+namespace {
+
+/// All of `text` as a number of type T.
+template <class T>
+bool parseNumber(std::string_view text, T& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+std::vector<std::string_view> splitAtCommas(std::string_view text) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t comma = text.find(',');
+        parts.push_back(text.substr(0, comma));
+        if (comma == std::string_view::npos) return parts;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+void requireRange(const char* option, const std::optional<std::int64_t>& value, std::int64_t low,
+                  std::int64_t high) {
+    if (value && (*value < low || *value > high)) {
+        throw UsageError(std::string(option) + ": expected an integer from " + std::to_string(low) +
+                         " to " + std::to_string(high) + ", found " + std::to_string(*value));
+    }
+}
+
+void requireReal(const char* option, const std::optional<double>& value, double low,
+                 const char* expected) {
+    if (value && !(*value >= low && std::isfinite(*value))) {
+        throw UsageError(std::string(option) + ": expected " + expected + ", found " +
+                         std::to_string(*value));
+    }
+}
+
+}  // namespace
+
+double parseDuration(const std::string& text) {
+    const std::size_t digits = text.empty() ? 0 : text.size() - 1;
+    const char unit = text.empty() ? '\0' : text.back();
+    const double factor = unit == 's' ? 1.0 : unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 0.0;
+    double value = 0.0;
+    if (factor == 0.0 || !parseNumber(std::string_view(text).substr(0, digits), value) ||
+        !(value > 0.0) || !std::isfinite(value)) {
+        throw UsageError("--time: expected a time above 0 such as 90s, 10m or 1h, found '" + text +
+                         "'");
+    }
+    return value * factor;
+}
+
+PixelRect parseCrop(const std::string& text) {
+    const std::vector<std::string_view> parts = splitAtCommas(text);
+    PixelRect r;
+    if (parts.size() != 4 || !parseNumber(parts[0], r.x0) || !parseNumber(parts[1], r.x1) ||
+        !parseNumber(parts[2], r.y0) || !parseNumber(parts[3], r.y1) || r.x0 < 0 || r.y0 < 0 ||
+        r.x1 <= r.x0 || r.y1 <= r.y0) {
+        throw UsageError("--crop: expected pixels x0,x1,y0,y1 with x0 < x1 and y0 < y1, found '" +
+                         text + "'");
+    }
+    return r;
+}
+
+ReplayRequest parseReplay(const std::string& text) {
+    constexpr std::string_view kLight = "light:";
+    ReplayRequest r;
+    std::string_view rest = text;
+    r.light = rest.substr(0, kLight.size()) == kLight;
+    if (r.light) rest.remove_prefix(kLight.size());
+    const std::vector<std::string_view> parts = splitAtCommas(rest);
+    const bool parsed = r.light ? parts.size() == 2 && parseNumber(parts[0], r.path)
+                                : parts.size() == 3 && parseNumber(parts[0], r.x) &&
+                                      parseNumber(parts[1], r.y) && r.x >= 0 && r.y >= 0;
+    if (!parsed || !parseNumber(parts.back(), r.iteration)) {
+        throw UsageError("--replay: expected x,y,iteration or light:PATH,iteration, found '" +
+                         text + "'");
+    }
+    return r;
+}
+
+void requireSaneFilm(std::int64_t width, std::int64_t height) {
+    requireRange("--width", width, 1, kMaxImageSide);
+    requireRange("--height", height, 1, kMaxImageSide);
+    if (std::uint64_t(width) * std::uint64_t(height) > kMaxImagePixels) {
+        throw UsageError("--width, --height: expected at most " + std::to_string(kMaxImagePixels) +
+                         " pixels, found " + std::to_string(width) + " x " +
+                         std::to_string(height));
+    }
+}
+
+void checkOptions(RenderOptions& o) {
+    if (!o.displayServer.empty()) {
+        throw UsageError(
+            "--display-server: not there yet; leave it out and open the image that is written");
+    }
+    if (!o.checkpoint.empty()) {
+        throw UsageError(
+            "--checkpoint: not there yet; leave it out (an interrupt saves the image)");
+    }
+    requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
+    requireRange("--iterations", o.iterations, 1, 1'000'000'000);
+    requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
+    requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
+    requireReal("--aperture", o.aperture, 0.0, "a radius from 0 on");
+    requireReal("--focus", o.focus, 1e-30, "a distance above 0");
+    requireReal("--env-rotate", o.environmentRotation, -1e6, "an angle in degrees");
+    requireReal("--env-scale", o.environmentScale, 0.0, "a factor from 0 on");
+    requireReal("--exposure", o.exposure, -1000.0, "a number of stops");
+    if (!o.timeText.empty()) o.timeSeconds = parseDuration(o.timeText);
+    if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
+    if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
+    if (o.countSetup && !o.timeSeconds) {
+        throw UsageError(
+            "--count-setup: expected together with --time; add --time or leave it out");
+    }
+    if (o.scene.empty()) {
+        throw UsageError("SCENE.glb: expected the scene to render, found none; see --help");
+    }
+    if (o.effects) return;
+    if (o.method.empty()) {
+        throw UsageError("--method: expected a method's name, found none: see --list-methods");
+    }
+    if (o.output.empty() && !o.replay) {
+        throw UsageError("-o: expected the image to write, found none; add -o OUT.exr");
+    }
+    if (o.techniques && !o.replay && endingOf(o.output) != ".exr") {
+        throw UsageError("--techniques: expected an .exr to hold the layers, found '" + o.output +
+                         "'");
+    }
+}
+
+void checkOutputs(const RenderOptions& o) {
+    using Named = std::pair<const char*, const std::string*>;
+    const Named results[] = {{"-o", &o.output}, {"--log", &o.log}, {"--json", &o.common.json}};
+    const Named inputs[] = {
+        {"the scene", &o.scene}, {"--reference", &o.reference}, {"--env", &o.environment}};
+    const auto same = [](const std::string& a, const std::string& b) {
+        if (a.empty() || b.empty()) return false;
+        std::error_code ignored;
+        // Devices (/dev/null, /dev/stdout) may well be named twice.
+        return (a == b && !std::filesystem::is_character_file(a, ignored)) ||
+               (std::filesystem::is_regular_file(a, ignored) &&
+                std::filesystem::equivalent(a, b, ignored));
+    };
+    for (const Named& result : results) {
+        for (const Named& input : inputs) {
+            if (same(*result.second, *input.second)) {
+                throw UsageError(std::string(result.first) +
+                                 ": expected a file of its own, found " + input.first + ", " +
+                                 *input.second);
+            }
+        }
+        for (const Named& other : results) {
+            if (&other != &result && same(*result.second, *other.second)) {
+                throw UsageError(std::string(result.first) +
+                                 ": expected a file of its own, found " + other.first + ", " +
+                                 *other.second);
+            }
+        }
+    }
+    if (!o.output.empty()) requireWritable(o.output);
+    for (const std::string* path : {&o.log, &o.common.json}) {
+        if (!path->empty()) const AtomicFile probe(*path);
+    }
+}
+
+std::string commandLineText(int argc, const char* const* argv) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
+    std::string text;
+    for (int i = 0; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (i > 0) text += ' ';
+        if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) {
+            text += argument;
+            continue;
+        }
+        text += '\'';
+        for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        text += '\'';
+    }
+    return text;
+}
+
+}  // namespace lacuna

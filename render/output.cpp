@@ -1,0 +1,162 @@
+#include "render/output.h"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/method_help.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+std::uint64_t peakBytes() {
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+/// JSON has no infinity: the text "inf" or "nan" stands for it.
+json number(double value) {
+    return std::isfinite(value) ? json(value) : json(std::isnan(value) ? "nan" : "inf");
+}
+
+json numbers(const double (&values)[3]) {
+    return json::array({number(values[0]), number(values[1]), number(values[2])});
+}
+
+std::string rectText(const PixelRect& r) {
+    return std::to_string(r.x0) + "," + std::to_string(r.x1) + "," + std::to_string(r.y0) + "," +
+           std::to_string(r.y1);
+}
+
+/// EXR has 32-bit integers: larger ones become text.
+Attribute integerAttribute(std::uint64_t value) {
+    if (value <= std::uint64_t(std::numeric_limits<int>::max())) return int(value);
+    return std::to_string(value);
+}
+
+void setHeader(LayeredImage& image, const RenderReport& r) {
+    auto& a = image.attributes;
+    a["software"] = std::string("Lacuna");
+    a["softwareVersion"] = std::string(LACUNA_VERSION);  // `version` is a word of OpenEXR's own
+    a["commandLine"] = r.commandLine;
+    a["method"] = r.method->name;
+    a["parameters"] = parametersJson(*r.method, r.settings).dump();
+    a["seed"] = integerAttribute(r.seed);
+    a["iterations"] = integerAttribute(r.iterations);
+    a["renderTimeSeconds"] = r.seconds;
+    a["setupTimeSeconds"] = r.setupSeconds;
+    a["rays"] = double(r.statistics.totalRays());  // exact up to 2^53
+    a["invalidSamples"] = integerAttribute(r.statistics.invalidSamples);
+    a["sceneHash"] = r.sceneHash;
+    a["cacheHashes"] = json(r.cacheHashes).dump();
+    a["stopped"] = r.stopped;
+    a["maxDepth"] = r.limits.maxDepth;
+    if (r.crop != PixelRect{0, r.filmWidth, 0, r.filmHeight}) {
+        a["crop"] = rectText(r.crop);
+        a["fullSize"] = std::to_string(r.filmWidth) + "x" + std::to_string(r.filmHeight);
+    }
+    if (r.method->biased) a["biased"] = std::string("yes: the method is an experiment of a paper");
+}
+
+}  // namespace
+
+json parametersJson(const MethodRow& row, const Settings& settings) {
+    json object = json::object();
+    for (const Parameter& p : row.parameters) {
+        const double value = settings.real(p.name);
+        switch (p.kind) {
+            case Parameter::Kind::Integer:
+                object[p.name] = std::int64_t(value);
+                break;
+            case Parameter::Kind::Real:
+                object[p.name] = value;
+                break;
+            case Parameter::Kind::Switch:
+            case Parameter::Kind::Choice:
+                object[p.name] = valueText(p, value);
+                break;
+        }
+    }
+    return object;
+}
+
+LayeredImage composeImage(const RenderReport& report, const Film& film,
+                          const FeatureLayers* features, const TechniqueFilm* techniques) {
+    LayeredImage image(film.width(), film.height());
+    image.setRgb("", film.image());
+    image.setRgb("variance", film.variance());
+    if (features) {
+        image.setRgb("albedo", features->albedo);
+        const std::vector<Rgb>& normals = features->normal.pixels;
+        auto &x = image.channel("normal.X"), &y = image.channel("normal.Y"),
+             &z = image.channel("normal.Z");
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            x[i] = normals[i].r;
+            y[i] = normals[i].g;
+            z[i] = normals[i].b;
+        }
+        image.channel("Z") = features->z;
+    }
+    if (techniques) techniques->writeTo(image);
+    setHeader(image, report);
+    return image;
+}
+
+json reportJson(const RenderReport& r) {
+    json rays = json::object();
+    for (std::size_t i = 0; i < kRayKinds; ++i) rays[name(RayKind(i))] = r.statistics.rays[i];
+    json simulated = json::array(), leftOut = json::array(), reasons = json::object();
+    for (const Effect& e : r.effects) {
+        (e.simulated ? simulated : leftOut).push_back(e.name);
+        reasons[e.name] = e.reason;
+    }
+    json j{{"method", r.method->name},
+           {"parameters", parametersJson(*r.method, r.settings)},
+           {"biased", r.method->biased},
+           {"command_line", r.commandLine},
+           {"iterations", r.iterations},
+           {"seconds", r.seconds},
+           {"setup_seconds", r.setupSeconds},
+           {"rays", r.statistics.totalRays()},
+           {"rays_by_kind", rays},
+           {"light_paths", r.lightPaths},
+           {"invalid_samples", r.statistics.invalidSamples},
+           {"invalid_replays", r.statistics.invalidReplays},
+           {"peak_bytes", peakBytes()},
+           {"mean_rgb", numbers(r.mean.mean)},
+           {"mean_rgb_stderr", numbers(r.mean.standardError)},
+           {"width", r.crop.width()},
+           {"height", r.crop.height()},
+           {"film", {r.filmWidth, r.filmHeight}},
+           {"crop", {r.crop.x0, r.crop.x1, r.crop.y0, r.crop.y1}},
+           {"max_depth", r.limits.maxDepth},
+           {"rr_depth", r.limits.rouletteDepth},
+           {"threads", r.threads},
+           {"seed", r.seed},
+           {"warmup_iterations", r.warmupIterations},
+           {"phases", r.phaseSeconds},
+           {"effects", {{"simulated", simulated}, {"left_out", leftOut}, {"reasons", reasons}}},
+           {"scene_hash", r.sceneHash},
+           {"cache_hashes", r.cacheHashes},
+           {"warnings", r.warnings},
+           {"stopped", r.stopped}};
+    if (r.verify) {
+        j["verify"] = {{"max_difference", r.verify->maxDifference},
+                       {"paths", r.verify->paths},
+                       {"not_a_number", r.verify->notNumbers}};
+        if (!r.verify->replay.empty()) j["verify"]["replay"] = r.verify->replay;
+    }
+    if (r.error) {
+        j["error"] = {{"mae", number(r.error->mae)},
+                      {"rmse", number(r.error->rmse)},
+                      {"mape", number(r.error->mape)},
+                      {"relmse", number(r.error->relmse)}};
+    }
+    return j;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,173 @@
+#include "render/replay.h"
+
+#include <cstdio>
+
+#include "libcore/base/error.h"
+#include "libcore/bidir/verify.h"
+#include "render/interrupt.h"
+#include "render/stage.h"
+
+namespace lacuna {
+namespace {
+
+const char* nameOf(VertexKind kind) {
+    switch (kind) {
+        case VertexKind::Lens:
+            return "lens";
+        case VertexKind::Surface:
+            return "surface";
+        case VertexKind::LightSource:
+            return "light";
+        case VertexKind::Infinite:
+            return "infinite";
+    }
+    return "?";
+}
+
+const char* nameOf(ScatterEvent event) {
+    switch (event) {
+        case ScatterEvent::Smooth:
+            return "smooth";
+        case ScatterEvent::DeltaReflection:
+            return "delta-reflection";
+        case ScatterEvent::DeltaTransmission:
+            return "delta-transmission";
+    }
+    return "?";
+}
+
+class Printer {
+  public:
+    Printer(const Walker& walker) : walker_(walker) {}
+
+    /// z_0 .. or y_0 .., as the walk left them.
+    void subpath(const char* title, char letter, Subpath path) const {
+        std::printf("%s: %zu vertices\n", title, path.size());
+        for (const PathVertex& v : path) vertex(letter, v);
+    }
+
+    void contribution(const PathEvent& e) {
+        const int k = e.path.edges, s = k + 1 - e.t;
+        double sum = 0.0;
+        for (int t = 1; t <= k + 1; ++t) sum += misWeight(e.path, e.techniques, t);
+        std::printf(
+            "contribution %d: s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products %.9g, "
+            "sum over strategies %.9g)",
+            ++contributions_, s, e.t, double(e.contribution.r), double(e.contribution.g),
+            double(e.contribution.b), e.weight,
+            misWeightByProducts(walker_, e.path, e.techniques, e.t), sum);
+        if (e.proposal) {
+            std::printf(", selector weight %.9g, label %u", e.proposal->weight, e.proposal->label);
+        }
+        std::printf("\n");
+        for (int i = 0; i <= k; ++i) pathVertex(e, i);
+        total_ += e.contribution;
+    }
+
+    void finish() const {
+        std::printf("total: %d contributions, %.9g %.9g %.9g\n", contributions_, double(total_.r),
+                    double(total_.g), double(total_.b));
+    }
+
+  private:
+    /// In the file's coordinates; directions at infinity as they are.
+    Vec3d placeOf(const PathVertex& v) const {
+        return v.infinite() ? Vec3d(v.position) : Vec3d(v.position) + walker_.scene().centre();
+    }
+
+    void vertex(char letter, const PathVertex& v) const {
+        const Vec3d p = placeOf(v);
+        std::printf("  %c%u %s %s %.9g %.9g %.9g, normal %.6g %.6g %.6g, %s", letter,
+                    unsigned(v.index), nameOf(v.kind), v.infinite() ? "towards" : "at", p.x, p.y,
+                    p.z, double(v.ng.x), double(v.ng.y), double(v.ng.z), nameOf(v.event));
+        if (v.light != kNone) std::printf(", light %u", v.light);
+        std::printf(", pdfA %.9g, reverse pdfA %.9g, survival %.6g, throughput %.9g %.9g %.9g\n",
+                    double(v.pdfA), double(v.pdfReverseA), double(v.survival),
+                    double(v.throughput.r), double(v.throughput.g), double(v.throughput.b));
+    }
+
+    /// A vertex of a closed path with the densities that its weight is made from.
+    void pathVertex(const PathEvent& e, int i) const {
+        const auto n = std::size_t(i);
+        const PathVertex& v = *e.path.vertex[n];
+        const Vec3d p = placeOf(v);
+        std::printf(
+            "  x%d %s %s %.9g %.9g %.9g, %s, light pdfA %.9g, eye pdfA %.9g, n r %.9g\n", i,
+            nameOf(v.kind), v.infinite() ? "towards" : "at", p.x, p.y, p.z,
+            e.path.delta[n] ? "delta" : "smooth", double(e.path.lightPdfA[n]),
+            double(e.path.eyePdfA[n]),
+            i <= e.path.edges ? effectiveCount(e.path, e.techniques, e.path.edges + 1 - i) : 0.0);
+    }
+
+    const Walker& walker_;
+    int contributions_ = 0;
+    Rgb total_;
+};
+
+void requireSample(const ReplayRequest& sample, const Camera::Film& film,
+                   std::uint64_t lightPaths) {
+    if (sample.light ? sample.path >= lightPaths
+                     : sample.x >= film.width || sample.y >= film.height) {
+        throw UsageError(sample.light
+                             ? "--replay: expected one of " + std::to_string(lightPaths) +
+                                   " light subpaths, found " + std::to_string(sample.path)
+                             : "--replay: expected a pixel of " + std::to_string(film.width) +
+                                   " x " + std::to_string(film.height) + ", found " +
+                                   std::to_string(sample.x) + "," + std::to_string(sample.y));
+    }
+}
+
+}  // namespace
+
+int replay(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+           const ThreadPool& pool) {
+    const ReplayRequest sample = *options.replay;
+    const InterruptGuard interrupt;
+    Progress progress(options.common.quiet, interrupt.requested());
+    const Stage stage = loadStage(options, row, settings, pool, progress);
+    const Camera::Film film = stage.camera->film();
+    RenderSettings whole = stage.settings;
+    whole.crop = {0, film.width, 0, film.height};  // a sample does not depend on the crop
+
+    const std::unique_ptr<Method> method = row.create(settings);
+    BidirIntegrator integrator(*stage.scene, *stage.camera, row.techniques, *method, whole, pool);
+    requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
+
+    // Streams are addressed, so a sample needs nothing of the iterations before it but what the
+    // method learned. The warm-up is always run (it is part of every method's beginning);
+    // iterations 0 .. i-1 only for methods that say they learn from them: they cost as much as
+    // rendering them.
+    IterationStatistics ignored;
+    progress.phase("warm-up");
+    bool complete = integrator.warmUp(interrupt.requested(), ignored);
+    if (complete && method->learns()) {
+        progress.phase("iterations before it");
+        std::vector<Rgb> pixels(std::size_t(film.width) * std::size_t(film.height));
+        for (std::uint32_t i = 0; complete && i < sample.iteration; ++i) {
+            complete = integrator.render(i, pixels, interrupt.requested(), ignored);
+        }
+    }
+    if (!complete) return kInterruptedExit;
+
+    progress.phase("replaying");
+    const Walker walker(*stage.scene, *stage.camera, whole.limits);
+    Printer printer(walker);
+    const PathObserver print = [&](const PathEvent& event) { printer.contribution(event); };
+    if (sample.light) {
+        std::printf("%s, light subpath %llu of iteration %u, seed %llu\n", row.name.c_str(),
+                    static_cast<unsigned long long>(sample.path), sample.iteration,
+                    static_cast<unsigned long long>(whole.seed));
+        const auto replayed = integrator.replayLightPath(sample.iteration, sample.path, print);
+        printer.subpath("light subpath", 'y', replayed.light);
+    } else {
+        std::printf("%s, pixel %d, %d of iteration %u, seed %llu\n", row.name.c_str(), sample.x,
+                    sample.y, sample.iteration, static_cast<unsigned long long>(whole.seed));
+        const auto replayed = integrator.replayEyePath(sample.iteration, sample.x, sample.y, print);
+        printer.subpath("eye subpath", 'z', replayed.eye);
+        if (row.techniques.ownLightPath) printer.subpath("own light subpath", 'y', replayed.light);
+    }
+    printer.finish();
+    return 0;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,257 @@
+#include "render/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/bidir/features.h"
+#include "libcore/image/image_io.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::uint64_t kDefaultIterations = 64;
+constexpr double kVerifyTolerance = 1e-4;
+const std::atomic<bool> kNever{false};
+
+/// Adds the time of its life to `seconds`.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+    ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_;
+};
+
+Image cropped(const Image& image, const PixelRect& rect) {
+    Image part(rect.width(), rect.height());
+    for (int y = 0; y < rect.height(); ++y) {
+        for (int x = 0; x < rect.width(); ++x) part.at(x, y) = image.at(rect.x0 + x, rect.y0 + y);
+    }
+    return part;
+}
+
+std::uint64_t iterationLimit(const RenderOptions& options) {
+    if (options.iterations) return std::uint64_t(*options.iterations);
+    return options.timeSeconds ? 0 : kDefaultIterations;
+}
+
+}  // namespace
+
+Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+                 const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress)
+    : options_(options),
+      pool_(pool),
+      interrupt_(interrupt),
+      progress_(progress),
+      stage_(loadStage(options, row, settings, pool, progress)),
+      method_(row.create(settings)),
+      film_(stage_.settings.crop.width(), stage_.settings.crop.height()) {
+    loadReference();
+    integrator_ = std::make_unique<BidirIntegrator>(*stage_.scene, *stage_.camera, row.techniques,
+                                                    *method_, stage_.settings, pool_);
+    if (options_.techniques) {
+        techniques_.emplace(film_.width(), film_.height(), stage_.settings.limits.maxDepth);
+        integrator_->setTechniqueFilm(&*techniques_);
+    }
+    if (options_.verify) {
+        verifier_ = std::make_unique<WeightVerifier>(*stage_.scene, *stage_.camera,
+                                                     stage_.settings.limits, pool_);
+        integrator_->setObserver([this](const PathEvent& event) { verifier_->check(event); });
+    }
+    if (options_.prepare) {
+        progress_.remark("--prepare: " + row.name + " needs no caches: nothing to build");
+    }
+
+    RenderReport& r = report_;
+    r.commandLine = options.commandLine;
+    r.method = &row;
+    r.settings = settings;
+    r.seed = options.common.seed;
+    r.threads = pool.threads();
+    r.filmWidth = stage_.camera->film().width;
+    r.filmHeight = stage_.camera->film().height;
+    r.crop = stage_.settings.crop;
+    r.limits = stage_.settings.limits;
+    r.lightPaths = row.techniques.splats ? integrator_->lightPaths() : 0;
+    r.warmupIterations = method_->warmupIterations();
+    r.setupSeconds = stage_.setupSeconds;
+    r.phaseSeconds = stage_.phaseSeconds;
+    r.sceneHash = stage_.scene->description().contentHash;
+    r.effects = stage_.effects;
+    r.warnings = stage_.warnings;
+}
+
+Session::~Session() = default;
+
+void Session::loadReference() {
+    if (!options_.reference.empty()) {
+        Image image = readImage(options_.reference);
+        const Camera::Film film = stage_.camera->film();
+        if (image.width == film.width && image.height == film.height) {
+            image = cropped(image, stage_.settings.crop);
+        } else if (image.width != film_.width() || image.height != film_.height()) {
+            throw InputError(options_.reference + ": expected " + std::to_string(film_.width()) +
+                             " x " + std::to_string(film_.height()) + " pixels, found " +
+                             std::to_string(image.width) + " x " + std::to_string(image.height) +
+                             "; render at that size (--width, --height)");
+        }
+        reference_.emplace(std::move(image), options_.reference);
+    }
+    if (!options_.log.empty()) log_.emplace(options_.log);
+}
+
+int Session::run() {
+    render();
+    save();
+    warnAboutDefects();
+    if (!logFailure_.empty()) throw RunError(logFailure_);
+    return report_.stopped == "interrupt" ? kInterruptedExit : 0;
+}
+
+/// The next iteration is taken to last as long as the last one. It is begun if it ends in time, or
+/// passes the limit by no more than half of itself and a tenth of the limit.
+bool Session::mayBegin(double lastSeconds) const {
+    const double limit = *options_.timeSeconds;
+    const double spent = report_.seconds + (options_.countSetup ? report_.setupSeconds : 0.0);
+    return spent < limit && spent + lastSeconds <= limit + std::min(0.5 * lastSeconds, 0.1 * limit);
+}
+
+void Session::render() {
+    const std::uint64_t limit = iterationLimit(options_);
+    const auto tell = [&] {
+        progress_.iterations({report_.iterations, limit, report_.statistics.totalRays(),
+                              report_.seconds, options_.timeSeconds.value_or(0.0)});
+    };
+    if (report_.warmupIterations > 0) progress_.phase("warm-up");
+    {
+        const Stopwatch watch(report_.seconds);
+        integrator_->warmUp(kNever, report_.statistics);
+    }
+    progress_.phase("rendering");
+    tell();
+    std::vector<Rgb> pixels(std::size_t(film_.width()) * std::size_t(film_.height()));
+    for (;;) {
+        // The first iteration is always finished, so that there is something to save. So is every
+        // one with technique layers: a part of one in them could not be taken out again.
+        const bool first = report_.iterations == 0;
+        const std::atomic<bool>& cancel = first || techniques_ ? kNever : interrupt_.requested();
+        double seconds = 0.0;
+        bool complete = false;
+        IterationStatistics statistics;
+        {
+            const Stopwatch watch(seconds);
+            complete =
+                integrator_->render(std::uint32_t(report_.iterations), pixels, cancel, statistics);
+            if (complete) film_.add(pixels, pool_);
+        }
+        report_.seconds += seconds;
+        report_.statistics.add(statistics);
+        if (complete) {
+            ++report_.iterations;
+            afterIteration();
+            tell();
+        }
+        if (interrupt_.requested()) {
+            report_.stopped = "interrupt";
+        } else if (limit > 0 && report_.iterations >= limit) {
+            report_.stopped = "iterations";
+        } else if (options_.timeSeconds && !mayBegin(seconds)) {
+            report_.stopped = "time";
+        }
+        if (!report_.stopped.empty()) return;
+    }
+}
+
+void Session::afterIteration() {
+    if (log_ && log_->wants(report_.seconds)) logRow();
+}
+
+void Session::logRow() {
+    CurveRow row{report_.iterations, report_.seconds, report_.setupSeconds,
+                 report_.statistics.totalRays(), std::nullopt};
+    double seconds = 0.0;
+    {
+        const Stopwatch watch(seconds);
+        if (reference_)
+            row.error = report_.error = reference_->compare(film_.image(), options_.output);
+        try {
+            log_->write(row);
+        } catch (const RunError& e) {
+            logFailure_ = e.what();
+            log_.reset();
+        }
+    }
+    report_.phaseSeconds["compare"] += seconds;
+}
+
+void Session::save() {
+    if (log_ && log_->lastIteration() != report_.iterations) logRow();
+    if (reference_ && !log_) report_.error = reference_->compare(film_.image(), options_.output);
+
+    for (const auto& [phase, seconds] : report_.statistics.phaseSeconds) {
+        report_.phaseSeconds[phase] += seconds;
+    }
+    report_.mean = film_.meanColour();
+    if (verifier_) report_.verify = verifier_->result();
+
+    progress_.phase("saving");
+    std::optional<FeatureLayers> features;
+    if (endingOf(options_.output) == ".exr") {
+        const Stopwatch watch(report_.phaseSeconds["features"]);
+        features = renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                  options_.common.seed, pool_);
+    }
+    {
+        const Stopwatch watch(report_.phaseSeconds["save"]);
+        writeImage(options_.output,
+                   composeImage(report_, film_, features ? &*features : nullptr,
+                                techniques_ ? &*techniques_ : nullptr),
+                   options_.exposure);
+    }
+    if (!options_.common.json.empty()) {
+        writeFileAtomically(options_.common.json, reportJson(report_).dump(2) + "\n");
+    }
+    const double rays = double(report_.statistics.totalRays());
+    std::printf("%s: %d x %d pixels, %s, %llu iteration%s in %.3g s (setup %.3g s), %.4g rays%s\n",
+                options_.output.c_str(), film_.width(), film_.height(),
+                report_.method->name.c_str(), static_cast<unsigned long long>(report_.iterations),
+                report_.iterations == 1 ? "" : "s", report_.seconds, report_.setupSeconds, rays,
+                report_.stopped == "interrupt" ? " (interrupted)" : "");
+    if (report_.error) {
+        std::printf("mae %.6g rmse %.6g mape %.6g relmse %.6g\n", report_.error->mae,
+                    report_.error->rmse, report_.error->mape, report_.error->relmse);
+    }
+    if (report_.verify) {
+        std::printf("verify: largest difference of a weight %.3g over %llu paths\n",
+                    report_.verify->maxDifference,
+                    static_cast<unsigned long long>(report_.verify->paths));
+    }
+}
+
+std::string Session::replayCommand(const std::string& replay) const {
+    return options_.commandLine + " --replay " + replay;
+}
+
+void Session::warnAboutDefects() {
+    const IterationStatistics& s = report_.statistics;
+    if (s.invalidSamples > 0) {
+        progress_.warning("warning: " + std::to_string(s.invalidSamples) +
+                          " samples were not finite and left out; see one with: " +
+                          replayCommand(s.invalidReplays.at(0)));
+    }
+    if (report_.verify && !(report_.verify->maxDifference <= kVerifyTolerance)) {
+        progress_.warning("warning: a weight differs from its full product by " +
+                          std::to_string(report_.verify->maxDifference) +
+                          "; see it with: " + replayCommand(report_.verify->replay));
+    }
+}
+
+}  // namespace lacuna

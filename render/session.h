@@ -1,0 +1,54 @@
+// One render from the loaded scene to the saved image: warm-up, iterations, curve, result.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "libcore/image/error_metrics.h"
+#include "render/curve_log.h"
+#include "render/interrupt.h"
+#include "render/options.h"
+#include "render/output.h"
+#include "render/progress.h"
+#include "render/stage.h"
+
+namespace lacuna {
+
+class Session {
+  public:
+    /// All references must outlive the session. Loads the scene.
+    Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+            const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress);
+    ~Session();
+
+    /// Renders and saves; what was written goes to stdout. Returns the exit code.
+    int run();
+
+  private:
+    void loadReference();
+    void render();
+    bool mayBegin(double lastSeconds) const;
+    void afterIteration();
+    void logRow();
+    void save();
+    void warnAboutDefects();
+    std::string replayCommand(const std::string& replay) const;
+
+    const RenderOptions& options_;
+    const ThreadPool& pool_;
+    const InterruptGuard& interrupt_;
+    Progress& progress_;
+
+    Stage stage_;
+    std::unique_ptr<Method> method_;
+    std::unique_ptr<BidirIntegrator> integrator_;
+    Film film_;
+    std::optional<TechniqueFilm> techniques_;
+    std::unique_ptr<WeightVerifier> verifier_;
+    std::optional<ErrorReference> reference_;
+    std::optional<CurveLog> log_;
+    std::string logFailure_;  ///< a full disk must not cost the picture
+    RenderReport report_;
+};
+
+}  // namespace lacuna

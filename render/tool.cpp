@@ -1,0 +1,70 @@
+#include "render/tool.h"
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+namespace {
+
+/// One error, one line, whatever a library or a file name put into the text.
+int report(std::string message, int exitCode) {
+    for (char& c : message) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    }
+    std::fprintf(stderr, "%s\n", message.c_str());
+    return exitCode;
+}
+
+}  // namespace
+
+void addCommonOptions(CLI::App& app, CommonOptions& options) {
+    app.add_option("--cache", options.cacheDirectory, "Directory of caches (default: NAME.cache)")
+        ->type_name("DIR");
+    app.add_option("--threads", options.threads, "Number of threads (default: all)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    app.add_option("--seed", options.seed, "Seed of all random numbers (default: 1)")
+        ->type_name("N");
+    app.add_option("--json", options.json, "Write everything measured to this file")
+        ->type_name("FILE");
+    app.add_flag("--quiet", options.quiet, "No progress and no remarks on stderr");
+    app.add_flag("-v,--verbose", options.verbose, "More on stderr");
+}
+
+std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
+    app.set_version_flag("--version", app.get_name() + " " + LACUNA_VERSION);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& done) {  // --help, --version
+        return app.exit(done);
+    } catch (const CLI::ParseError& e) {
+        throw UsageError("command line: " + std::string(e.what()) + "; see " + app.get_name() +
+                         " --help");
+    }
+    return std::nullopt;
+}
+
+int runTool(const std::function<int()>& body) {
+    try {
+        const int exitCode = body();
+        std::cout.flush();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) {
+            return report("stdout: expected to write results, found it closed or full", 1);
+        }
+        return exitCode;
+    } catch (const Error& e) {
+        return report(e.what(), e.exitCode());
+    } catch (const std::bad_alloc&) {
+        return report("memory: expected more, found none left; use a smaller image or scene", 1);
+    } catch (const std::exception& e) {
+        return report("internal error: " + std::string(e.what()) + "; please report it", 1);
+    } catch (...) {
+        return report("internal error of unknown kind; please report it", 1);
+    }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,34 @@
+// What every command-line tool of ours shares: options, exit codes, one line per error.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace lacuna {
+
+/// Options that every tool takes (interface.md, "Common"), so that scripts can pass them to all.
+struct CommonOptions {
+    std::string cacheDirectory;  // empty: beside the scene
+    int threads = 0;             // 0: all
+    std::uint64_t seed = 1;
+    std::string json;  // empty: none
+    bool quiet = false;
+    bool verbose = false;
+};
+
+/// --cache --threads --seed --json --quiet -v. `app` and `options` must outlive the parsing.
+void addCommonOptions(CLI::App& app, CommonOptions& options);
+
+/// Parses, after adding --version. nullopt: go on. A value: help or version was printed, exit with
+/// it. Throws UsageError for a wrong command line.
+std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv);
+
+/// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and the
+/// code of its kind: Error its own, everything else 1. Results that could not reach stdout are a
+/// failure (1) as well.
+int runTool(const std::function<int()>& body);
+
+}  // namespace lacuna
