@@ -300,6 +300,10 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
     const double weight = misWeight(worker.path, techniques_, closed.t);
     const Rgb unweighted = closed.contribution * float(scale);
     const Rgb value = unweighted * float(weight);
+    if (observer_) {
+        observer_({worker.path, closed.t, weight, value, pixelIndex, proposal, techniques_,
+                   iteration, sample});
+    }
     if (!isFinite(value)) {
         ++chunk.invalidSamples;
         if (chunk.invalidReplays.size() < kReplaysKept) {
@@ -311,9 +315,6 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
                                     std::to_string(iteration));
         }
         return;
-    }
-    if (observer_) {
-        observer_({worker.path, closed.t, weight, value, pixelIndex, proposal, techniques_});
     }
     const int s = worker.path.edges + 1 - closed.t;
     if (ownPixel) {
@@ -346,8 +347,8 @@ void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& s
     if (!pixels_.empty()) addSplats(splats, pixels_, threads_);
 }
 
-void BidirIntegrator::replayEyePath(std::uint32_t iteration, int x, int y,
-                                    const PathObserver& observer) {
+BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t iteration, int x, int y,
+                                                         const PathObserver& observer) {
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
     techniques_ = freeze(iteration);
@@ -361,10 +362,12 @@ void BidirIntegrator::replayEyePath(std::uint32_t iteration, int x, int y,
     const PathObserver before = std::exchange(observer_, observer);
     eyePath(iteration, x, y, *workers_[0], chunk, pixel);
     observer_ = before;
+    return {workers_[0]->eye, workers_[0]->light};
 }
 
-void BidirIntegrator::replayLightPath(std::uint32_t iteration, std::uint64_t index,
-                                      const PathObserver& observer) {
+BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t iteration,
+                                                           std::uint64_t index,
+                                                           const PathObserver& observer) {
     techniques_ = freeze(iteration);
     Chunk chunk;
     Rng rng(settings_.seed, iteration, StreamKind::LightPath, index);
@@ -373,6 +376,7 @@ void BidirIntegrator::replayLightPath(std::uint32_t iteration, std::uint64_t ind
     const PathObserver before = std::exchange(observer_, observer);
     splatLightPath(worker.light, iteration, index, rng, worker, chunk);
     observer_ = before;
+    return {{}, worker.light};
 }
 
 std::vector<RecordedRay> BidirIntegrator::takeRecording() {

@@ -33,8 +33,10 @@ struct PathEvent {
     std::uint32_t pixel;          ///< row-major in the crop
     const Proposal* proposal;     ///< connections only
     const Techniques& techniques;
+    std::uint32_t iteration;
+    std::uint64_t sample;         ///< t = 1: light subpath; else pixel, row-major in the full film
 };
-/// Called from many threads at once.
+/// Called from many threads at once; for values that are not finite too.
 using PathObserver = std::function<void(const PathEvent&)>;
 
 /// What an iteration counted, merged in an order that does not depend on threads.
@@ -66,10 +68,14 @@ class BidirIntegrator {
                 IterationStatistics& statistics);
 
     /// Runs one sample alone after the light pass of its iteration: eye path through a pixel of the
-    /// full film, or one light subpath. Iterations before it must have been run.
-    void replayEyePath(std::uint32_t iteration, int x, int y, const PathObserver& observer);
-    void replayLightPath(std::uint32_t iteration, std::uint64_t index,
-                         const PathObserver& observer);
+    /// full film, or one light subpath. Iterations before it must have been run where the method
+    /// learns from them. Returns the walks' vertices, valid until the next call of anything.
+    struct Replayed {
+        Subpath eye, light;
+    };
+    Replayed replayEyePath(std::uint32_t iteration, int x, int y, const PathObserver& observer);
+    Replayed replayLightPath(std::uint32_t iteration, std::uint64_t index,
+                             const PathObserver& observer);
 
     /// Per-technique layers to fill as well, or null.
     void setTechniqueFilm(TechniqueFilm* film) { techniqueFilm_ = film; }

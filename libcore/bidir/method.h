@@ -113,6 +113,8 @@ class Method {
     virtual void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const = 0;
     /// What later iterations may learn from; after warm-ups as well.
     virtual void observe(const LightPool& pool) { (void)pool; }
+    /// Whether an iteration depends on earlier ones beyond the warm-up: --replay then runs them again.
+    virtual bool learns() const { return false; }
 };
 
 }  // namespace lacuna

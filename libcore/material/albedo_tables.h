@@ -71,7 +71,7 @@ class AlbedoTable {
     std::vector<float> averages_;  // [alpha]
 };
 
-/// One table per distinct index of refraction; immutable, read by all threads.
+/// One table per distinct index of refraction; immutable, read by all threads. Bsdfs point into it.
 class AlbedoTables {
   public:
     AlbedoTables() = default;

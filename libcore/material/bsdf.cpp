@@ -85,14 +85,6 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     flags_ = std::uint8_t(flags | (kinds == 1 ? unsigned(kOneLobe) : 0u));
 }
 
-bool Bsdf::connectable() const {
-    return has(kDiffuse | kRoughLayers | kRoughGlass);
-}
-
-bool Bsdf::isBlack() const {
-    return !has(kDiffuse | kLayers | kGlass);
-}
-
 float Bsdf::survivalAlbedo() const {
     // Hemispherical means of Fresnel's reflectance; glass from its inside, where total internal
     // reflection makes it largest: 1 - (1 - F_avg) / ior^2.

@@ -101,8 +101,8 @@ class Bsdf {
     std::optional<BsdfSample> sample(Side side, Vec3 from, float uLobe, float u1, float u2) const;
 
     /// Whether any lobe has a density: only then may a path be connected here.
-    bool connectable() const;
-    bool isBlack() const;
+    bool connectable() const { return has(kDiffuse | kRoughLayers | kRoughGlass); }
+    bool isBlack() const { return !has(kDiffuse | kLayers | kGlass); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;
     /// Diffuse and specular colour together, for the albedo.* image layer.
@@ -151,8 +151,9 @@ class Bsdf {
 
     void addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
                             const Choice& light, BsdfEvaluation& out) const;
-    BsdfEvaluation roughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair) const;
-    BsdfEvaluation roughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair) const;
+    void addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
+                                  BsdfEvaluation& out) const;
+    void addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair, BsdfEvaluation& out) const;
 
     // 80 bytes: it lives in every path vertex.
     const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse

@@ -5,7 +5,7 @@
 //     K = D(h) |dw_h / dw_to| |v.h| without the index of the side `to` lies on:
 //         reflection  D / 4,   refraction  D |e.h| |l.h| / |H|^2,   H = eta_e e + eta_l l
 //     f_ns   = R eta_eye^2 K G2 / (c_e c_l)             [Walter07 eq 20, 21]
-//     pdfW   = pmf eta_to^2 K G1(from) / c_from         [Heitz18 eq 17, Walter07 eq 17]
+//     pdfW   = pmf eta_to^2 K G1(from) / c_from         [Heitz18; Walter07 eq 14, 17]
 //
 // R: reflectance or transmittance at h; pmf: probability of the lobe given `from`, times F or 1 - F
 // for glass; eta: 1 for reflections. Dropping K and the G's common limit leaves the delta events'
@@ -21,6 +21,7 @@
 
 namespace lacuna {
 
+// One result variable per function, filled in place: a copy of it would wait for its parts' stores.
 BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
     BsdfEvaluation out;
     Pair pair;
@@ -29,8 +30,11 @@ BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
     }
     if (!pair.reflects()) {
         if (has(kRoughGlass)) {
-            return has(kThin) ? roughThinTransmission(toEye, toLight, pair)
-                              : roughRefraction(toEye, toLight, pair);
+            if (has(kThin)) {
+                addRoughThinTransmission(toEye, toLight, pair, out);
+            } else {
+                addRoughRefraction(toEye, toLight, pair, out);
+            }
         }
         return out;
     }
@@ -87,7 +91,8 @@ void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const 
 
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
 // Mirroring toLight about ns leaves its tangential part, hence H x n, as it is.
-BsdfEvaluation Bsdf::roughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair) const {
+void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
+                                    BsdfEvaluation& out) const {
     const float ce = pair.eyeAbs();
     const float cl = pair.lightAbs();
     const float hn = ce + cl;
@@ -97,17 +102,14 @@ BsdfEvaluation Bsdf::roughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair&
     const float se = ggx::smithS(ce, alpha_ * alpha_);
     const float sl = ggx::smithS(cl, alpha_ * alpha_);
     const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
-
-    BsdfEvaluation out;
     out.f =
         baseColor_ * (glass_ * transmit * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
     out.pdfWToLight = choose(ce).glass * transmit * k * ggx::g1OverCosine(ce, se);
     out.pdfWToEye = choose(cl).glass * transmit * k * ggx::g1OverCosine(cl, sl);
-    return out;
 }
 
-BsdfEvaluation Bsdf::roughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair) const {
-    BsdfEvaluation out;
+void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
+                              BsdfEvaluation& out) const {
     const bool eyeOutside = pair.eye > 0.0f;
     const Vec3 o = eyeOutside ? toEye : toLight;
     const Vec3 i = eyeOutside ? toLight : toEye;
@@ -119,7 +121,7 @@ BsdfEvaluation Bsdf::roughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair)
     const float oh = -(1.0f + ior_ * cosineIO);  // o.H
     const float ih = -(cosineIO + ior_);         // i.H
     if (!(hn > 0.0f && oh > 0.0f && ih < 0.0f)) {
-        return out;  // no microfacet refracts one into the other
+        return;  // no microfacet refracts one into the other
     }
     const float cross2 = lengthSquared(cross(o + i * ior_, ns_));
     const float h2 = hn * hn + cross2;
@@ -137,7 +139,6 @@ BsdfEvaluation Bsdf::roughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair)
     out.pdfWToLight =
         choose(ce).glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
     out.pdfWToEye = choose(cl).glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
-    return out;
 }
 
 BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event) const {

@@ -26,72 +26,76 @@ Vec3 refracted(Vec3 from, Vec3 n, float cosine, float eta) {
     return n * (cosine * inverse - cosineT) - from * inverse;
 }
 
+/// A visible normal of the GGX lobe about `n`, seen from `from`.
+Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float u2) {
+    const Vec3 tangential = from - n * cosine;
+    const float sine2 = lengthSquared(tangential);
+    // Nearly along n any tangent will do: the lobe's asymmetry there is of the order of the sine.
+    const bool tilted = sine2 > 1e-6f;
+    const float sine = tilted ? std::sqrt(sine2) : 0.0f;
+    const Vec3 s = tilted ? tangential * (1.0f / sine) : Frame(n).s;
+    const Vec3 h = ggx::visibleNormal(sine, cosine, alpha, concentricDisk(u1, u2));
+    return renormalize(s * h.x + cross(n, s) * h.y + n * h.z);
+}
+
 }  // namespace
 
 std::optional<BsdfSample> Bsdf::sample(Side side, Vec3 from, float uLobe, float u1,
                                        float u2) const {
+    std::optional<BsdfSample> result;
     const float fromS = dot(from, ns_);
     if (isBlack() || !(std::abs(fromS) >= kMinCosine)) {
-        return std::nullopt;
+        return result;
     }
     const bool front = fromS > 0.0f;
     const Vec3 n = front ? ns_ : -ns_;
     const float cosine = std::min(1.0f, std::abs(fromS));
     const Choice choice = choose(cosine);
 
-    BsdfSample s;
-    s.event = ScatterEvent::Smooth;
+    Vec3 to;
+    ScatterEvent event = ScatterEvent::Smooth;
     // The probabilities add up to 1 but for rounding: the last lobe that exists takes the rest.
     if (uLobe < choice.diffuse || !has(kLayers | kGlass)) {
-        s.to = Frame(n).toWorld(cosineHemisphere(u1, u2));
+        to = Frame(n).toWorld(cosineHemisphere(u1, u2));
     } else {
         const bool glass = has(kGlass) && !(uLobe < choice.diffuse + choice.layers);
         const bool rough = has(glass ? kRoughGlass : kRoughLayers);
-        Vec3 h = n;
-        float hCosine = cosine;
-        if (rough) {
-            const Frame frame(n);
-            const Vec2 p = concentricDisk(u1, u2);
-            h = frame.toWorld(ggx::visibleNormal(frame.toLocal(from), alpha_, p.x, p.y));
-            hCosine = std::min(1.0f, dot(from, h));
-            if (!(hCosine > 0.0f)) {
-                return std::nullopt;
-            }
+        const Vec3 h = rough ? visibleNormal(from, n, cosine, alpha_, u1, u2) : n;
+        const float hCosine = rough ? std::min(1.0f, dot(from, h)) : cosine;
+        if (!(hCosine > 0.0f)) {
+            return result;
         }
         bool transmits = false;
         if (glass) {
             // What is left of uLobe decides between reflection (F) and transmission (1 - F).
             const float u = (uLobe - choice.diffuse - choice.layers) / choice.glass;
-            transmits = !(u < fresnelDielectric(hCosine, relativeIndex(front)));
+            // Never transmission where F is 1, though rounding may bring u up to 1.
+            const float fresnel = fresnelDielectric(hCosine, relativeIndex(front));
+            transmits = !(u < fresnel) && fresnel < 1.0f;
         }
         if (!transmits) {
-            s.to = reflected(from, h, hCosine);
+            to = reflected(from, h, hCosine);
         } else if (!has(kThin)) {
-            s.to = refracted(from, h, hCosine, relativeIndex(front));
+            to = refracted(from, h, hCosine, relativeIndex(front));
         } else if (rough) {
             const Vec3 mirrored = reflected(from, h, hCosine);
-            s.to = mirrored - n * (2.0f * dot(mirrored, n));
-            if (!(dot(mirrored, n) > 0.0f)) {
-                return std::nullopt;  // the lobe lies beyond the horizon: not on the other side
-            }
+            to = mirrored - n * (2.0f * dot(mirrored, n));
         } else {
-            s.to = -from;
+            to = -from;
         }
         if (!rough) {
-            s.event = transmits ? ScatterEvent::DeltaTransmission : ScatterEvent::DeltaReflection;
-        }
-        if (rough && transmits != ((dot(s.to, n) < 0.0f))) {
-            return std::nullopt;  // reflected below the horizon, or refracted above it
+            event = transmits ? ScatterEvent::DeltaTransmission : ScatterEvent::DeltaReflection;
+        } else if (transmits != (dot(to, n) < 0.0f)) {
+            return result;  // reflected below the horizon, or refracted above it
         }
     }
-    s.to = normalize(s.to);
-    s.evaluation =
-        side == Side::Eye ? evaluate(from, s.to, s.event) : evaluate(s.to, from, s.event);
-    const float pdfW = side == Side::Eye ? s.evaluation.pdfWToLight : s.evaluation.pdfWToEye;
-    if (!(pdfW > 0.0f)) {
-        return std::nullopt;
+    to = renormalize(to);
+    const BsdfEvaluation evaluation =
+        side == Side::Eye ? evaluate(from, to, event) : evaluate(to, from, event);
+    if ((side == Side::Eye ? evaluation.pdfWToLight : evaluation.pdfWToEye) > 0.0f) {
+        result.emplace(BsdfSample{to, event, evaluation});
     }
-    return s;
+    return result;
 }
 
 }  // namespace lacuna

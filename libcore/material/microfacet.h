@@ -34,24 +34,21 @@ T distribution(T alpha, T hDotN, T crossSquared) {
     return k * k * T(kInvPi);
 }
 
-/// The visible normal that a point of the unit disk stands for; v is local with v.z > 0 [Heitz18].
-/// Its density over solid angle is G1(v) (v.h) D(h) / v.z.
-template <class T>
-Vec3T<T> visibleNormal(const Vec3T<T>& v, T alpha, T diskX, T diskY) {
-    const Vec3T<T> vh = normalize(Vec3T<T>{alpha * v.x, alpha * v.y, v.z});
-    const T l2 = vh.x * vh.x + vh.y * vh.y;
-    Vec3T<T> t1{T(1), T(0), T(0)};
-    if (l2 > T(0)) {
-        const T inverse = T(1) / std::sqrt(l2);
-        t1 = {-vh.y * inverse, vh.x * inverse, T(0)};
-    }
-    const Vec3T<T> t2 = cross(vh, t1);
-    const T s = T(0.5) * (T(1) + vh.z);
-    const T y = (T(1) - s) * std::sqrt(std::max(T(0), T(1) - diskX * diskX)) + s * diskY;
-    const T z = std::sqrt(std::max(T(0), T(1) - diskX * diskX - y * y));
-    const Vec3T<T> nh = t1 * diskX + t2 * y + vh * z;
-    // A floor on z keeps h off the tangent plane, where it would be the zero vector.
-    return normalize(Vec3T<T>{alpha * nh.x, alpha * nh.y, std::max(T(1e-7), nh.z)});
+/// The visible normal that a point of the unit disk stands for [Heitz18], seen from v = (sine, 0,
+/// cosine) with cosine > 0 (isotropy lets the frame follow the view). Its density over solid angle
+/// is G1(v) (v.h) D(h) / v.z.
+inline Vec3 visibleNormal(float sine, float cosine, float alpha, Vec2 disk) {
+    // The view in the space where the lobe is a hemisphere; t1 = y, t2 = vh x y.
+    const float inverse = 1.0f / std::sqrt(alpha * alpha * sine * sine + cosine * cosine);
+    const float vx = alpha * sine * inverse;
+    const float vz = cosine * inverse;
+    const float s = 0.5f * (1.0f + vz);
+    const float chord = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x));
+    const float y = (1.0f - s) * chord + s * disk.y;
+    const float z = std::sqrt(std::max(0.0f, chord * chord - y * y));
+    // A floor on the height keeps h off the tangent plane, where it would be the zero vector.
+    return normalize(
+        Vec3{alpha * (z * vx - y * vz), alpha * disk.x, std::max(1e-7f, z * vz + y * vx)});
 }
 
 }  // namespace lacuna::ggx

@@ -5,6 +5,7 @@
 
 #include "libcore/base/sampling.h"
 #include "libcore/scene/texture.h"
+#include "libcore/scene/triangle.h"
 
 namespace lacuna {
 
@@ -14,19 +15,25 @@ double triangleArea(const EmissiveTriangle& t) {
     return 0.5 * length(cross(Vec3d(t.corners[1]) - a, Vec3d(t.corners[2]) - a));
 }
 
-/// Solid angle of the cap within `angle` of an axis, without cancellation for narrow cones.
-double capSolidAngle(double angle) {
+/// 1 - cos(angle), without cancellation for narrow cones.
+double versine(double angle) {
     const double s = std::sin(0.5 * angle);
-    return 4.0 * std::numbers::pi * s * s;
+    return 2.0 * s * s;
+}
+
+/// Solid angle of the cap within `angle` of an axis.
+double capSolidAngle(double angle) {
+    return 2.0 * std::numbers::pi * versine(angle);
 }
 
 /// KHR_lights_punctual: squared linear ramp in the cosine between the outer and the inner cone.
-float spotFalloff(const PunctualLight& light, float cosine) {
-    const double outer = std::cos(light.outerConeAngle), inner = std::cos(light.innerConeAngle);
-    if (double(cosine) <= outer) return 0.0f;
-    if (double(cosine) >= inner) return 1.0f;
-    const double x = (double(cosine) - outer) / (inner - outer);
-    return float(x * x);
+/// `v`: versine of the angle to the axis.
+double spotFalloff(const PunctualLight& light, double v) {
+    const double outer = versine(light.outerConeAngle), inner = versine(light.innerConeAngle);
+    if (v >= outer) return 0.0;
+    if (v <= inner) return 1.0;
+    const double x = (outer - v) / (outer - inner);
+    return x * x;
 }
 
 /// Integral of the falloff over directions: inner cap plus 2 pi (cos i - cos o) / 3.
@@ -134,8 +141,8 @@ LightPoint Lights::samplePoint(Rng& rng) const {
             const float s = std::sqrt(u1);
             const Vec2 b{1.0f - s, u2 * s};
             const Vec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
-            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y, normalize(cross(e1, e2)),
-                             b);
+            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y,
+                             triangleNormal(t.corners[0], t.corners[1], t.corners[2]), b);
         }
         case LightKind::Environment: {
             const Environment::Sample s = environment_->sample(pick.remapped, u1, u2);
@@ -169,9 +176,10 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 
 Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) const {
     const std::size_t i = std::size_t(&l - punctual_.data());
-    const float cosine = dot(direction, punctualDirection_[i]);
-    const float falloff = spotFalloff(l, cosine);
-    if (falloff == 0.0f) return {};
+    // Of two unit vectors: half the square of their distance.
+    const double v = 0.5 * lengthSquared(Vec3d(direction) - Vec3d(punctualDirection_[i]));
+    const double falloff = spotFalloff(l, v);
+    if (falloff == 0.0) return {};
     // Sampled uniformly inside the outer cone.
     return {Rgb(float(falloff / spotSolidAngle(l))), float(1.0 / capSolidAngle(l.outerConeAngle))};
 }
@@ -219,8 +227,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
         }
         case LightKind::Spot: {
             const std::size_t i = point.light - triangles_.size();
-            const double halfSine = std::sin(0.5 * punctual_[i].outerConeAngle);
-            const double oneMinusCos = 2.0 * halfSine * halfSine * double(u1);
+            const double oneMinusCos = versine(punctual_[i].outerConeAngle) * double(u1);
             const double s = std::sqrt(std::max(0.0, oneMinusCos * (2.0 - oneMinusCos)));
             const double phi = 2.0 * std::numbers::pi * double(u2);
             const Vec3 local{float(s * std::cos(phi)), float(s * std::sin(phi)),

@@ -6,6 +6,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/image/image_io.h"
 #include "libcore/scene/texture.h"
+#include "libcore/scene/triangle.h"
 
 namespace lacuna {
 
@@ -66,11 +67,6 @@ Vec3d centreOf(const Mesh& mesh) {
     Box box;
     for (const Vec3& p : mesh.positions) box.add(Vec3d(p));
     return box.centre();
-}
-
-bool degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
-    return !(lengthSquared(n) > 0.0) || !isFinite(normalize(Vec3(n)));
 }
 
 }  // namespace
@@ -135,7 +131,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             for (auto& t : to.triangles) std::swap(t[1], t[2]);
         }
         std::erase_if(to.triangles, [&](const auto& t) {
-            return degenerate(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]);
+            return triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]) ==
+                   Vec3{};
         });
         from = Mesh{};
     });
@@ -246,7 +243,7 @@ SurfacePoint Scene::surfaceAt(const Hit& hit) const {
     }
     SurfacePoint s;
     s.position = p0 * w + p1 * hit.u + p2 * hit.v;
-    s.ng = normalize(cross(p1 - p0, p2 - p0));
+    s.ng = triangleNormal(p0, p1, p2);
     s.barycentric = {hit.u, hit.v};
     if (object.instanced && object.mirrored) {
         s.ng = -s.ng;

@@ -1,0 +1,251 @@
+#include "libcore/bidir/verify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace lacuna {
+
+namespace {
+
+constexpr double kNever = -std::numeric_limits<double>::infinity();  // log of a zero density
+
+double logOf(double density) {
+    return density == 0.0 ? kNever : std::log(density);
+}
+
+/// One full path seen afresh. Vertices by x_0 (light) .. x_k (lens); `made` is the strategy that
+/// the path came from.
+class Products {
+  public:
+    Products(const Walker& walker, const FullPath& path, const Techniques& techniques, int made)
+        : walker_(walker),
+          path_(path),
+          techniques_(techniques),
+          k_(path.edges),
+          split_(path.edges + 1 - made),
+          lights_(walker.scene().lights()),
+          source_(lightPointOf(lights_, *path.vertex[0])) {
+        for (int i = 0; i < k_; ++i) setEdge(i);
+        setLightSource();
+        for (int i = 1; i < k_; ++i) setScatter(i);
+        setLens();
+        if (techniques_.connections && !techniques_.connections->constants()) setThroughputs();
+    }
+
+    double weight(int t) const {
+        const double own = logTerm(t);
+        if (own == kNever) return 0.0;
+        double sum = 0.0;
+        for (int i = 1; i <= k_ + 1; ++i) sum += std::exp(logTerm(i) - own);
+        return 1.0 / sum;
+    }
+
+  private:
+    const PathVertex& x(int i) const { return *path_.vertex[std::size_t(i)]; }
+    /// Towards the lens, from x_i to x_{i+1}.
+    Vec3 towardsLens(int i) const { return direction_[std::size_t(i)]; }
+
+    /// Edge x_i -> x_{i+1}: its direction as the walk that made it had it, and the factors that
+    /// turn a density per solid angle at one end into the measure of the other.
+    void setEdge(int i) {
+        const PathVertex &a = x(i), &b = x(i + 1);
+        const auto e = std::size_t(i);
+        if (i + 1 < split_) {
+            direction_[e] = -b.toPrevious;  // light walk: b's previous is a
+        } else if (i >= split_) {
+            direction_[e] = a.toPrevious;  // eye walk: a's previous is b
+        } else {
+            direction_[e] = edgeBetween(a, b).direction;
+        }
+        const auto cosine = [&](const PathVertex& v) {
+            return v.ng == Vec3{} ? 1.0 : std::fabs(dot(Vec3d(v.ng), Vec3d(direction_[e])));
+        };
+        if (a.infinite()) {  // x_0 only: its measure is solid angle, and no distance is divided by
+            toLens_[e] = cosine(b);
+            toLight_[e] = 1.0;
+            geometry_[e] = cosine(b);
+            return;
+        }
+        const double inverse2 = 1.0 / lengthSquared(Vec3d(b.position) - Vec3d(a.position));
+        toLens_[e] = cosine(b) * inverse2;
+        toLight_[e] = cosine(a) * inverse2;
+        geometry_[e] = cosine(a) * cosine(b) * inverse2;
+    }
+
+    /// p(x_0), p(x_1 | x_0).
+    void setLightSource() {
+        const Lights::Emission emission = lights_.emission(source_, towardsLens(0));
+        lightPdfA_[0] = double(source_.pdf);
+        if (k_ > 1) lightPdfA_[1] = double(emission.pdfW) * toLens_[0];
+        scatter_[0] = emission.profile;
+        event_[0] = ScatterEvent::Smooth;
+    }
+
+    /// At x_i: what the eye's walk has for x_{i-1} and the light's for x_{i+1}. The connection's
+    /// two ends scatter smoothly; every other vertex did what its walk says.
+    void setScatter(int i) {
+        const auto v = std::size_t(i);
+        const bool end = i == split_ - 1 || i == split_;
+        event_[v] = end ? ScatterEvent::Smooth : x(i).event;
+        const BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
+        scatter_[v] = e.f;
+        survival_[v] = double(x(i).bsdf.survivalAlbedo());
+        eyePdfA_[v - 1] = double(e.pdfWToLight) * toLight_[v - 1];
+        if (i + 1 < k_) lightPdfA_[v + 1] = double(e.pdfWToEye) * toLens_[v];
+    }
+
+    /// p(x_{k-1} | x_k). The lens itself has the same density in every strategy: it cancels.
+    void setLens() {
+        const Camera& camera = walker_.camera();
+        const Vec3 lens = x(k_).position, direction = -towardsLens(k_ - 1);
+        const auto projection = camera.project(lens, direction);
+        double pdfW = 0.0;
+        if (projection) {
+            pdfW = projection->pdfW;
+        } else if (const float cosine = dot(direction, camera.forward()); cosine > 0.0f) {
+            // On the film's very edge rounding may put the raster position outside: the density as
+            // it is at the film's middle, carried over by 1 / cos^3.
+            const Camera::Film film = camera.film();
+            const Camera::Direction middle = camera.directionAt(
+                camera.position(), {0.5f * float(film.width), 0.5f * float(film.height)});
+            const double ratio = double(dot(middle.direction, camera.forward())) / double(cosine);
+            pdfW = double(middle.pdfW) * ratio * ratio * ratio;
+        }
+        eyePdfA_[std::size_t(k_) - 1] = pdfW * toLight_[std::size_t(k_) - 1];
+    }
+
+    /// Roulette for reaching x_i: at its predecessor, if that one's index in the walk is high
+    /// enough.
+    double lightRoulette(int i) const {
+        const int at = i - 1;
+        return at >= 1 && at >= techniques_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
+    }
+    double eyeRoulette(int i) const {
+        const int at = i + 1;
+        return at <= k_ - 1 && k_ - at >= techniques_.rouletteDepth ? survival_[std::size_t(at)]
+                                                                    : 1.0;
+    }
+
+    /// beta at every x_i. What a punctual light sends out is taken from the path (it is no
+    /// density); its probability is not.
+    void setThroughputs() {
+        const bool known =
+            source_.kind == LightKind::Area || source_.kind == LightKind::Environment;
+        beta_[0] = known && source_.pdf > 0.0f ? source_.exitance * (1.0f / source_.pdf)
+                                               : (known ? Rgb{} : path_.sourceBeta);
+        for (int i = 1; i < k_; ++i) {
+            const auto v = std::size_t(i);
+            const double pdf = lightPdfA_[v] * lightRoulette(i);
+            beta_[v] =
+                pdf > 0.0 ? beta_[v - 1] * scatter_[v - 1] * float(geometry_[v - 1] / pdf) : Rgb{};
+        }
+    }
+
+    /// n_t r_t, from events and vertices.
+    double count(int t) const {
+        const int s = k_ + 1 - t;
+        if (s == 0) return techniques_.hit && isHittable(source_.kind) ? 1.0 : 0.0;
+        const auto smooth = [&](int i) { return !isDelta(event_[std::size_t(i)]); };
+        if (s >= 2 && !smooth(s - 1)) return 0.0;
+        if (t >= 2 && !smooth(s)) return 0.0;
+        if (t == 1) {
+            // A directional light seen directly has no size in the picture.
+            return k_ == 1 && source_.kind == LightKind::Directional ? 0.0 : techniques_.splats;
+        }
+        if (!techniques_.connections) return 0.0;
+        if (const auto c = techniques_.connections->constants()) {
+            return s == 1 ? c->direct : c->indirect;
+        }
+        return techniques_.connections->effectiveSamples(
+            {&x(s), &x(s + 1), t}, {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s},
+            beta_[std::size_t(s) - 1]);
+    }
+
+    /// log(n_t r_t p_t).
+    double logTerm(int t) const {
+        const int s = k_ + 1 - t;
+        double sum = logOf(count(t));
+        for (int i = 0; i < s; ++i) {
+            sum += logOf(lightPdfA_[std::size_t(i)]) + logOf(lightRoulette(i));
+        }
+        for (int i = s; i < k_; ++i) {
+            sum += logOf(eyePdfA_[std::size_t(i)]) + logOf(eyeRoulette(i));
+        }
+        return sum;
+    }
+
+    template <class T>
+    using PerVertex = std::array<T, std::size_t(kMaxEdges) + 1>;
+
+    const Walker& walker_;
+    const FullPath& path_;
+    const Techniques& techniques_;
+    const int k_;
+    const int split_;  // x_0 .. x_{split-1} were made by the light's walk
+    const Lights& lights_;
+    const LightPoint source_;
+    // By edge (that of x_i and x_{i+1}).
+    PerVertex<Vec3> direction_;
+    PerVertex<double> toLens_, toLight_, geometry_;
+    // By vertex.
+    PerVertex<double> lightPdfA_, eyePdfA_, survival_;
+    PerVertex<Rgb> scatter_, beta_;
+    PerVertex<ScatterEvent> event_;
+};
+
+}  // namespace
+
+double misWeightByProducts(const Walker& walker, const FullPath& path, const Techniques& techniques,
+                           int t) {
+    return Products(walker, path, techniques, t).weight(t);
+}
+
+WeightVerifier::WeightVerifier(const Scene& scene, const Camera& camera, WalkLimits limits,
+                               const ThreadPool& pool)
+    : walker_(scene, camera, limits),
+      pool_(pool),
+      filmWidth_(camera.film().width),
+      slots_(std::size_t(pool.threads())) {}
+
+bool WeightVerifier::Worst::worseThan(const Worst& other) const {
+    if (difference != other.difference) return difference > other.difference;
+    return std::tie(iteration, light, sample) <
+           std::tie(other.iteration, other.light, other.sample);
+}
+
+void WeightVerifier::check(const PathEvent& event) {
+    Slot& slot = slots_[std::size_t(pool_.workerIndex())];
+    ++slot.paths;
+    const double again = misWeightByProducts(walker_, event.path, event.techniques, event.t);
+    double difference = std::fabs(again - event.weight);
+    if (std::isnan(difference)) {
+        ++slot.notNumbers;
+        difference = 1.0;
+    }
+    const Worst worst{difference, event.iteration, event.t == 1, event.sample};
+    if (worst.worseThan(slot.worst)) slot.worst = worst;
+}
+
+WeightVerifier::Result WeightVerifier::result() const {
+    Result result;
+    Worst worst;
+    for (const Slot& slot : slots_) {
+        result.paths += slot.paths;
+        result.notNumbers += slot.notNumbers;
+        if (slot.worst.worseThan(worst)) worst = slot.worst;
+    }
+    if (result.paths == 0) return result;
+    result.maxDifference = worst.difference;
+    const auto width = std::uint64_t(filmWidth_);
+    result.replay = worst.light ? "light:" : std::to_string(worst.sample % width);
+    result.replay += worst.light ? "" : ",";
+    result.replay += std::to_string(worst.light ? worst.sample : worst.sample / width);
+    result.replay += ',';
+    result.replay += std::to_string(worst.iteration);
+    return result;
+}
+
+}  // namespace lacuna

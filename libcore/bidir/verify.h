@@ -1,0 +1,62 @@
+// The weight a second time: by full products in log space, from geometry and materials alone.
+//
+// misWeight (mis.h) sweeps ratios of densities that the walks stored. Nothing here reads a stored
+// density: positions, normals, stored unit directions inside a subpath, events and materials give
+// every p(y), p(z), every roulette probability and every light throughput anew, and each strategy's
+// product is formed as a whole. What both agree on, no bookkeeping error can have touched
+// (numerics.md 1).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libcore/bidir/integrator.h"
+
+namespace lacuna {
+
+/// Weight of strategy t on this path, t being the strategy that made it (its connection's ends are
+/// where events are smooth and where the edge has no stored direction). May be NaN only where a
+/// density is.
+double misWeightByProducts(const Walker& walker, const FullPath& path, const Techniques& techniques,
+                           int t);
+
+/// Compares the weight of every path it is shown; called from many threads at once.
+class WeightVerifier {
+  public:
+    WeightVerifier(const Scene& scene, const Camera& camera, WalkLimits limits,
+                   const ThreadPool& pool);
+
+    void check(const PathEvent& event);
+
+    struct Result {
+        double maxDifference = 0.0;  ///< a weight that is not a number counts as 1
+        std::uint64_t paths = 0;
+        std::uint64_t notNumbers = 0;
+        std::string replay;  ///< --replay argument of the largest difference
+    };
+    /// Between iterations. The same for any number of threads.
+    Result result() const;
+
+  private:
+    struct Worst {
+        double difference = -1.0;
+        std::uint32_t iteration = 0;
+        bool light = false;
+        std::uint64_t sample = 0;
+
+        /// Largest difference, first sample where two are equal.
+        bool worseThan(const Worst& other) const;
+    };
+    struct alignas(64) Slot {  // one per thread
+        std::uint64_t paths = 0, notNumbers = 0;
+        Worst worst;
+    };
+
+    Walker walker_;
+    const ThreadPool& pool_;
+    int filmWidth_;
+    std::vector<Slot> slots_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,146 @@
+#include "tests/bidir/test_rows.h"
+
+#include <cmath>
+#include <limits>
+
+#include "libcore/methods/methods.h"
+
+namespace lacuna::test {
+
+namespace {
+
+class Potpourri final : public Method {
+  public:
+    explicit Potpourri(std::uint64_t subpaths) : subpaths_(subpaths) {}
+    int warmupIterations() const override { return 1; }
+    PoolRequest pool() const override { return {subpaths_}; }
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+
+    void prepare(const LightPool& pool) override { current_ = byLength(pool, pool_ = &pool); }
+
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        for (int i = 0; i < kFresh; ++i) {
+            PathVertex& y0 = sink.newVertex();
+            if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0 / kFresh, 7});
+        }
+        for (std::size_t s = 2; s < kMaxLength; ++s) {
+            const bool kept = s % 2 == 0;
+            const std::vector<std::uint32_t>& candidates = kept ? kept_[s] : current_[s];
+            const LightPool& pool = kept ? keptPool_ : *pool_;
+            for (int i = 0; i < kPicks; ++i) {
+                // An empty pick counts among the picks.
+                if (rng.uniform() < kEmpty || candidates.empty()) continue;
+                const auto n = std::uint32_t(candidates.size());
+                sink.add({pool.prefixOf(candidates[rng.below(n)]),
+                          double(n) / (double(subpaths_) * kPicks * (1.0 - double(kEmpty))), 0});
+            }
+        }
+    }
+
+    void observe(const LightPool& pool) override {
+        keptPool_ = pool;
+        kept_ = byLength(keptPool_, &keptPool_);
+    }
+
+  private:
+    static constexpr int kFresh = 2, kPicks = 2;
+    static constexpr float kEmpty = 0.25f;
+    static constexpr std::size_t kMaxLength = 32;
+    using ByLength = std::vector<std::vector<std::uint32_t>>;
+
+    static ByLength byLength(const LightPool& pool, const LightPool*) {
+        ByLength lists(kMaxLength);
+        for (const std::uint32_t v : pool.connectable) {
+            const std::size_t s = std::size_t(pool.vertices[v].index) + 1;
+            if (s < kMaxLength) lists[s].push_back(v);
+        }
+        return lists;
+    }
+
+    std::uint64_t subpaths_;
+    ConstantDensity density_{3.0, 0.5};
+    const LightPool* pool_ = nullptr;
+    LightPool keptPool_;
+    ByLength current_, kept_;
+};
+
+class HashedDensity final : public ConnectionDensity {
+  public:
+    double effectiveSamples(const ConnectionEnd& eye, const ConnectionEnd& light,
+                            const Rgb& beta) const override {
+        const double h = double((cell(*eye.vertex) * 73856093u ^ cell(*light.vertex) * 19349663u) %
+                                1000u + 1u) / 1000.0;
+        return h * std::pow(double(mean(beta)), 0.7);
+    }
+
+  private:
+    static std::uint32_t cell(const PathVertex& v) {
+        const auto c = [](float x) { return std::uint32_t(std::int32_t(std::floor(x * 3.0f))); };
+        return c(v.position.x) * 31u + c(v.position.y) * 17u + c(v.position.z);
+    }
+};
+
+class UniformUnderHash final : public Method {
+  public:
+    explicit UniformUnderHash(std::uint64_t subpaths) : subpaths_(subpaths) {}
+    PoolRequest pool() const override { return {subpaths_}; }
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+    void prepare(const LightPool& pool) override { pool_ = &pool; }
+    void select(const EyeContext&, Rng& rng, ProposalSink& sink) const override {
+        const auto n = std::uint32_t(pool_->connectable.size());
+        if (n == 0) return;
+        sink.add({pool_->prefix(rng.below(n)), double(n) / double(subpaths_), 0});
+    }
+
+  private:
+    std::uint64_t subpaths_;
+    HashedDensity density_;
+    const LightPool* pool_ = nullptr;
+};
+
+Parameter candidatesParameter() {
+    return {"candidates", Parameter::Kind::Integer, 1000, 1, 1e6, "light subpaths in the pool"};
+}
+
+}  // namespace
+
+MethodRow potpourriRow() {
+    MethodRow row;
+    row.name = "test-potpourri";
+    row.techniques = {.hits = true, .connects = true, .splats = true};
+    row.parameters = {lightPathsParameter(), candidatesParameter()};
+    row.create = [](const Settings& s) {
+        return std::make_unique<Potpourri>(s.integer("candidates"));
+    };
+    return row;
+}
+
+MethodRow hashedDensityRow() {
+    MethodRow row;
+    row.name = "test-hashed-density";
+    row.techniques = {.hits = true, .connects = true, .splats = true};
+    row.parameters = {lightPathsParameter(), candidatesParameter()};
+    row.create = [](const Settings& s) {
+        return std::make_unique<UniformUnderHash>(s.integer("candidates"));
+    };
+    return row;
+}
+
+std::vector<MethodRow> allRows() {
+    std::vector<MethodRow> rows;
+    for (const MethodRow& row : methods()) {
+        if (!row.biased) rows.push_back(row);
+    }
+    rows.push_back(potpourriRow());
+    rows.push_back(hashedDensityRow());
+    return rows;
+}
+
+std::vector<std::string> smallSettings(const MethodRow& row, int candidates) {
+    for (const Parameter& p : row.parameters) {
+        if (p.name == "candidates") return {"candidates=" + std::to_string(candidates)};
+    }
+    return {};
+}
+
+}  // namespace lacuna::test
