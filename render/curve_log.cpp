@@ -42,15 +42,17 @@ bool CurveLog::wants(double seconds) {
 }
 
 void CurveLog::write(const CurveRow& row) {
-    std::string text = std::to_string(row.iteration) + "," + number(row.seconds) + "," +
-                       number(row.setupSeconds) + "," + std::to_string(row.rays);
-    if (row.error) {
-        for (const double e :
-             {row.error->mae, row.error->rmse, row.error->mape, row.error->relmse}) {
-            text += "," + number(e);
-        }
-    } else {
-        text += ",,,,";
+    std::string text = std::to_string(row.iteration);
+    const auto append = [&](const std::string& column) {
+        text += ',';
+        text += column;
+    };
+    append(number(row.seconds));
+    append(number(row.setupSeconds));
+    append(std::to_string(row.rays));
+    const ErrorMeasures e = row.error.value_or(ErrorMeasures{});
+    for (const double measure : {e.mae, e.rmse, e.mape, e.relmse}) {
+        append(row.error ? number(measure) : "");
     }
     lastIteration_ = row.iteration;
     file_ << text << std::endl;  // flushed: the row survives a crash

@@ -64,10 +64,11 @@ bool isDiffuse(const Material& m) {
 
 class Table {
   public:
-    /// `found` things call for the effect; zero: left out because of `missing`.
-    void add(const char* name, std::size_t found, const std::string& what,
+    /// `found` of these `noun`s call for the effect (`rest` follows); zero: left out, `missing`.
+    void add(const char* name, std::size_t found, const std::string& noun, const std::string& rest,
              const std::string& missing) {
-        const std::string text = std::to_string(found) + " " + what + (found == 1 ? "" : "s");
+        const std::string text =
+            std::to_string(found) + " " + noun + (found == 1 ? "" : "s") + rest;
         rows.push_back({name, found > 0, found > 0 ? text : missing});
     }
     void add(const char* name, bool simulated, const std::string& reason) {
@@ -98,10 +99,10 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
                               const MethodRow* method) {
     const Inventory have(scene);
     Table t;
-    t.add("area_lights", have.emissiveTriangles, "emissive triangle", "no emissive material");
-    t.add("point_lights", have.points, "point light", "no point light");
-    t.add("spot_lights", have.spots, "spot light", "no spot light");
-    t.add("directional_lights", have.directionals, "directional light", "no directional light");
+    t.add("area_lights", have.emissiveTriangles, "emissive triangle", "", "no emissive material");
+    t.add("point_lights", have.points, "point light", "", "no point light");
+    t.add("spot_lights", have.spots, "spot light", "", "no spot light");
+    t.add("directional_lights", have.directionals, "directional light", "", "no directional light");
     t.add("environment", scene.environment.has_value(),
           scene.environment
               ? scene.environment->file
@@ -111,10 +112,10 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("textures", have.count([](const Material& m) {
         return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture;
     }),
-          "textured material", "no texture");
+          "textured material", "", "no texture");
     t.add("alpha_mask",
           have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Mask; }),
-          "material with alphaMode MASK", "no material with alphaMode MASK: no alpha test");
+          "material", " with alphaMode MASK", "no material with alphaMode MASK: no alpha test");
     const std::size_t blended =
         have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Blend; });
     t.add("alpha_blend", false,
@@ -122,22 +123,23 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
                         " material(s) with alphaMode BLEND are rendered opaque"
                   : "no material with alphaMode BLEND");
 
-    t.add("diffuse", have.count(isDiffuse), "material with a diffuse lobe", "no diffuse material");
+    t.add("diffuse", have.count(isDiffuse), "material", " with a diffuse lobe",
+          "no diffuse material");
     t.add("glossy", have.count([](const Material& m) { return reflects(m) && mayBeRough(m); }),
-          "material with a rough reflection", "no rough metal or coat");
+          "material", " with a rough reflection", "no rough metal or coat");
     t.add("mirror", have.count([](const Material& m) { return reflects(m) && mayBeSmooth(m); }),
-          "material with a perfectly smooth reflection", "no metal or coat of roughness 0");
+          "material", " with a perfectly smooth reflection", "no metal or coat of roughness 0");
     const auto glass = [](bool thin, bool rough) {
         return [thin, rough](const Material& m) {
             return transmits(m) && m.thin == thin && (rough ? mayBeRough(m) : mayBeSmooth(m));
         };
     };
     const char* none = "no transmissive solid of that kind: no refraction, no eta factor";
-    t.add("rough_refraction", have.count(glass(false, true)), "rough solid of glass", none);
-    t.add("smooth_refraction", have.count(glass(false, false)), "smooth solid of glass", none);
-    t.add("rough_thin_transmission", have.count(glass(true, true)), "rough thin sheet",
+    t.add("rough_refraction", have.count(glass(false, true)), "rough solid", " of glass", none);
+    t.add("smooth_refraction", have.count(glass(false, false)), "smooth solid", " of glass", none);
+    t.add("rough_thin_transmission", have.count(glass(true, true)), "rough thin sheet", "",
           "no rough thin sheet");
-    t.add("smooth_thin_transmission", have.count(glass(true, false)), "smooth thin sheet",
+    t.add("smooth_thin_transmission", have.count(glass(true, false)), "smooth thin sheet", "",
           "no smooth thin sheet");
     t.add("thin_lens", lensRadius > 0.0,
           lensRadius > 0.0 ? "the aperture is above 0" : "the aperture is 0: a pinhole");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libcore/base/atomic_file.h"
 #include "render/method_help.h"
 
 namespace lacuna {
@@ -106,14 +107,23 @@ LayeredImage composeImage(const RenderReport& report, const Film& film,
     return image;
 }
 
-json reportJson(const RenderReport& r) {
-    json rays = json::object();
-    for (std::size_t i = 0; i < kRayKinds; ++i) rays[name(RayKind(i))] = r.statistics.rays[i];
+json effectsJson(const std::vector<Effect>& effects) {
     json simulated = json::array(), leftOut = json::array(), reasons = json::object();
-    for (const Effect& e : r.effects) {
+    for (const Effect& e : effects) {
         (e.simulated ? simulated : leftOut).push_back(e.name);
         reasons[e.name] = e.reason;
     }
+    return {{"simulated", simulated}, {"left_out", leftOut}, {"reasons", reasons}};
+}
+
+void writeJson(const std::string& path, const json& object) {
+    // File names need not be UTF-8; JSON has to be.
+    writeFileAtomically(path, object.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+json reportJson(const RenderReport& r) {
+    json rays = json::object();
+    for (std::size_t i = 0; i < kRayKinds; ++i) rays[name(RayKind(i))] = r.statistics.rays[i];
     json j{{"method", r.method->name},
            {"parameters", parametersJson(*r.method, r.settings)},
            {"biased", r.method->biased},
@@ -139,7 +149,7 @@ json reportJson(const RenderReport& r) {
            {"seed", r.seed},
            {"warmup_iterations", r.warmupIterations},
            {"phases", r.phaseSeconds},
-           {"effects", {{"simulated", simulated}, {"left_out", leftOut}, {"reasons", reasons}}},
+           {"effects", effectsJson(r.effects)},
            {"scene_hash", r.sceneHash},
            {"cache_hashes", r.cacheHashes},
            {"warnings", r.warnings},

@@ -52,7 +52,13 @@ nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 LayeredImage composeImage(const RenderReport& report, const Film& film,
                           const FeatureLayers* features, const TechniqueFilm* techniques);
 
+/// {"simulated": [names], "left_out": [names], "reasons": {name: text}}
+nlohmann::json effectsJson(const std::vector<Effect>& effects);
+
 /// The keys of interface.md, and more.
 nlohmann::json reportJson(const RenderReport& report);
+
+/// Atomically, as text that people can read. Throws RunError.
+void writeJson(const std::string& path, const nlohmann::json& json);
 
 }  // namespace lacuna

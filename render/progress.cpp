@@ -74,7 +74,10 @@ void Progress::remark(const std::string& text) {
 
 void Progress::warning(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    print(terminal_ ? "\x1b[33m" + text + "\x1b[0m" : text);
+    std::string coloured = terminal_ ? "\x1b[33m" : "";
+    coloured += text;
+    coloured += terminal_ ? "\x1b[0m" : "";
+    print(coloured);
 }
 
 void Progress::print(const std::string& text) {
@@ -95,17 +98,18 @@ std::string Progress::line() const {
     if (phase_ != "rendering") return phase_ + "  " + durationText(since(phaseStart_));
 
     std::string text = phase_ + "  iteration " + std::to_string(i.done + 1);
-    if (i.limit > 0) text += "/" + std::to_string(i.limit);
+    if (i.limit > 0) text.append("/").append(std::to_string(i.limit));
     const double now = i.seconds + since(iterationEnd_);
-    text += "  " + durationText(now);
+    text.append("  ").append(durationText(now));
     if (i.done == 0) return text;
-    text += "  " + rateText(double(i.rays) / std::max(i.seconds, 1e-9));
+    text.append("  ").append(rateText(double(i.rays) / std::max(i.seconds, 1e-9)));
     double left = -1.0;
     if (i.limit > 0) left = i.seconds / double(i.done) * double(i.limit) - now;
     if (i.timeLimit > 0.0) {
         left = i.limit > 0 ? std::min(left, i.timeLimit - now) : i.timeLimit - now;
     }
-    if (i.limit > 0 || i.timeLimit > 0.0) text += "  " + durationText(left) + " left";
+    if (i.limit > 0 || i.timeLimit > 0.0)
+        text.append("  ").append(durationText(left)).append(" left");
     return text;
 }
 

@@ -1,7 +1,7 @@
 // lacuna-render: a picture of a glTF scene by any row of the registry of methods.
 #include <cstdio>
 
-#include "libcore/base/error.h"
+#include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "render/method_help.h"
 #include "render/options.h"
@@ -15,10 +15,15 @@ int printEffects(const RenderOptions& options) {
     // Here the method is optional, but not arbitrary.
     const MethodRow* row = options.method.empty() ? nullptr : &findMethod(options.method);
     if (row) resolve(*row, options.assignments);
+    if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
     const ThreadPool pool(options.common.threads);
     SceneDescription scene;
     pool.run([&] { scene = describeScene(options); });
-    std::fputs(effectsText(effectsOf(scene, lensRadius(options, scene), row)).c_str(), stdout);
+    const std::vector<Effect> effects = effectsOf(scene, lensRadius(options, scene), row);
+    if (!options.common.json.empty()) {
+        writeJson(options.common.json, {{"effects", effectsJson(effects)}});
+    }
+    std::fputs(effectsText(effects).c_str(), stdout);
     return 0;
 }
 

@@ -149,6 +149,10 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     }
     if (!complete) return kInterruptedExit;
 
+    std::printf(
+        "positions in the file's coordinates; y: light subpath, z: eye subpath, x: full path from "
+        "the light to the lens; densities per area (at infinity: per solid angle), roulette left "
+        "out; `n r`: samples of the strategy whose eye part begins at that vertex\n");
     progress.phase("replaying");
     const Walker walker(*stage.scene, *stage.camera, whole.limits);
     Printer printer(walker);

@@ -1,10 +1,12 @@
 #include "render/session.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
-#include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/image_io.h"
@@ -43,6 +45,26 @@ std::uint64_t iterationLimit(const RenderOptions& options) {
     return options.timeSeconds ? 0 : kDefaultIterations;
 }
 
+/// Checks what the picture alone needs against what the machine has: better an error now than being
+/// killed by the system after hours.
+Film makeFilm(const RenderOptions& options, const RenderSettings& settings) {
+    const PixelRect& crop = settings.crop;
+    const double depth = settings.limits.maxDepth;
+    const double layers = options.techniques ? depth * (depth + 3.0) : 0.0;
+    // Sums and squares in double, an iteration, and the layers on their way to the file.
+    const double perPixel = 48.0 + 12.0 + 104.0 + layers * 2.0 * sizeof(Rgb);
+    const double bytes = perPixel * double(crop.width()) * double(crop.height());
+    const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (available > 0.0 && bytes > available) {
+        throw RunError("memory: expected " + std::to_string(std::lround(bytes * 1e-9)) +
+                       " GB for the picture, found a machine of " +
+                       std::to_string(std::lround(available * 1e-9)) +
+                       " GB; use a smaller picture, --crop" +
+                       (options.techniques ? " or a smaller --max-depth" : ""));
+    }
+    return Film(crop.width(), crop.height());
+}
+
 }  // namespace
 
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
@@ -53,7 +75,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       progress_(progress),
       stage_(loadStage(options, row, settings, pool, progress)),
       method_(row.create(settings)),
-      film_(stage_.settings.crop.width(), stage_.settings.crop.height()) {
+      film_(makeFilm(options, stage_.settings)) {
     loadReference();
     integrator_ = std::make_unique<BidirIntegrator>(*stage_.scene, *stage_.camera, row.techniques,
                                                     *method_, stage_.settings, pool_);
@@ -87,9 +109,19 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.sceneHash = stage_.scene->description().contentHash;
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
+    if (options.common.verbose) describeStage();
 }
 
 Session::~Session() = default;
+
+void Session::describeStage() const {
+    const Scene& scene = *stage_.scene;
+    progress_.remark(std::to_string(scene.triangleCount()) + " triangles, " +
+                     std::to_string(scene.lights().size()) + " lights, radius " +
+                     std::to_string(scene.radius()) + ", " + std::to_string(report_.threads) +
+                     " threads, " + std::to_string(report_.lightPaths) +
+                     " light paths per iteration, setup " + durationText(report_.setupSeconds));
+}
 
 void Session::loadReference() {
     if (!options_.reference.empty()) {
@@ -116,12 +148,13 @@ int Session::run() {
     return report_.stopped == "interrupt" ? kInterruptedExit : 0;
 }
 
-/// The next iteration is taken to last as long as the last one. It is begun if it ends in time, or
+/// The next iteration is taken to last as long as the last ones. It is begun if it ends in time, or
 /// passes the limit by no more than half of itself and a tenth of the limit.
-bool Session::mayBegin(double lastSeconds) const {
+bool Session::mayBegin() const {
     const double limit = *options_.timeSeconds;
     const double spent = report_.seconds + (options_.countSetup ? report_.setupSeconds : 0.0);
-    return spent < limit && spent + lastSeconds <= limit + std::min(0.5 * lastSeconds, 0.1 * limit);
+    return spent < limit &&
+           spent + expectedSeconds_ <= limit + std::min(0.5 * expectedSeconds_, 0.1 * limit);
 }
 
 void Session::render() {
@@ -155,46 +188,52 @@ void Session::render() {
         report_.seconds += seconds;
         report_.statistics.add(statistics);
         if (complete) {
+            expectedSeconds_ =
+                report_.iterations == 0 ? seconds : 0.5 * (expectedSeconds_ + seconds);
             ++report_.iterations;
-            afterIteration();
+            if (log_ && log_->wants(report_.seconds)) logRow();
             tell();
         }
         if (interrupt_.requested()) {
             report_.stopped = "interrupt";
         } else if (limit > 0 && report_.iterations >= limit) {
             report_.stopped = "iterations";
-        } else if (options_.timeSeconds && !mayBegin(seconds)) {
+        } else if (options_.timeSeconds && !mayBegin()) {
             report_.stopped = "time";
         }
         if (!report_.stopped.empty()) return;
     }
 }
 
-void Session::afterIteration() {
-    if (log_ && log_->wants(report_.seconds)) logRow();
+/// A picture that cannot be compared (an overflow to infinity) still is one: it is kept.
+void Session::measure() {
+    if (!reference_) return;
+    const Stopwatch watch(report_.phaseSeconds["compare"]);
+    try {
+        report_.error = reference_->compare(film_.image(), options_.output);
+    } catch (const InputError& e) {
+        report_.error.reset();
+        logFailure_ = e.what();
+    }
 }
 
 void Session::logRow() {
-    CurveRow row{report_.iterations, report_.seconds, report_.setupSeconds,
-                 report_.statistics.totalRays(), std::nullopt};
-    double seconds = 0.0;
-    {
-        const Stopwatch watch(seconds);
-        if (reference_)
-            row.error = report_.error = reference_->compare(film_.image(), options_.output);
-        try {
-            log_->write(row);
-        } catch (const RunError& e) {
-            logFailure_ = e.what();
-            log_.reset();
-        }
+    measure();
+    try {
+        log_->write({report_.iterations, report_.seconds, report_.setupSeconds,
+                     report_.statistics.totalRays(), report_.error});
+    } catch (const RunError& e) {
+        logFailure_ = e.what();
+        log_.reset();
     }
-    report_.phaseSeconds["compare"] += seconds;
 }
 
 void Session::save() {
-    if (log_ && log_->lastIteration() != report_.iterations) logRow();
-    if (reference_ && !log_) report_.error = reference_->compare(film_.image(), options_.output);
+    if (!log_) {
+        measure();
+    } else if (log_->lastIteration() != report_.iterations) {
+        logRow();
+    }
 
     for (const auto& [phase, seconds] : report_.statistics.phaseSeconds) {
         report_.phaseSeconds[phase] += seconds;
@@ -217,7 +256,7 @@ void Session::save() {
                    options_.exposure);
     }
     if (!options_.common.json.empty()) {
-        writeFileAtomically(options_.common.json, reportJson(report_).dump(2) + "\n");
+        writeJson(options_.common.json, reportJson(report_));
     }
     const double rays = double(report_.statistics.totalRays());
     std::printf("%s: %d x %d pixels, %s, %llu iteration%s in %.3g s (setup %.3g s), %.4g rays%s\n",

@@ -26,9 +26,10 @@ class Session {
 
   private:
     void loadReference();
+    void describeStage() const;
     void render();
-    bool mayBegin(double lastSeconds) const;
-    void afterIteration();
+    bool mayBegin() const;
+    void measure();
     void logRow();
     void save();
     void warnAboutDefects();
@@ -47,7 +48,8 @@ class Session {
     std::unique_ptr<WeightVerifier> verifier_;
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;
-    std::string logFailure_;  ///< a full disk must not cost the picture
+    std::string logFailure_;        ///< a full disk must not cost the picture
+    double expectedSeconds_ = 0.0;  ///< of the next iteration
     RenderReport report_;
 };
 

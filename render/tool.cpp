@@ -28,7 +28,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
     app.add_option("--seed", options.seed, "Seed of all random numbers (default: 1)")
-        ->type_name("N");
+        ->type_name("N")
+        ->check(CLI::NonNegativeNumber);  // CLI11 would wrap -1 around
     app.add_option("--json", options.json, "Write everything measured to this file")
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "No progress and no remarks on stderr");

@@ -95,7 +95,7 @@ Techniques BidirIntegrator::freeze(std::uint32_t iteration) {
     t.hit = techniqueSet_.hits;
     t.splats = techniqueSet_.splats ? double(lightPaths_) : 0.0;
     const ConnectionDensity& density = method_.freeze(iteration);
-    t.connections = techniqueSet_.connects ? &density : nullptr;
+    if (techniqueSet_.connects) t.connectThrough(density);
     t.rouletteDepth = settings_.limits.rouletteDepth;
     return t;
 }

@@ -26,8 +26,8 @@ double effectiveCount(const FullPath& path, const Techniques& techniques, int t)
     if (s == 0) return techniques.hit ? 1.0 : 0.0;
     if (t == 1) return techniques.splats;
     if (!techniques.connections) return 0.0;
-    if (const auto constants = techniques.connections->constants()) {
-        return s == 1 ? constants->direct : constants->indirect;
+    if (techniques.constants) {
+        return s == 1 ? techniques.constants->direct : techniques.constants->indirect;
     }
     const ConnectionEnd eye{path.vertex[s], path.vertex[s + 1], t};
     const ConnectionEnd light{path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s};
@@ -36,7 +36,7 @@ double effectiveCount(const FullPath& path, const Techniques& techniques, int t)
 
 double misWeight(FullPath& path, const Techniques& techniques, int t) {
     const int k = path.edges;
-    if (techniques.connections && !techniques.connections->constants()) {
+    if (techniques.connections && !techniques.constants) {
         path.fillLightThroughputs(techniques.rouletteDepth);
     }
     const double own = effectiveCount(path, techniques, t);

@@ -47,10 +47,17 @@ class ConnectionDensity {
 
 /// How many samples each technique has, as seen from every other one: fixed for an iteration.
 struct Techniques {
-    bool hit = false;        ///< s = 0: eye paths that run into a light
-    double splats = 0;       ///< t = 1: light paths that splat (L); 0: there is no such technique
+    bool hit = false;   ///< s = 0: eye paths that run into a light
+    double splats = 0;  ///< t = 1: light paths that splat (L); 0: there is no such technique
     const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
-    int rouletteDepth = 1;   ///< first vertex index (own end = 0) at which roulette is played
+    /// connections->constants(), looked up once. Set both by connectThrough.
+    std::optional<ConnectionDensity::Constants> constants = std::nullopt;
+    int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
+
+    void connectThrough(const ConnectionDensity& density) {
+        connections = &density;
+        constants = density.constants();
+    }
 };
 
 /// A full path with the densities of both walks: what misWeight reads. All arrays by vertex, x_0

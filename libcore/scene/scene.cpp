@@ -25,7 +25,7 @@ struct Scene::Object {
     bool instanced = false;
     bool mirrored = false;
     std::array<Vec3, 4> toWorld;   // columns and translation
-    std::array<Vec3, 3> normal;    // cofactor columns, unit scale
+    std::array<Vec3, 3> normal;    // normalTransform's columns
     std::uint32_t firstLight = kNone;
 
     Vec3 point(Vec3 p) const {
@@ -69,6 +69,24 @@ Vec3d centreOf(const Mesh& mesh) {
     return box.centre();
 }
 
+/// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's side.
+Affine normalTransform(const Affine& a) {
+    const Vec3d columns[3] = {a.normal({1, 0, 0}), a.normal({0, 1, 0}), a.normal({0, 0, 1})};
+    double largest = 0.0;
+    for (const Vec3d& c : columns) largest = std::max(largest, length(c));
+    const double scale = (a.determinant() < 0.0 ? -1.0 : 1.0) / (largest > 0.0 ? largest : 1.0);
+    return {{columns[0] * scale, columns[1] * scale, columns[2] * scale, Vec3d{}}};
+}
+
+/// Whether rays can be taken into the mesh's space in float: not for a scale of zero (glTF allows it)
+/// nor for one whose determinant leaves float's range.
+bool canBeInstanced(const Affine& a) {
+    double largest = 0.0;
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, length(a.m[c]));
+    return largest > 1e-10 && largest < 1e10 &&
+           std::fabs(a.determinant()) > 1e-6 * largest * largest * largest;
+}
+
 }  // namespace
 
 Scene::Scene(SceneDescription description, const ThreadPool& pool)
@@ -82,6 +100,14 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
     // One mesh per distinct use: meshes with one instance move to world space, the others stay.
     std::vector<std::uint32_t> uses(d.meshes.size(), 0);
     for (const Instance& i : d.instances) ++uses[i.mesh];
+    for (Instance& i : d.instances) {
+        if (uses[i.mesh] == 1 || canBeInstanced(i.toWorld)) continue;
+        --uses[i.mesh];
+        const auto copy = std::uint32_t(d.meshes.size());
+        d.meshes.push_back(Mesh(d.meshes[i.mesh]));
+        uses.push_back(1);
+        i.mesh = copy;
+    }
     meshes_.resize(d.meshes.size());
     objects_.resize(d.instances.size());
     std::vector<Affine> meshTransform(d.meshes.size());  // applied to the mesh's own vertices
@@ -103,12 +129,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         toWorld.m[3] = toWorld.point(middle) - centre_;
         object.instanced = true;
         for (int c = 0; c < 4; ++c) object.toWorld[c] = Vec3(toWorld.m[c]);
-        const double sign = object.mirrored ? -1.0 : 1.0;
-        const double scale = std::pow(std::fabs(toWorld.determinant()), 2.0 / 3.0);
-        const Vec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        for (int c = 0; c < 3; ++c) {
-            object.normal[c] = Vec3(toWorld.normal(axes[c]) * (sign / scale));
-        }
+        const Affine normals = normalTransform(toWorld);
+        for (int c = 0; c < 3; ++c) object.normal[c] = Vec3(normals.m[c]);
     }
 
     pool.forEach(d.meshes.size(), [&](std::size_t m) {
@@ -121,9 +143,11 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         for (const Vec3& p : from.positions) to.positions.push_back(Vec3(transform.point(Vec3d(p))));
         to.positions.push_back({});
         to.normals.reserve(from.normals.size());
-        const double sign = mirroredMesh[m] ? -1.0 : 1.0;
+        // Unit before the transform and not after it: interpolated first, transformed then, as for an
+        // instance.
+        const Affine normals = normalTransform(transform);
         for (const Vec3& n : from.normals) {
-            to.normals.push_back(Vec3(normalize(transform.normal(Vec3d(n)) * sign)));
+            to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
         }
         to.uvs = std::move(from.uvs);
         to.triangles = std::move(from.triangles);
@@ -178,7 +202,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
                                        radius_);
 
     std::vector<float> iors;
-    for (const Material& m : d.materials) iors.push_back(m.ior);
+    for (const Material& m : d.materials) {
+        // A diffuse base under a dielectric layer; factors of one may be less by their texture.
+        const bool diffuse = (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
+                             (m.transmission < 1.0f || m.transmissionTexture);
+        if (diffuse && m.specular > 0.0f && m.ior > 1.0f) iors.push_back(m.ior);
+    }
     tables_ = std::make_unique<AlbedoTables>(iors);
 
     std::vector<AccelMesh> accelMeshes;

@@ -289,7 +289,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
         t.hit = set.hits;
         t.splats = set.splats ? double(splatPaths) : 0.0;
         const ConnectionDensity& density = method->freeze(iteration);
-        t.connections = set.connects ? &density : nullptr;
+        if (set.connects) t.connectThrough(density);
         t.rouletteDepth = FiniteSpace::kRouletteDepth;
         return t;
     };

@@ -97,7 +97,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
         Techniques techniques;
         techniques.hit = row.techniques.hits;
         techniques.splats = row.techniques.splats ? 5.0 : 0.0;
-        techniques.connections = row.techniques.connects ? &method->freeze(0) : nullptr;
+        if (row.techniques.connects) techniques.connectThrough(method->freeze(0));
         techniques.rouletteDepth = FiniteSpace::kRouletteDepth;
 
         Rng rng(5, 0, StreamKind::User, 0);

@@ -1,0 +1,300 @@
+// Materials with their extensions, and textures.
+#include "tests/gltf/gltf_builder.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A triangle whose material is `material`.
+TriangleBuilder withMaterial(const json& material) {
+    TriangleBuilder b;
+    b.primitive()["material"] = b.add("materials", material);
+    return b;
+}
+
+Material loadMaterial(const json& material) {
+    const SceneDescription scene = withMaterial(material).load();
+    expectValid(scene);
+    return scene.materials[0];
+}
+
+SceneDescription loadExtension(const char* name, const json& value) {
+    return withMaterial({{"extensions", {{name, value}}}}).load();
+}
+
+/// 2 x 1 picture: red half transparent, then blue.
+ByteVector redBlue() {
+    return png(2, 1, {255, 0, 0, 128, 0, 0, 255, 255});
+}
+
+TEST(Material, DefaultsAreGltfs) {
+    const Material m = loadMaterial(json::object());
+    EXPECT_EQ(m.baseColor, Rgb(1.0f));
+    EXPECT_EQ(m.baseAlpha, 1.0f);
+    EXPECT_EQ(m.metallic, 1.0f);
+    EXPECT_EQ(m.roughness, 1.0f);
+    EXPECT_EQ(m.specular, 1.0f);
+    EXPECT_EQ(m.ior, 1.5f);
+    EXPECT_EQ(m.transmission, 0.0f);
+    EXPECT_TRUE(m.thin);
+    EXPECT_TRUE(isBlack(m.emission));
+    EXPECT_FALSE(m.doubleSided);
+    EXPECT_EQ(m.alphaMode, Material::Alpha::Opaque);
+    EXPECT_EQ(m.alphaCutoff, 0.5f);
+    EXPECT_FALSE(m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture ||
+                 m.emissiveTexture);
+}
+
+TEST(Material, CoreProperties) {
+    const Material m = loadMaterial({{"name", "paint"},
+                                     {"doubleSided", true},
+                                     {"alphaMode", "MASK"},
+                                     {"alphaCutoff", 0.25},
+                                     {"emissiveFactor", {0.5, 0.25, 1.0}},
+                                     {"pbrMetallicRoughness",
+                                      {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
+                                       {"metallicFactor", 0.6},
+                                       {"roughnessFactor", 0.7}}}});
+    EXPECT_EQ(m.name, "paint");
+    EXPECT_TRUE(m.doubleSided);
+    EXPECT_EQ(m.alphaMode, Material::Alpha::Mask);
+    EXPECT_EQ(m.alphaCutoff, 0.25f);
+    EXPECT_EQ(m.emission, Rgb(0.5f, 0.25f, 1.0f));
+    EXPECT_EQ(m.baseColor, Rgb(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(m.baseAlpha, 0.4f);
+    EXPECT_EQ(m.metallic, 0.6f);
+    EXPECT_EQ(m.roughness, 0.7f);
+}
+
+TEST(Material, EmissiveStrengthMultiplies) {
+    const Material m = loadMaterial(
+        {{"emissiveFactor", {0.5, 0.25, 1.0}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 40}}}}}});
+    EXPECT_EQ(m.emission, Rgb(20.0f, 10.0f, 40.0f));
+}
+
+TEST(Material, TransmissionIorVolumeSpecular) {
+    const Material m = loadMaterial({{"extensions",
+                                      {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                       {"KHR_materials_ior", {{"ior", 1.33}}},
+                                       {"KHR_materials_volume", {{"thicknessFactor", 0.5}}},
+                                       {"KHR_materials_specular", {{"specularFactor", 0}}}}}});
+    EXPECT_EQ(m.transmission, 1.0f);
+    EXPECT_EQ(m.ior, 1.33f);
+    EXPECT_FALSE(m.thin);
+    EXPECT_EQ(m.specular, 0.0f);
+    EXPECT_TRUE(loadExtension("KHR_materials_volume", {{"thicknessFactor", 0}}).materials[0].thin);
+    EXPECT_TRUE(loadExtension("KHR_materials_volume", json::object()).materials[0].thin);
+}
+
+TEST(Material, IorZeroIsATotalReflectorAndBelowOneIsRefused) {
+    const SceneDescription scene = loadExtension("KHR_materials_ior", {{"ior", 0}});
+    EXPECT_EQ(scene.materials[0].ior, 1000.0f);
+    EXPECT_EQ(warningsWith(scene, "ior 0"), 1);
+    for (const double bad : {0.5, -1.0, 0.999}) {
+        const auto b = withMaterial({{"extensions", {{"KHR_materials_ior", {{"ior", bad}}}}}});
+        expectRefused(b, {"materials[0]", "ior", "at least 1"});
+    }
+}
+
+TEST(Material, FactorsAreClampedWithOneWarning) {
+    TriangleBuilder b = withMaterial({{"emissiveFactor", {3, -1, 0.5}},
+                                      {"pbrMetallicRoughness",
+                                       {{"baseColorFactor", {2, 0.5, -1, 1}},
+                                        {"metallicFactor", 1.5},
+                                        {"roughnessFactor", -2}}}});
+    const SceneDescription scene = b.load();
+    expectValid(scene);
+    EXPECT_EQ(scene.materials[0].baseColor, Rgb(1.0f, 0.5f, 0.0f));
+    EXPECT_EQ(scene.materials[0].emission, Rgb(1.0f, 0.0f, 0.5f));
+    EXPECT_EQ(scene.materials[0].metallic, 1.0f);
+    EXPECT_EQ(scene.materials[0].roughness, 0.0f);
+    EXPECT_EQ(warningsWith(scene, "clamped (6 times, first materials[0].baseColorFactor)"), 1);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
+    TriangleBuilder b;
+    const int t = b.texture(redBlue());
+    const json info = {{"index", t}};
+    json turned = {{"index", t}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}};
+    const json material = {
+        {"alphaMode", "BLEND"},
+        {"normalTexture", info},
+        {"occlusionTexture", info},
+        {"emissiveFactor", {1, 1, 1}},
+        {"emissiveTexture", turned},
+        {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}}}},
+        {"extensions",
+         {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
+          {"KHR_materials_specular",
+           {{"specularColorFactor", {1, 0.5, 1}}, {"specularTexture", info}}},
+          {"KHR_materials_volume",
+           {{"thicknessFactor", 1},
+            {"attenuationDistance", 2},
+            {"attenuationColor", {1, 0, 0}},
+            {"thicknessTexture", info}}}}}};
+    b.add("materials", material);
+    b.add("materials", material);
+    const SceneDescription scene = b.load();
+    for (const char* kind :
+         {"BLEND", "normal maps", "texture transforms", "coordinate sets", "clearcoat",
+          "specularColorFactor", "specular textures", "attenuation", "thickness textures"}) {
+        EXPECT_EQ(warningsWith(scene, kind), 1) << kind;
+    }
+    EXPECT_EQ(warningsWith(scene, "2 times"), 9);
+    EXPECT_EQ(warningsWith(scene, "cclusion"), 0);
+    EXPECT_EQ(scene.warnings.size(), 9u);
+    EXPECT_EQ(scene.materials[0].alphaMode, Material::Alpha::Blend);
+}
+
+TEST(Material, DefaultsOfUnrenderedExtensionsAreNoNews) {
+    TriangleBuilder b;
+    const json info = {
+        {"index", b.texture(redBlue())},
+        {"extensions",
+         {{"KHR_texture_transform", {{"offset", {0, 0}}, {"rotation", 0}, {"scale", {1, 1}}}}}}};
+    b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", info}}},
+                        {"extensions",
+                         {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0}}},
+                          {"KHR_materials_specular", {{"specularColorFactor", {1, 1, 1}}}},
+                          {"KHR_materials_volume", {{"attenuationColor", {1, 0, 0}}}}}}});
+    EXPECT_TRUE(b.load().warnings.empty());
+}
+
+TEST(Material, UnknownExtensions) {
+    TriangleBuilder b;
+    b.root["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_ior", "EXT_foo"};
+    const SceneDescription scene = b.load();
+    EXPECT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(warningsWith(scene, "KHR_materials_unlit, EXT_foo"), 1);
+    b.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_mesh_quantization"};
+    EXPECT_NO_THROW(b.load());
+    b.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_draco_mesh_compression"};
+    expectRefused(b, {"extensionsRequired", "KHR_draco_mesh_compression"});
+    b.root["extensionsRequired"] = {"KHR_texture_transform"};
+    expectRefused(b, {"KHR_texture_transform"});
+}
+
+TEST(Material, BadValuesAreRefused) {
+    expectRefused(withMaterial({{"alphaMode", "GLASS"}}), {"alphaMode", "GLASS"});
+    expectRefused(withMaterial({{"alphaMode", 3}}), {"materials[0].alphaMode", "a string"});
+    expectRefused(withMaterial({{"doubleSided", 1}}), {"doubleSided", "true or false"});
+    expectRefused(withMaterial({{"emissiveFactor", {1, 2}}}), {"emissiveFactor", "3 numbers"});
+    expectRefused(withMaterial({{"emissiveFactor", {1, 2, "x"}}}), {"3 numbers"});
+    expectRefused(withMaterial({{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1}}}}}),
+                  {"baseColorFactor", "4 numbers"});
+    expectRefused(withMaterial({{"pbrMetallicRoughness", {{"roughnessFactor", "rough"}}}}),
+                  {"roughnessFactor", "a number"});
+    expectRefused(withMaterial({{"extensions", {{"KHR_materials_ior", {{"ior", "glass"}}}}}}),
+                  {"ior", "a number"});
+    expectRefused(withMaterial({{"extensions", {{"KHR_materials_ior", 1.5}}}}), {"an object"});
+    expectRefused(withMaterial({{"extensions",
+                                 {{"KHR_materials_specular", {{"specularColorFactor", {1, 1}}}}}}}),
+                  {"specularColorFactor", "3 numbers"});
+}
+
+TEST(Texture, TexelsWrapAndCodingByUse) {
+    TriangleBuilder b;
+    const int t = b.texture(redBlue(), {{"wrapS", 33071}, {"wrapT", 33648}});
+    const json info = {{"index", t}};
+    b.add("materials", {{"emissiveFactor", {1, 1, 1}},
+                        {"emissiveTexture", info},
+                        {"pbrMetallicRoughness",
+                         {{"baseColorTexture", info}, {"metallicRoughnessTexture", info}}},
+                        {"extensions",
+                         {{"KHR_materials_transmission",
+                           {{"transmissionFactor", 0.5}, {"transmissionTexture", info}}}}}});
+    const SceneDescription scene = b.load();
+    expectValid(scene);
+    ASSERT_EQ(scene.textures.size(), 2u);  // one as colour, one as data
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.baseColorTexture.value, m.emissiveTexture.value);
+    EXPECT_EQ(m.metallicRoughnessTexture.value, m.transmissionTexture.value);
+    const Texture& color = scene.textures[std::size_t(m.baseColorTexture.value)];
+    const Texture& data = scene.textures[std::size_t(m.metallicRoughnessTexture.value)];
+    EXPECT_TRUE(color.srgb);
+    EXPECT_FALSE(data.srgb);
+    for (const Texture& texture : {color, data}) {
+        EXPECT_EQ(texture.width, 2);
+        EXPECT_EQ(texture.height, 1);
+        EXPECT_EQ(texture.rgba, (ByteVector{255, 0, 0, 128, 0, 0, 255, 255}));
+        EXPECT_EQ(texture.wrapU, Texture::Wrap::ClampToEdge);
+        EXPECT_EQ(texture.wrapV, Texture::Wrap::MirroredRepeat);
+    }
+}
+
+TEST(Texture, SharedByImageAndSampler) {
+    TriangleBuilder b;
+    const int first = b.texture(redBlue());
+    const int same = b.add("textures", {{"source", 0}});
+    const int clamped =
+        b.add("textures", {{"source", 0}, {"sampler", b.add("samplers", {{"wrapS", 33071}})}});
+    for (const int t : {first, same, clamped}) {
+        b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}}}}}});
+    }
+    const SceneDescription scene = b.load();
+    EXPECT_EQ(scene.textures.size(), 2u);
+    EXPECT_EQ(scene.materials[0].baseColorTexture.value, scene.materials[1].baseColorTexture.value);
+    EXPECT_NE(scene.materials[0].baseColorTexture.value, scene.materials[2].baseColorTexture.value);
+    EXPECT_EQ(scene.textures[1].rgba, scene.textures[0].rgba);
+    EXPECT_EQ(scene.textures[0].wrapU, Texture::Wrap::Repeat);
+}
+
+TEST(Texture, WhatMultipliesBlackIsNotDecoded) {
+    TriangleBuilder b;
+    const json info = {{"index", b.texture({1, 2, 3})}};  // not even an image
+    b.add("materials",
+          {{"emissiveTexture", info},
+           {"extensions", {{"KHR_materials_transmission", {{"transmissionTexture", info}}}}}});
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.textures.empty());
+    EXPECT_FALSE(scene.materials[0].emissiveTexture);
+}
+
+TriangleBuilder withImage(const ByteVector& image, const json& sampler = {}) {
+    TriangleBuilder b;
+    const int t = b.texture(image, sampler);
+    b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}}}}}});
+    return b;
+}
+
+TEST(Texture, DamagedImagesAreRefused) {
+    EXPECT_NO_THROW(withImage(redBlue()).load());
+    expectRefused(withImage({}), {"images[0]", "PNG or JPEG"});
+    expectRefused(withImage({'G', 'I', 'F', '8', '9', 'a', 0, 0}), {"images[0]", "PNG or JPEG"});
+    ByteVector cut = redBlue();
+    for (const std::size_t size : {5ul, 20ul, 40ul, 50ul}) {
+        cut = redBlue();
+        ASSERT_LT(size, cut.size());
+        cut.resize(size);
+        expectRefused(withImage(cut), {"images[0]", "damaged"});
+    }
+}
+
+TEST(Texture, SizesAreCappedBeforeAnythingIsAllocated) {
+    ByteVector huge = redBlue();
+    for (const std::size_t at : {16ul, 20ul}) huge[at] = 0, huge[at + 1] = 0xF0;  // 15.7 million
+    expectRefused(withImage(huge), {"images[0]"});
+    // 20,000 x 20,000 of grey, which stb_image itself would accept.
+    ByteVector large = redBlue();
+    for (const std::size_t at : {16ul, 20ul}) large[at + 2] = 0x4E, large[at + 3] = 0x20;
+    large[25] = 0;
+    expectRefused(withImage(large), {"images[0]", "at most 268435456 texels", "20000 x 20000"});
+}
+
+TEST(Texture, SamplersAndSourcesAreChecked) {
+    expectRefused(withImage(redBlue(), {{"wrapS", 10498}}), {"samplers[0].wrapS", "10498"});
+    expectRefused(withImage(redBlue(), {{"wrapT", "x"}}), {"samplers[0].wrapT"});
+    TriangleBuilder b = withImage(redBlue());
+    b.root["images"][0]["uri"] = "a.png";
+    expectRefused(b, {"images[0]", "both"});
+    b.root["images"][0] = json::object();
+    expectRefused(b, {"images[0]", "neither"});
+    b.root["textures"][0].erase("source");
+    const SceneDescription scene = b.load();
+    EXPECT_EQ(warningsWith(scene, "without a PNG or JPEG image"), 1);
+    EXPECT_FALSE(scene.materials[0].baseColorTexture);
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,166 @@
+// Bins over all directions, and integrals over them, in the coordinates of the half vector: narrow
+// lobes and wide ones are resolved alike. The Jacobian from half vectors to directions is taken
+// numerically, so that it is independent of the formulas under test.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "tests/material/materials.h"
+
+namespace lacuna::test {
+
+class HalfVectorBins {
+  public:
+    static constexpr int kSectors = 8;
+    static constexpr int kSteps = 14;  ///< midpoints per bin and axis
+
+    explicit HalfVectorBins(const Case& c) : case_(c) {
+        const Vec3d ns = Vec3d(c.bsdf.ns());
+        const Vec3d v = Vec3d(c.from);
+        n_ = dot(ns, v) > 0 ? ns : -ns;
+        Vec3d tangent = v - n_ * dot(v, n_);
+        if (length(tangent) < 1e-6) {
+            tangent = Vec3d(Frame(Vec3(n_)).s);
+        }
+        s_ = normalize(tangent - n_ * dot(tangent, n_));
+        t_ = cross(n_, s_);
+        v_ = {dot(v, s_), dot(v, t_), dot(v, n_)};
+        const double alpha = std::max(1e-4, std::pow(double(c.parameters.roughness), 2));
+        // GGX falls off with the fourth power of the slope: rings by factors where alpha is small.
+        for (double k : {0.3, 0.6, 1.0, 1.6, 3.0, 8.0, 24.0, 72.0, 216.0, 648.0}) {
+            if (k <= 8 || alpha * k < 0.1) {
+                edges_.push_back(std::atan(alpha * k));
+            }
+        }
+        for (int degrees = 10; degrees <= 90; degrees += 10) {
+            edges_.push_back(degrees * std::numbers::pi / 180);
+        }
+        edges_.push_back(0);
+        std::sort(edges_.begin(), edges_.end());
+        // Rounded to float, grazing directions v and w lose their half vector, v + w being short:
+        // then the core of a narrow lobe is one bin.
+        const double core = 1e-7 / v_.z > 0.02 * alpha ? std::atan(8 * alpha) * 0.999 : 0;
+        unresolved_ =
+            std::size_t(std::upper_bound(edges_.begin(), edges_.end(), core) - edges_.begin() - 1);
+        unresolved_ += core > 0 ? 1 : 0;
+        const bool glass = c.parameters.transmission > 0;
+        kinds_ = glass ? 2 : 1;
+        eta_ = c.indexOn(!c.front) / c.indexOn(c.front);
+        // ior 1 transmits straight on: delta, without half vectors
+        if (!c.parameters.thin && eta_ == 1.0) {
+            kinds_ = 1;
+        }
+    }
+
+    std::size_t size() const { return std::size_t(kinds_) * (edges_.size() - 1) * kSectors; }
+
+    /// Bin of a direction, or size() if it has no half vector here.
+    std::size_t binOf(Vec3 toWorld) const {
+        const Vec3d w = normalize(Vec3d(toWorld));
+        Vec3d to{dot(w, s_), dot(w, t_), dot(w, n_)};
+        const bool transmits = to.z < 0;
+        Vec3d h;
+        if (!transmits || case_.parameters.thin) {
+            to.z = std::abs(to.z);
+            h = v_ + to;
+        } else {
+            h = v_ + to * eta_;
+            h = h.z < 0 ? -h : h;
+        }
+        if (transmits && kinds_ == 1) {
+            return size();
+        }
+        const double theta = std::atan2(std::hypot(h.x, h.y), h.z);
+        const double phi = std::atan2(h.y, h.x) / (2 * std::numbers::pi) + 0.5;
+        const auto at = std::upper_bound(edges_.begin(), edges_.end(), theta);
+        const std::size_t ring = std::clamp<std::ptrdiff_t>(at - edges_.begin() - 1, 0,
+                                                            std::ptrdiff_t(edges_.size()) - 2);
+        const std::size_t sector = std::min<std::size_t>(std::size_t(phi * kSectors), kSectors - 1);
+        return index(transmits ? 1 : 0, ring, sector);
+    }
+
+    /// Calls visit(bin, to, solid angle) for the midpoints of all bins.
+    template <class Visit>
+    void integrate(const Visit& visit) const {
+        for (int kind = 0; kind < kinds_; ++kind) {
+            for (std::size_t ring = 0; ring + 1 < edges_.size(); ++ring) {
+                const double dTheta = (edges_[ring + 1] - edges_[ring]) / kSteps;
+                const double dPhi = 2 * std::numbers::pi / kSectors / kSteps;
+                for (int a = 0; a < kSteps; ++a) {
+                    const double theta = edges_[ring] + (a + 0.5) * dTheta;
+                    for (int b = 0; b < kSectors * kSteps; ++b) {
+                        const double phi = (b + 0.5) * dPhi - std::numbers::pi;
+                        Vec3d to;
+                        if (!direction(kind, theta, phi, to)) {
+                            continue;
+                        }
+                        const double solidAngle =
+                            jacobian(kind, theta, phi, to, dTheta, dPhi) * dTheta * dPhi;
+                        const std::size_t bin =
+                            index(std::size_t(kind), ring, std::size_t(b / kSteps));
+                        visit(bin, Vec3(s_ * to.x + t_ * to.y + n_ * to.z), solidAngle);
+                    }
+                }
+            }
+        }
+    }
+
+  private:
+    std::size_t index(std::size_t kind, std::size_t ring, std::size_t sector) const {
+        const bool merged = ring < unresolved_;
+        return (kind * (edges_.size() - 1) + (merged ? 0 : ring)) * kSectors +
+               (merged ? 0 : sector);
+    }
+    /// The direction that a half vector (given by its angles) leads to; false if there is none.
+    bool direction(int kind, double theta, double phi, Vec3d& to) const {
+        const Vec3d h{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                      std::cos(theta)};
+        const double vh = dot(v_, h);
+        if (vh <= 0) {
+            return false;
+        }
+        if (kind == 0 || case_.parameters.thin) {
+            to = h * (2 * vh) - v_;
+            const bool above = to.z > 0;
+            to.z = kind == 0 ? to.z : -to.z;
+            return above;
+        }
+        const double sine2 = (1 - vh * vh) / (eta_ * eta_);
+        if (sine2 >= 1) {
+            return false;
+        }
+        to = h * (vh / eta_ - std::sqrt(1 - sine2)) - v_ * (1 / eta_);
+        return to.z < 0;
+    }
+    double jacobian(int kind, double theta, double phi, const Vec3d& at, double dTheta,
+                    double dPhi) const {
+        const double e = 1e-4;
+        const auto difference = [&](double stepTheta, double stepPhi) {
+            Vec3d plus, minus;
+            const bool hasPlus = direction(kind, theta + stepTheta, phi + stepPhi, plus);
+            const bool hasMinus = direction(kind, theta - stepTheta, phi - stepPhi, minus);
+            // `direction` sets its result also for a reflection beyond the horizon; not for the
+            // rest.
+            if (hasPlus && hasMinus) {
+                return (plus - minus) * 0.5;
+            }
+            return hasPlus ? plus - at : hasMinus ? at - minus : Vec3d{};
+        };
+        const Vec3d a = difference(dTheta * e, 0) * (1 / (dTheta * e));
+        const Vec3d b = difference(0, dPhi * e) * (1 / (dPhi * e));
+        return length(cross(a, b));
+    }
+
+    const Case& case_;
+    Vec3d s_, t_, n_, v_;
+    double eta_ = 1;
+    int kinds_ = 1;
+    std::vector<double> edges_;
+    std::size_t unresolved_ = 0;  ///< number of innermost rings that are one bin
+};
+
+}  // namespace lacuna::test

@@ -1,0 +1,141 @@
+// The grid that the contract of a BSDF is tested on: material x roughness x angle x side of the
+// surface x shading normal x walk.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "libcore/base/sampling.h"
+#include "libcore/material/albedo_tables.h"
+#include "libcore/material/bsdf.h"
+
+namespace lacuna::test {
+
+struct Material {
+    std::string name;
+    Bsdf::Parameters parameters;
+};
+
+inline Bsdf::Parameters makeParameters(Rgb color, float metallic, float transmission,
+                                       float specular = 1.0f, float ior = 1.5f, bool thin = false) {
+    Bsdf::Parameters p;
+    p.baseColor = color;
+    p.metallic = metallic;
+    p.transmission = transmission;
+    p.specular = specular;
+    p.ior = ior;
+    p.thin = thin;
+    return p;
+}
+
+/// Every kind of lobe alone and together; roughness is set by the test.
+inline std::vector<Material> materials() {
+    const Rgb white(1.0f), red(0.9f, 0.3f, 0.1f), black(0.0f);
+    return {
+        {"lambert", makeParameters(red, 0, 0, 0)},
+        {"plastic", makeParameters(white, 0, 0)},
+        {"plastic half specular, ior 1.8", makeParameters(red, 0, 0, 0.5f, 1.8f)},
+        {"coat on black", makeParameters(black, 0, 0)},
+        {"metal", makeParameters(red, 1, 0)},
+        {"mirror", makeParameters(white, 1, 0)},
+        {"glass", makeParameters(white, 0, 1)},
+        {"tinted glass, ior 1.1", makeParameters(red, 0, 1, 1, 1.1f)},
+        {"glass, ior 1", makeParameters(red, 0, 1, 1, 1.0f)},
+        {"thin glass", makeParameters(white, 0, 1, 1, 1.5f, true)},
+        {"metal over plastic", makeParameters(red, 0.4f, 0)},
+        {"plastic and glass", makeParameters(red, 0, 0.6f, 0.8f, 1.5f)},
+        {"everything, solid", makeParameters(red, 0.3f, 0.5f, 1, 1.33f)},
+        {"everything, thin", makeParameters(red, 0.3f, 0.5f, 1, 1.33f, true)},
+        {"lambert and glass", makeParameters(white, 0, 0.5f, 0)},
+    };
+}
+
+/// alpha = 0, 1e-4 (rounded up), 0.01, 0.09, 0.36, 1.
+inline constexpr std::array<float, 6> kRoughness{0.0f, 0.01001f, 0.1f, 0.3f, 0.6f, 1.0f};
+inline constexpr std::array<double, 5> kDegrees{0.0, 30.0, 60.0, 85.0, 89.9};
+
+/// Tables for every ior of `materials()`.
+inline const AlbedoTables& tables() {
+    static const AlbedoTables t = [] {
+        std::vector<float> iors;
+        for (const Material& m : materials()) {
+            iors.push_back(m.parameters.ior);
+        }
+        return AlbedoTables(iors);
+    }();
+    return t;
+}
+
+/// One point of the grid.
+struct Case {
+    std::string name;
+    Bsdf bsdf;
+    Bsdf::Parameters parameters;
+    Vec3 from;    ///< the known direction
+    Side side;    ///< of the walk that samples
+    bool tilted;  ///< ns and ng differ
+    bool front;   ///< `from` lies outside
+
+    double indexOn(bool outside) const {
+        return outside || parameters.thin ? 1.0 : double(parameters.ior);
+    }
+    BsdfEvaluation evaluate(Vec3 to, ScatterEvent event) const {
+        return side == Side::Eye ? bsdf.evaluate(from, to, event) : bsdf.evaluate(to, from, event);
+    }
+    double pdf(const BsdfEvaluation& e) const {
+        return double(side == Side::Eye ? e.pdfWToLight : e.pdfWToEye);
+    }
+    /// f |to.ng| with the eye walk's eta^2 taken out: what may not gain energy. Green: a channel
+    /// in which the coloured materials are neither black nor white.
+    double energy(const BsdfEvaluation& e, Vec3 to) const {
+        const bool toFront = dot(to, bsdf.ng()) > 0;
+        const double cosine = std::abs(double(dot(to, bsdf.ng())));
+        const double scale =
+            side == Side::Eye ? std::pow(indexOn(toFront) / indexOn(front), 2) : 1.0;
+        return double(e.f.g) * cosine * scale;
+    }
+};
+
+/// A rotation that no axis is special in.
+inline const Frame& world() {
+    static const Frame frame(normalize(Vec3{0.36f, -0.48f, 0.8f}));
+    return frame;
+}
+
+inline Vec3 polar(double degrees, double azimuthDegrees) {
+    const double theta = degrees * std::numbers::pi / 180,
+                 phi = azimuthDegrees * std::numbers::pi / 180;
+    return Vec3(
+        Vec3d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+}
+
+inline std::vector<Case> grid() {
+    std::vector<Case> cases;
+    for (const Material& m : materials()) {
+        for (const float roughness : kRoughness) {
+            for (const double degrees : kDegrees) {
+                for (int bits = 0; bits < 8; ++bits) {
+                    const bool front = (bits & 1) == 0, tilted = (bits & 2) != 0;
+                    const Side side = (bits & 4) != 0 ? Side::Light : Side::Eye;
+                    Bsdf::Parameters p = m.parameters;
+                    p.roughness = roughness;
+                    // `from` stays on the same side of ng: ng leans towards it.
+                    const Vec3 ng = world().toWorld(tilted ? polar(20, 77) : Vec3{0, 0, 1});
+                    const Vec3 up = world().toWorld(polar(degrees, 40));
+                    cases.push_back({m.name + ", roughness " + std::to_string(roughness) + ", " +
+                                         std::to_string(degrees) + " degrees" +
+                                         (front ? "" : ", back") + (tilted ? ", tilted" : "") +
+                                         (side == Side::Eye ? ", eye walk" : ", light walk"),
+                                     Bsdf(p, ng, world().n, tables()), p, front ? up : -up, side,
+                                     tilted, front});
+                }
+            }
+        }
+    }
+    return cases;
+}
+
+}  // namespace lacuna::test

@@ -1,0 +1,294 @@
+// What holds exactly, or to rounding, for every pair of directions (numerics.md 3, 5, 6, 23).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/material/materials.h"
+#include "tests/material/statistics.h"
+
+namespace lacuna::test {
+namespace {
+
+void expectClose(float a, float b, float relative, const char* what) {
+    EXPECT_LE(std::abs(a - b), relative * std::max(std::abs(a), std::abs(b)))
+        << what << a << " " << b;
+}
+
+Vec3 uniformDirection(Random& random) {
+    const double z = 2 * random.real() - 1, phi = 2 * std::numbers::pi * random.real();
+    const double r = std::sqrt(std::max(0.0, 1 - z * z));
+    return Vec3(Vec3d{r * std::cos(phi), r * std::sin(phi), z});
+}
+
+TEST(BsdfContract, SampleEvaluationIsEvaluateBitForBit) {
+    Random random(11);
+    int drawn = 0;
+    for (const Case& c : grid()) {
+        for (int i = 0; i < 20; ++i) {
+            const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+            const auto s = c.bsdf.sample(c.side, c.from, u0, u1, u2);
+            if (!s) {
+                continue;
+            }
+            ++drawn;
+            const BsdfEvaluation e = c.evaluate(s->to, s->event);
+            ASSERT_EQ(e.f, s->evaluation.f) << c.name;
+            ASSERT_EQ(e.pdfWToLight, s->evaluation.pdfWToLight) << c.name;
+            ASSERT_EQ(e.pdfWToEye, s->evaluation.pdfWToEye) << c.name;
+            ASSERT_NEAR(length(s->to), 1, 1e-6) << c.name;
+            // Rules of bsdf.h: grazing and side.
+            const float g = dot(s->to, c.bsdf.ng()), n = dot(s->to, c.bsdf.ns());
+            ASSERT_GE(std::min(std::abs(g), std::abs(n)), kMinCosine);
+            ASSERT_GT(g * n, 0);
+        }
+    }
+    EXPECT_GT(drawn, 50000);
+}
+
+// f_ns / eta_eye^2 is symmetric, and a density is the same number whichever role its direction
+// plays.
+TEST(BsdfContract, ReciprocityAndSwappedRoles) {
+    Random random(12);
+    int compared = 0;
+    for (const Case& c : grid()) {
+        for (int i = 0; i < 20; ++i) {
+            const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+            const auto s = c.bsdf.sample(c.side, c.from, u0, u1, u2);
+            const Vec3 a = c.from;
+            const Vec3 b = s ? s->to : uniformDirection(random);
+            const ScatterEvent event = s ? s->event : ScatterEvent::Smooth;
+            const BsdfEvaluation ab = c.bsdf.evaluate(a, b, event);
+            const BsdfEvaluation ba = c.bsdf.evaluate(b, a, event);
+            SCOPED_TRACE(c.name);
+            // A delta event evaluates Fresnel at toEye's cosine: it differs from toLight's by
+            // rounding.
+            const float tolerance =
+                isDelta(event) ? 1e-4f / std::min(1.0f, 100 * std::abs(dot(a, c.bsdf.ns())))
+                               : 2e-6f;
+            expectClose(ab.pdfWToLight, ba.pdfWToEye, tolerance, "pdf a -> b ");
+            expectClose(ab.pdfWToEye, ba.pdfWToLight, tolerance, "pdf b -> a ");
+            const auto symmetric = [&](const BsdfEvaluation& e, Vec3 toEye, Vec3 toLight) {
+                const bool transmits = dot(toEye, c.bsdf.ns()) * dot(toLight, c.bsdf.ns()) < 0;
+                const float eta = transmits ? float(c.indexOn(dot(toEye, c.bsdf.ng()) > 0)) : 1.0f;
+                return e.f.r * std::abs(dot(toLight, c.bsdf.ng()) / dot(toLight, c.bsdf.ns())) /
+                       (eta * eta);
+            };
+            expectClose(symmetric(ab, a, b), symmetric(ba, b, a), tolerance + 1e-6f, "f ");
+            compared += ab.pdfWToLight > 0;
+        }
+    }
+    EXPECT_GT(compared, 50000);
+}
+
+// Both walks estimate the same integral over pairs of directions (adjointness): what each
+// throughput step multiplies by is f |to.ng| / pdfW(to), with tilted normals, on both sides of
+// glass.
+TEST(BsdfContract, BothWalksAgree) {
+    constexpr int kSamples = 50000;
+    const std::vector<Material> all = materials();
+    const double significance = sidak(1e-3, double(all.size() * 3));
+    for (const Material& m : all) {
+        for (const float roughness : {0.0f, 0.3f, 0.8f}) {
+            Bsdf::Parameters p = m.parameters;
+            p.roughness = roughness;
+            const Vec3 ng = world().toWorld(polar(25, 77));
+            const Vec3 ns = world().n;
+            const Bsdf bsdf(p, ng, ns, tables());
+            Random random(13);
+            Moments walk[2];
+            for (int i = 0; i < kSamples; ++i) {
+                for (const Side side : {Side::Eye, Side::Light}) {
+                    const Vec3 from = uniformDirection(random);
+                    const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+                    const auto s = bsdf.sample(side, from, u0, u1, u2);
+                    double value = 0;
+                    if (s) {
+                        const Vec3 eye = side == Side::Eye ? from : s->to;
+                        const Vec3 light = side == Side::Eye ? s->to : from;
+                        const double pdfW = double(side == Side::Eye ? s->evaluation.pdfWToLight
+                                                                     : s->evaluation.pdfWToEye);
+                        // |eye.ns| keeps the adjoint factor's variance finite; the rest is
+                        // arbitrary.
+                        const double test = std::abs(double(dot(eye, ns))) *
+                                            (1.2 + double(dot(eye, Vec3{0.6f, 0, 0.8f}))) *
+                                            (1.1 - double(dot(light, Vec3{0, 0.8f, 0.6f})));
+                        value = test * double(s->evaluation.f.g) / pdfW *
+                                std::abs(double(dot(eye, ng)) * double(dot(light, ng)));
+                    }
+                    walk[int(side)].add(value);
+                }
+            }
+            const double error = std::hypot(walk[0].standardError(), walk[1].standardError());
+            const double z = std::abs(walk[0].mean() - walk[1].mean()) / std::max(1e-12, error);
+            EXPECT_GT(normalTail(z, 2), significance)
+                << m.name << " " << roughness << ": " << walk[0].mean() << " " << walk[1].mean();
+        }
+    }
+}
+
+TEST(BsdfContract, SpecularZeroIsExactlyLambert) {
+    Random random(14);
+    const Rgb rho(0.8f, 0.5f, 0.25f);
+    for (const float roughness : kRoughness) {
+        Bsdf::Parameters p = makeParameters(rho, 0, 0, 0);
+        p.roughness = roughness;
+        const Bsdf bsdf(p, world().n, world().n, AlbedoTables());
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 e = uniformDirection(random), l = uniformDirection(random);
+            const BsdfEvaluation v = bsdf.evaluate(e, l);
+            const float ce = dot(e, world().n), cl = dot(l, world().n);
+            if (ce * cl > 0) {
+                EXPECT_EQ(v.f, rho * kInvPi);
+                EXPECT_EQ(v.pdfWToLight, std::abs(cl) * kInvPi);
+                EXPECT_EQ(v.pdfWToEye, std::abs(ce) * kInvPi);
+            } else {
+                EXPECT_EQ(v.f, Rgb(0.0f));
+            }
+        }
+        EXPECT_FALSE(bsdf.sample(Side::Eye, world().n, 0.5f, 0.5f, 0.5f)->event !=
+                     ScatterEvent::Smooth);
+        EXPECT_EQ(bsdf.survivalAlbedo(), 0.8f);
+    }
+}
+
+// Lossless smooth glass: both events together return everything; seen from inside, radiance is n^2
+// of what it is outside.
+TEST(BsdfContract, SmoothGlassIsLossless) {
+    for (const bool thin : {false, true}) {
+        for (const float ior : {1.0f, 1.1f, 1.5f, 2.4f}) {
+            Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 1, 1, ior, thin);
+            p.roughness = 0;
+            const Bsdf bsdf(p, world().n, world().n, tables());
+            EXPECT_FALSE(bsdf.connectable());
+            for (const double degrees : {0.0, 20.0, 40.0, 43.0, 60.0, 89.0, 89.9}) {
+                for (const bool front : {true, false}) {
+                    const Vec3 up = world().toWorld(polar(degrees, 123));
+                    const Vec3 from = front ? up : -up;
+                    double sum = 0, radiance = 0;
+                    bool seen[3] = {false, false, false};
+                    // Both outcomes of the choice, each once, with its probability as weight.
+                    for (const float u : {0.0f, 0x1.fffffep-1f}) {
+                        const auto s = bsdf.sample(Side::Eye, from, u, 0.3f, 0.6f);
+                        if (!s || seen[std::size_t(s->event)]) {
+                            continue;
+                        }
+                        seen[std::size_t(s->event)] = true;
+                        const bool transmits = s->event == ScatterEvent::DeltaTransmission;
+                        const bool toFront = dot(s->to, world().n) > 0;
+                        const double eta = transmits && !thin && !toFront ? double(ior) : 1.0;
+                        const double pmf = double(s->evaluation.pdfWToLight) /
+                                           (eta * eta * std::abs(double(dot(s->to, world().n))));
+                        const double weight = double(s->evaluation.f.r) *
+                                              std::abs(double(dot(s->to, world().n))) /
+                                              double(s->evaluation.pdfWToLight);
+                        const double etaEye = transmits && !thin && !front ? double(ior) : 1.0;
+                        radiance += pmf * weight;
+                        sum += pmf * weight * eta * eta / (etaEye * etaEye);
+                    }
+                    EXPECT_NEAR(sum, 1, 2e-6) << ior << " " << degrees << " " << front;
+                    // In a constant environment of 1 (the closed scene adds n^2 inside).
+                    if (!thin && !front && degrees < 20) {
+                        const double f = std::pow((ior - 1) / (ior + 1), 2);
+                        EXPECT_NEAR(radiance, f + (1 - f) * ior * ior, 1e-4);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(BsdfContract, FuzzedInputsStayFinite) {
+    Random random(15);
+    const auto extreme = [&](float limit) {
+        const float u = random.next();
+        return u < 0.2f ? 0.0f : u < 0.4f ? limit : random.next() * limit;
+    };
+    // Sides, grazing angles around kMinCosine, exact tangents.
+    const auto direction = [&](Vec3 n) {
+        const Frame frame(n);
+        const double cosine = std::exp(std::log(1e-9) * random.real()) *
+                              (random.next() < 0.5f ? -1 : 1) * (random.next() < 0.05f ? 0 : 1);
+        const double phi = 2 * std::numbers::pi * random.real();
+        const double r = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+        return normalize(frame.toWorld(Vec3(Vec3d{r * std::cos(phi), r * std::sin(phi), cosine})));
+    };
+    const auto isSane = [](const BsdfEvaluation& e) {
+        const auto sane = [](float x) { return x >= 0 && std::isfinite(x); };
+        return sane(e.f.r) && sane(e.f.g) && sane(e.f.b) && sane(e.pdfWToEye) &&
+               sane(e.pdfWToLight);
+    };
+    for (int i = 0; i < 300000; ++i) {
+        Bsdf::Parameters p;
+        p.baseColor = {extreme(1), extreme(1), extreme(1)};
+        p.metallic = extreme(1);
+        p.transmission = extreme(1);
+        p.specular = random.next() < 0.1f ? 1e-30f : extreme(1);
+        p.thin = random.next() < 0.5f;
+        const float roughness[] = {0, 0.0099f, 0.01f, 0.010001f, 0.02f, random.next(), 1};
+        p.roughness = roughness[std::size_t(random.next() * 7)];
+        const float ior[] = {1,  1.0000001f, 1.00001f, 1.001f, 1.5f, 1 + random.next(),
+                             10, 1e4f,       1e30f};
+        p.ior = ior[std::size_t(random.next() * 9)];
+        const Vec3 ns = uniformDirection(random);
+        const Vec3 other = uniformDirection(random);
+        const Vec3 ng = random.next() < 0.5f ? ns : dot(other, ns) > 0 ? other : -other;
+        const Bsdf bsdf(p, ng, ns, tables());
+        const Vec3 a = direction(ns);
+        const Vec3 near = normalize(ns * (2 * dot(a, ns)) - a);
+        const Vec3 b[] = {direction(ns), -a, a, near, direction(ng)};
+        for (const Vec3& to : b) {
+            for (const ScatterEvent e : {ScatterEvent::Smooth, ScatterEvent::DeltaReflection,
+                                         ScatterEvent::DeltaTransmission}) {
+                ASSERT_TRUE(isSane(bsdf.evaluate(a, to, e)));
+            }
+        }
+        const float edge = 0x1.fffffep-1f;
+        const auto u = [&] {
+            const float x = random.next();
+            return x < 0.1f ? 0.0f : x < 0.2f ? edge : x < 0.3f ? 0.5f : random.next();
+        };
+        for (const Side side : {Side::Eye, Side::Light}) {
+            const float u0 = u(), u1 = u(), u2 = u();
+            const auto s = bsdf.sample(side, a, u0, u1, u2);
+            if (s) {
+                ASSERT_TRUE(isSane(s->evaluation));
+                ASSERT_TRUE(isFinite(s->to));
+                ASSERT_GT(side == Side::Eye ? s->evaluation.pdfWToLight : s->evaluation.pdfWToEye,
+                          0);
+            }
+        }
+        ASSERT_GT(bsdf.survivalAlbedo(), 0);
+        ASSERT_LE(bsdf.survivalAlbedo(), 1);
+        ASSERT_TRUE(isFinite(bsdf.layerAlbedo()));
+    }
+}
+
+TEST(BsdfContract, EmptyAndBlack) {
+    const Bsdf empty;
+    EXPECT_TRUE(empty.isBlack());
+    EXPECT_FALSE(empty.connectable());
+    EXPECT_FALSE(empty.sample(Side::Eye, Vec3{0, 0, 1}, 0.5f, 0.5f, 0.5f));
+    const Bsdf black(makeParameters(Rgb(0.0f), 0, 0, 0), world().n, world().n, tables());
+    EXPECT_TRUE(black.isBlack());
+    // A smooth coat keeps its base connectable; a mirror has nothing to connect to.
+    Bsdf::Parameters p = makeParameters(Rgb(0.5f), 0, 0);
+    p.roughness = 0;
+    EXPECT_TRUE(Bsdf(p, world().n, world().n, tables()).connectable());
+    p.metallic = 1;
+    EXPECT_FALSE(Bsdf(p, world().n, world().n, tables()).connectable());
+    // ior 1 lets a rough solid body through in a straight line.
+    p = makeParameters(Rgb(0.5f), 0, 1, 1, 1.0f);
+    p.roughness = 0.7f;
+    const Vec3 from = world().toWorld(polar(70, 20));
+    const auto s =
+        Bsdf(p, world().n, world().n, tables()).sample(Side::Eye, from, 0.4f, 0.1f, 0.2f);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->event, ScatterEvent::DeltaTransmission);
+    EXPECT_LT(length(s->to + from), 1e-6f);
+}
+
+}  // namespace
+}  // namespace lacuna::test

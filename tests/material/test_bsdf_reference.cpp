@@ -1,0 +1,274 @@
+// Against the textbook: the published formulas in double, local coordinates, separate from the
+// renderer's arrangement of them; and the delta events as limits of narrow lobes (numerics.md 2).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "libcore/material/fresnel.h"
+#include "tests/material/materials.h"
+#include "tests/material/statistics.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+double textbookD(double alpha, double cosine) {
+    const double c2 = cosine * cosine, t = (1 - c2) / c2;
+    return 1 / (kPiD * alpha * alpha * c2 * c2 * std::pow(1 + t / (alpha * alpha), 2));
+}
+double lambda(double alpha, double cosine) {
+    const double t2 = 1 / (cosine * cosine) - 1;
+    return (std::sqrt(1 + alpha * alpha * t2) - 1) / 2;
+}
+/// Fresnel through Snell's law and the two polarisations.
+double textbookFresnel(double cosine, double eta) {
+    const double sine = std::sqrt(1 - cosine * cosine) / eta;
+    if (sine >= 1) {
+        return 1;
+    }
+    const double ct = std::sqrt(1 - sine * sine);
+    const double s = (cosine - eta * ct) / (cosine + eta * ct);
+    const double p = (eta * cosine - ct) / (eta * cosine + ct);
+    return (s * s + p * p) / 2;
+}
+
+struct Reference {
+    double f = 0, pdfToLight = 0, pdfToEye = 0;
+};
+
+/// Reflection [Walter07 eq 20] and refraction [eq 21], radiance convention; n = +z, z > 0 outside.
+Reference glassReference(Vec3d e, Vec3d l, double alpha, double ior) {
+    const double etaE = e.z > 0 ? 1 : ior, etaL = l.z > 0 ? 1 : ior;
+    const bool reflects = e.z * l.z > 0;
+    Vec3d h = normalize(reflects ? e + l : -(e * etaE + l * etaL));
+    h = h.z < 0 ? -h : h;
+    Reference r;
+    if (dot(e, h) * e.z <= 0 || dot(l, h) * l.z <= 0) {
+        return r;
+    }
+    const double eh = std::abs(dot(e, h)), lh = std::abs(dot(l, h));
+    const double ce = std::abs(e.z), cl = std::abs(l.z);
+    const double d = textbookD(alpha, h.z);
+    const double fresnel = textbookFresnel(eh, e.z > 0 ? ior : 1 / ior);
+    const double g2 = 1 / (1 + lambda(alpha, ce) + lambda(alpha, cl));
+    const double visibleE = d * eh / (1 + lambda(alpha, ce)) / ce;
+    const double visibleL = d * lh / (1 + lambda(alpha, cl)) / cl;
+    if (reflects) {
+        r.f = fresnel * d * g2 / (4 * ce * cl);
+        r.pdfToLight = fresnel * visibleE / (4 * eh);
+        r.pdfToEye = fresnel * visibleL / (4 * lh);
+        return r;
+    }
+    const double s = etaE * dot(e, h) + etaL * dot(l, h);
+    r.f = eh * lh / (ce * cl) * etaE * etaE * (1 - fresnel) * g2 * d / (s * s);
+    r.pdfToLight = (1 - fresnel) * visibleE * etaL * etaL * lh / (s * s);
+    r.pdfToEye = (1 - fresnel) * visibleL * etaE * etaE * eh / (s * s);
+    return r;
+}
+
+Vec3d randomDirection(Random& random) {
+    const double z = 2 * random.real() - 1, phi = 2 * kPiD * random.real();
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+TEST(BsdfReference, GlassFollowsWalter) {
+    Random random(21);
+    int refracted = 0;
+    for (const double ior : {1.1, 1.5, 2.4}) {
+        for (const double roughness : {0.2, 0.5, 1.0}) {
+            Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 1, 1, float(ior));
+            p.roughness = float(roughness);
+            const Bsdf bsdf(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+            for (int i = 0; i < 4000; ++i) {
+                const Vec3 e(randomDirection(random)), l(randomDirection(random));
+                if (std::min(std::abs(e.z), std::abs(l.z)) < 0.01f) {
+                    continue;
+                }
+                const Reference r = glassReference(
+                    Vec3d(e), Vec3d(l), double(p.roughness) * double(p.roughness), double(p.ior));
+                const BsdfEvaluation v = bsdf.evaluate(e, l);
+                // Where the microfacet is nearly grazing, 1 - F itself is small and rounded.
+                const auto near = [](double x) { return 1e-3 * x + 1e-5; };
+                ASSERT_NEAR(double(v.f.r), r.f, near(r.f)) << ior << " " << roughness;
+                ASSERT_NEAR(double(v.pdfWToLight), r.pdfToLight, near(r.pdfToLight));
+                ASSERT_NEAR(double(v.pdfWToEye), r.pdfToEye, near(r.pdfToEye));
+                refracted += e.z * l.z < 0 && r.f > 0;
+            }
+        }
+    }
+    EXPECT_GT(refracted, 1000);
+}
+
+TEST(BsdfReference, MetalAndThinGlass) {
+    Random random(22);
+    const Rgb f0(0.9f, 0.5f, 0.1f);
+    for (const double roughness : {0.2, 0.5, 1.0}) {
+        Bsdf::Parameters p = makeParameters(f0, 1, 0);
+        p.roughness = float(roughness);
+        const Bsdf metal(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        p = makeParameters(f0, 0, 1, 1, 1.5f, true);
+        p.roughness = float(roughness);
+        const Bsdf thin(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        const double alpha = double(p.roughness) * double(p.roughness);
+        for (int i = 0; i < 4000; ++i) {
+            Vec3d e = randomDirection(random), l = randomDirection(random);
+            e.z = std::abs(e.z) + 0.01;
+            l.z = std::abs(l.z) + 0.01;
+            e = normalize(e);
+            l = normalize(l);
+            const Vec3d h = normalize(e + l);
+            const double eh = dot(e, h);
+            const double lobe = textbookD(alpha, h.z) /
+                                (1 + lambda(alpha, e.z) + lambda(alpha, l.z)) / (4 * e.z * l.z);
+            const double density = textbookD(alpha, h.z) / (1 + lambda(alpha, e.z)) / (4 * e.z);
+            const double schlickF = 0.1 + 0.9 * std::pow(1 - eh, 5);
+            const BsdfEvaluation m = metal.evaluate(Vec3(e), Vec3(l));
+            ASSERT_NEAR(double(m.f.b), lobe * schlickF, 1e-3 * lobe);
+            ASSERT_NEAR(double(m.pdfWToLight), density, 1e-3 * density);
+            const double fresnel = textbookFresnel(eh, 1.5);
+            const BsdfEvaluation r = thin.evaluate(Vec3(e), Vec3(l));
+            ASSERT_NEAR(double(r.f.b), lobe * fresnel, 1e-3 * lobe);
+            // Both ways through.
+            const BsdfEvaluation t = thin.evaluate(Vec3(e), Vec3(Vec3d{l.x, l.y, -l.z}));
+            const BsdfEvaluation u = thin.evaluate(Vec3(Vec3d{e.x, e.y, -e.z}), Vec3(l));
+            ASSERT_NEAR(double(t.f.b), lobe * (1 - fresnel) * 0.1, 1e-3 * lobe);
+            ASSERT_NEAR(double(u.f.b), double(t.f.b), 1e-5 * lobe);
+            ASSERT_NEAR(double(t.pdfWToLight), density * (1 - fresnel), 1e-3 * density);
+        }
+    }
+}
+
+// The delta event is the limit of the narrowest rough lobe: the same ratio of the two densities and
+// the same f / pdfW; for refraction that ratio is (eta_l / eta_e)^2 |l.ns| / |e.ns|.
+TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
+    int compared = 0;
+    for (const Material& m : materials()) {
+        for (const double degrees : {0.0, 25.0, 38.0, 55.0, 75.0}) {
+            for (const bool tilted : {false, true}) {
+                for (const bool front : {true, false}) {
+                    Bsdf::Parameters p = m.parameters;
+                    const Vec3 ng = tilted ? world().toWorld(polar(12, 200)) : world().n;
+                    p.roughness = 0;
+                    const Bsdf delta(p, ng, world().n, tables());
+                    p.roughness = 0.01001f;
+                    const Bsdf rough(p, ng, world().n, tables());
+                    const Vec3 up = world().toWorld(polar(degrees, 10));
+                    const Vec3 from = front ? up : -up;
+                    for (const float u : {0.0f, 0.5f, 0.8f, 0.9999f}) {
+                        const auto s = delta.sample(Side::Eye, from, u, 0.5f, 0.5f);
+                        if (!s || !isDelta(s->event)) {
+                            continue;
+                        }
+                        const BsdfEvaluation& d = s->evaluation;
+                        const BsdfEvaluation r = rough.evaluate(from, s->to);
+                        if (p.ior == 1.0f && s->event == ScatterEvent::DeltaTransmission) {
+                            EXPECT_EQ(rough.evaluate(from, s->to, s->event).f, d.f);
+                            continue;
+                        }
+                        SCOPED_TRACE(m.name + " " + std::to_string(degrees) + " " +
+                                     std::to_string(front) + std::to_string(tilted));
+                        ASSERT_GT(r.pdfWToLight, 1e3f);
+                        EXPECT_NEAR(r.pdfWToLight / r.pdfWToEye / (d.pdfWToLight / d.pdfWToEye), 1,
+                                    0.01);
+                        EXPECT_NEAR(r.f.r / r.pdfWToLight / (d.f.r / d.pdfWToLight), 1, 0.01);
+                        EXPECT_NEAR(r.f.b / r.pdfWToEye / (d.f.b / d.pdfWToEye), 1, 0.01);
+                        ++compared;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(compared, 400);
+}
+
+TEST(BsdfReference, CoatOverDiffuse) {
+    // Smooth: rho/pi (1 - F)(1 - F)/(1 - F_avg), everything reflected where rho is 1.
+    Random random(23);
+    for (const double specular : {0.5, 1.0}) {
+        Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 0, float(specular));
+        p.roughness = 0;
+        const Bsdf bsdf(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, AlbedoTables());
+        double average = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double mu = (i + 0.5) / 20000;
+            average += 2 * mu * textbookFresnel(mu, 1.5) / 20000;
+        }
+        for (int i = 0; i < 1000; ++i) {
+            Vec3d e = randomDirection(random), l = randomDirection(random);
+            e.z = std::abs(e.z) + 1e-3;
+            l.z = std::abs(l.z) + 1e-3;
+            e = normalize(e);
+            l = normalize(l);
+            const double expected = (1 - specular * textbookFresnel(e.z, 1.5)) *
+                                    (1 - specular * textbookFresnel(l.z, 1.5)) /
+                                    (1 - specular * average) / kPiD;
+            EXPECT_NEAR(double(bsdf.evaluate(Vec3(e), Vec3(l)).f.g), expected, 1e-5);
+        }
+    }
+}
+
+// White furnace: what the layer does not reflect, a white base does, at every roughness and angle.
+TEST(BsdfReference, WhitePlasticReturnsEverything) {
+    Random random(25);
+    const double significance = sidak(1e-3, 3 * 6 * 5);
+    for (const auto& [specular, ior] : {std::pair{1.0f, 1.5f}, {0.5f, 1.8f}, {1.0f, 1.33f}}) {
+        for (const float roughness : kRoughness) {
+            for (const double degrees : kDegrees) {
+                Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 0, specular, ior);
+                p.roughness = roughness;
+                const Bsdf bsdf(p, world().n, world().n, tables());
+                const Vec3 from = world().toWorld(polar(degrees, 300));
+                Moments albedo;
+                for (int i = 0; i < 20000; ++i) {
+                    const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+                    const auto s = bsdf.sample(Side::Eye, from, u0, u1, u2);
+                    albedo.add(s ? double(s->evaluation.f.g) *
+                                       std::abs(double(dot(s->to, world().n))) /
+                                       double(s->evaluation.pdfWToLight)
+                                 : 0.0);
+                }
+                const double excess =
+                    std::max(0.0, std::abs(albedo.mean() - 1) - double(kTableError));
+                EXPECT_GT(normalTail(excess / std::max(1e-9, albedo.standardError()), 2),
+                          significance)
+                    << specular << " " << roughness << " " << degrees << ": " << albedo.mean()
+                    << " +- " << albedo.standardError();
+            }
+        }
+    }
+}
+
+// Roulette's estimate is an upper one for the mean over directions.
+TEST(BsdfReference, SurvivalAlbedoBoundsTheMeanAlbedo) {
+    Random random(24);
+    for (const Material& m : materials()) {
+        for (const float roughness : kRoughness) {
+            Bsdf::Parameters p = m.parameters;
+            p.roughness = roughness;
+            const Bsdf bsdf(p, world().n, world().n, tables());
+            Moments albedo;
+            for (int i = 0; i < 4000; ++i) {
+                const float a = random.next(), b = random.next(), u0 = random.next();
+                const float u1 = random.next(), u2 = random.next();
+                const Vec3 from = world().toWorld(cosineHemisphere(a, b));
+                const auto s = bsdf.sample(Side::Light, from, u0, u1, u2);
+                albedo.add(s ? double(maxComponent(s->evaluation.f)) *
+                                   std::abs(double(dot(s->to, world().n))) /
+                                   double(s->evaluation.pdfWToEye)
+                             : 0.0);
+            }
+            EXPECT_LE(albedo.mean() - 4 * albedo.standardError() - 0.01,
+                      double(bsdf.survivalAlbedo()))
+                << m.name << " " << roughness;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,161 @@
+// Samples against densities and energies over the whole grid (numerics.md 3): chi-square of the
+// sampled directions against the integrated density, empty draws against what is missing to 1,
+// weights against quadrature, and no gain of energy.
+//
+// False alarms: kAlarm for each suite in all, whatever the number of cases (the seeds are fixed, so
+// a suite that passes once passes always).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/material/half_vector_bins.h"
+#include "tests/material/materials.h"
+#include "tests/material/statistics.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr double kAlarm = 1e-3;
+constexpr double kQuadrature = 0.004;  // bound of the quadrature's error in any integral
+
+struct Integrals {
+    std::vector<double> mass;  // density per bin
+    double density = 0;        // all of it, delta events included
+    double energy = 0;         // ditto of f |to.ng| without eta^2
+    double deltaPmf[2] = {0, 0};
+};
+
+constexpr ScatterEvent kDelta[2] = {ScatterEvent::DeltaReflection, ScatterEvent::DeltaTransmission};
+
+/// The direction of a delta event, in double from the definition.
+Vec3 deltaDirection(const Case& c, ScatterEvent event) {
+    const Vec3d v = Vec3d(c.from);
+    const Vec3d n = dot(Vec3d(c.bsdf.ns()), v) > 0 ? Vec3d(c.bsdf.ns()) : -Vec3d(c.bsdf.ns());
+    const double cosine = dot(v, n);
+    if (event == ScatterEvent::DeltaReflection) {
+        return Vec3(normalize(n * (2 * cosine) - v));
+    }
+    const double eta = c.indexOn(!c.front) / c.indexOn(c.front);
+    const double sine2 = (1 - cosine * cosine) / (eta * eta);
+    return sine2 > 1 ? Vec3{}
+                     : Vec3(normalize(n * (cosine / eta - std::sqrt(1 - sine2)) - v * (1 / eta)));
+}
+
+Integrals integrate(const Case& c, const HalfVectorBins& bins) {
+    Integrals out;
+    out.mass.assign(bins.size(), 0);
+    bins.integrate([&](std::size_t bin, Vec3 to, double solidAngle) {
+        const BsdfEvaluation e = c.evaluate(to, ScatterEvent::Smooth);
+        out.mass[bin] += c.pdf(e) * solidAngle;
+        out.density += c.pdf(e) * solidAngle;
+        out.energy += c.energy(e, to) * solidAngle;
+    });
+    for (int k = 0; k < 2; ++k) {
+        const Vec3 to = deltaDirection(c, kDelta[k]);
+        const BsdfEvaluation e = c.evaluate(to, kDelta[k]);
+        if (c.pdf(e) > 0) {
+            // pdfW = pmf eta_to^2 |to.ns|, f = coefficient eta_eye^2 x adjoint (bsdf.h)
+            const bool toFront = dot(to, c.bsdf.ng()) > 0;
+            const bool transmits = kDelta[k] == ScatterEvent::DeltaTransmission;
+            const double etaTo2 = transmits ? std::pow(c.indexOn(toFront), 2) : 1.0;
+            const double cosine = std::abs(double(dot(to, c.bsdf.ns())));
+            out.deltaPmf[k] = c.pdf(e) / (etaTo2 * cosine);
+            out.density += out.deltaPmf[k];
+            out.energy += out.deltaPmf[k] * c.energy(e, to) / c.pdf(e);
+        }
+    }
+    return out;
+}
+
+void check(const Case& c, std::uint64_t seed, int samples, double significance) {
+    SCOPED_TRACE(c.name);
+    const HalfVectorBins bins(c);
+    const Integrals expected = integrate(c, bins);
+    ASSERT_LE(expected.density, 1 + kQuadrature);
+    if (c.side == Side::Eye || !c.tilted) {
+        // The light walk's adjoint factor is not bounded (numerics.md 5).
+        ASSERT_LE(expected.energy, 1 + kQuadrature);
+    }
+
+    // Counts: bins, two delta events, empty draws.
+    std::vector<double> counts(bins.size() + 3, 0);
+    Random random(seed);
+    Moments weight;
+    for (int i = 0; i < samples; ++i) {
+        const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+        const auto s = c.bsdf.sample(c.side, c.from, u0, u1, u2);
+        if (!s) {
+            ++counts[bins.size() + 2];
+            weight.add(0);
+            continue;
+        }
+        ASSERT_GT(c.pdf(s->evaluation), 0);
+        weight.add(c.energy(s->evaluation, s->to) / c.pdf(s->evaluation));
+        if (isDelta(s->event)) {
+            ++counts[bins.size() + (s->event == kDelta[0] ? 0u : 1u)];
+            // The sampled delta direction is the event's direction.
+            ASSERT_LT(length(s->to - deltaDirection(c, s->event)), 1e-3);
+        } else {
+            const std::size_t bin = bins.binOf(s->to);
+            ASSERT_LT(bin, bins.size());
+            ++counts[bin];
+        }
+    }
+
+    // Chi-square; bins that expect little share one. The quadrature's own error widens each bin.
+    double chi2 = 0, pooledExpected = 0, pooledCount = 0;
+    int dof = -1;
+    const auto compare = [&](double count, double expect, double quadratureError) {
+        if (expect < 10) {
+            pooledExpected += expect;
+            pooledCount += count;
+            return;
+        }
+        chi2 += (count - expect) * (count - expect) / (expect + quadratureError * quadratureError);
+        ++dof;
+    };
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+        compare(counts[b], samples * expected.mass[b], 0.01 * samples * expected.mass[b]);
+    }
+    compare(counts[bins.size()], samples * expected.deltaPmf[0], 0);
+    compare(counts[bins.size() + 1], samples * expected.deltaPmf[1], 0);
+    compare(counts[bins.size() + 2], samples * std::max(0.0, 1 - expected.density),
+            kQuadrature * samples);
+    if (pooledExpected >= 10) {
+        compare(pooledCount, pooledExpected, kQuadrature * samples);
+    } else {
+        EXPECT_LE(pooledCount,
+                  pooledExpected + 8 * std::sqrt(pooledExpected + 1) + kQuadrature * samples);
+    }
+    if (dof > 0) {
+        EXPECT_GT(chiSquareTail(chi2, dof), significance) << "chi2 " << chi2 << " of " << dof;
+    }
+    const double z = std::max(0.0, std::abs(weight.mean() - expected.energy) -
+                                       kQuadrature * std::max(1.0, expected.energy)) /
+                     std::max(1e-12, weight.standardError());
+    EXPECT_GT(normalTail(z, 2), significance)
+        << "weights " << weight.mean() << " +- " << weight.standardError() << ", quadrature "
+        << expected.energy;
+}
+
+void run(std::size_t stride, int samples) {
+    const std::vector<Case> cases = grid();
+    const double tests = 2.0 * double((cases.size() + stride - 1) / stride);
+    for (std::size_t i = 0; i < cases.size(); i += stride) {
+        check(cases[i], 1000 + i, samples, sidak(kAlarm, tests));
+        if (::testing::Test::HasFatalFailure()) {
+            return;
+        }
+    }
+}
+
+TEST(BsdfSampling, SamplesFollowTheDensity) {
+    run(23, 20000);  // coprime to the grid's axes: meets every value of each
+}
+TEST(BsdfSamplingSlow, SamplesFollowTheDensityOnTheWholeGrid) {
+    run(1, 40000);
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,283 @@
+// What lacuna-render writes: image, layers, header, JSON, curve.
+#include <cmath>
+#include <sstream>
+
+#include "libcore/image/exr.h"
+#include "libcore/image/image_io.h"
+#include "libcore/methods/registry.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+class RenderOutput : public RenderTool {
+  protected:
+    std::vector<std::vector<std::string>> csv(const std::string& name) const {
+        std::vector<std::vector<std::string>> rows;
+        std::istringstream lines(read(name));
+        for (std::string line; std::getline(lines, line);) {
+            std::vector<std::string> row(1);
+            for (const char c : line) {
+                if (c == ',') {
+                    row.emplace_back();
+                } else {
+                    row.back() += c;
+                }
+            }
+            rows.push_back(row);
+        }
+        return rows;
+    }
+};
+
+template <class T>
+T attribute(const LayeredImage& image, const std::string& name) {
+    return std::get<T>(image.attributes.at(name));
+}
+
+TEST_F(RenderOutput, HeaderSaysHowItWasMade) {
+    ASSERT_EQ(run(quick("lvcbpt", "--seed 7 --quiet --set connections=2")).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    EXPECT_EQ(attribute<std::string>(image, "software"), "Lacuna");
+    EXPECT_EQ(attribute<std::string>(image, "softwareVersion").substr(0, 2), "0.");
+    EXPECT_NE(attribute<std::string>(image, "commandLine").find("--seed 7"), std::string::npos);
+    EXPECT_EQ(attribute<std::string>(image, "method"), "lvcbpt");
+    const auto parameters =
+        nlohmann::json::parse(attribute<std::string>(image, "parameters"));
+    EXPECT_EQ(parameters.at("candidates"), 100);
+    EXPECT_EQ(parameters.at("connections"), 2);
+    EXPECT_EQ(parameters.at("next_event"), "off");
+    EXPECT_EQ(attribute<int>(image, "seed"), 7);
+    EXPECT_EQ(attribute<int>(image, "iterations"), 2);
+    EXPECT_GT(attribute<double>(image, "renderTimeSeconds"), 0.0);
+    EXPECT_GT(attribute<double>(image, "setupTimeSeconds"), 0.0);
+    EXPECT_GT(attribute<double>(image, "rays"), 24 * 16);
+    EXPECT_EQ(attribute<int>(image, "invalidSamples"), 0);
+    EXPECT_EQ(attribute<std::string>(image, "sceneHash").size(), 32u);
+    EXPECT_EQ(attribute<std::string>(image, "cacheHashes"), "{}");
+    EXPECT_EQ(attribute<std::string>(image, "stopped"), "iterations");
+    EXPECT_FALSE(image.attributes.contains("crop"));
+    EXPECT_FALSE(image.attributes.contains("biased"));
+}
+
+TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
+    ASSERT_EQ(run(quick("bpt", "--quiet --iterations 8")).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    EXPECT_EQ(image.width(), 24);
+    EXPECT_EQ(image.height(), 16);
+    for (const char* name :
+         {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z",
+          "Z", "variance.R", "variance.G", "variance.B"}) {
+        const std::vector<float>* values = image.find(name);
+        ASSERT_NE(values, nullptr) << name;
+        for (const float v : *values) ASSERT_TRUE(std::isfinite(v)) << name;
+    }
+    // The middle looks at the back wall: rough metal at z = -1, four units from the camera.
+    const std::size_t middle = 8 * 24 + 12;
+    EXPECT_NEAR(image.find("Z")->at(middle), 4.0f, 1e-3f);
+    EXPECT_NEAR(image.find("normal.Z")->at(middle), 1.0f, 1e-5f);
+    EXPECT_NEAR(image.find("albedo.R")->at(middle), 0.9f, 1e-3f);
+    EXPECT_NEAR(image.find("albedo.B")->at(middle), 0.5f, 1e-3f);
+    EXPECT_GT(image.find("variance.R")->at(middle), 0.0f);
+    EXPECT_GT(image.find("R")->at(middle), 0.0f);
+    // The upper left corner passes the room: nothing is hit.
+    EXPECT_EQ(image.find("Z")->at(0), 0.0f);
+    EXPECT_EQ(image.find("R")->at(0), 0.0f);
+    EXPECT_EQ(image.find("normal.X")->at(0), 0.0f);
+}
+
+TEST_F(RenderOutput, JsonHasItsKeys) {
+    ASSERT_EQ(run(quick("lvcbpt", "--json @out.json --threads 2 --seed 3")).exitCode, 0);
+    const nlohmann::json j = json("out.json");
+    for (const char* key : {"method", "iterations", "seconds", "setup_seconds", "rays",
+                            "invalid_samples", "peak_bytes", "mean_rgb", "mean_rgb_stderr", "width",
+                            "height", "threads", "seed", "warmup_iterations", "rays_by_kind",
+                            "phases", "effects", "stopped"}) {
+        EXPECT_TRUE(j.contains(key)) << key;
+    }
+    EXPECT_FALSE(j.contains("verify"));
+    EXPECT_EQ(j["method"], "lvcbpt");
+    EXPECT_EQ(j["iterations"], 2);
+    EXPECT_EQ(j["width"], 24);
+    EXPECT_EQ(j["height"], 16);
+    EXPECT_EQ(j["threads"], 2);
+    EXPECT_EQ(j["seed"], 3);
+    EXPECT_EQ(j["warmup_iterations"], 1);
+    EXPECT_EQ(j["stopped"], "iterations");
+    EXPECT_EQ(j["invalid_samples"], 0);
+    EXPECT_GT(j["peak_bytes"].get<double>(), 1e6);
+    ASSERT_EQ(j["mean_rgb"].size(), 3u);
+    ASSERT_EQ(j["mean_rgb_stderr"].size(), 3u);
+    EXPECT_GT(j["mean_rgb"][0].get<double>(), 0.0);
+    EXPECT_TRUE(j["effects"]["simulated"].is_array());
+    EXPECT_TRUE(j["effects"]["left_out"].is_array());
+    std::uint64_t rays = 0;
+    for (const auto& [name, n] : j["rays_by_kind"].items()) rays += n.get<std::uint64_t>();
+    EXPECT_EQ(rays, j["rays"].get<std::uint64_t>());
+    // The mean of the image is what mean_rgb says.
+    const Image image = readImage(path("out.exr"));
+    double sum = 0.0;
+    for (const Rgb& p : image.pixels) sum += p.g;
+    EXPECT_NEAR(j["mean_rgb"][1].get<double>(), sum / double(image.pixels.size()), 1e-6);
+}
+
+TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
+    ASSERT_EQ(run(quick("pt", "--quiet --iterations 200 --log @plain.csv")).exitCode, 0);
+    const auto plain = csv("plain.csv");
+    const std::vector<std::string> header{"iteration", "seconds", "setup_seconds", "rays",
+                                          "mae",       "rmse",    "mape",          "relmse"};
+    ASSERT_GE(plain.size(), 3u);
+    EXPECT_EQ(plain[0], header);
+    EXPECT_EQ(plain[1][0], "1");
+    EXPECT_EQ(plain.back()[0], "200");
+    EXPECT_LT(plain.size(), 60u);
+    std::map<int, int> perDecade;
+    for (std::size_t i = 1; i < plain.size(); ++i) {
+        ASSERT_EQ(plain[i].size(), 8u);
+        for (std::size_t c = 4; c < 8; ++c) EXPECT_EQ(plain[i][c], "");
+        if (i + 1 < plain.size()) ++perDecade[int(std::floor(std::log10(std::stod(plain[i][1]))))];
+        if (i > 1) {
+            EXPECT_GT(std::stod(plain[i][1]), std::stod(plain[i - 1][1]));
+            EXPECT_GT(std::stod(plain[i][3]), std::stod(plain[i - 1][3]));
+        }
+    }
+    for (const auto& [decade, rows] : perDecade) EXPECT_LE(rows, 10) << decade;
+
+    // The 200 iterations as a reference: the error falls.
+    std::filesystem::rename(path("out.exr"), path("reference.exr"));
+    const Outcome o = run(
+        quick("pt", "--quiet --iterations 64 --seed 2 --log @curve.csv --reference @reference.exr "
+                    "--json @out.json"));
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    const auto curve = csv("curve.csv");
+    EXPECT_EQ(curve[0], header);
+    EXPECT_LT(std::stod(curve.back()[5]), 0.5 * std::stod(curve[1][5]));
+    EXPECT_NEAR(json("out.json").at("error").at("rmse").get<double>(), std::stod(curve.back()[5]),
+                1e-12);
+    EXPECT_NE(o.out.find("relmse"), std::string::npos);
+    expectFailure(quick("pt", "--quiet --width 30 --reference @reference.exr"), 3, "24 x 16");
+}
+
+TEST_F(RenderOutput, CropHasItsSizeAndItsPixels) {
+    // Path tracing adds to a pixel from its own eye path alone: the crop is a part, bit for bit.
+    ASSERT_EQ(run(quick("pt", "--quiet")).exitCode, 0);
+    const LayeredImage full = readExrLayers(path("out.exr"));
+    ASSERT_EQ(run(quick("pt", "--quiet --crop 5,17,3,10 --json @out.json")).exitCode, 0);
+    const LayeredImage part = readExrLayers(path("out.exr"));
+    ASSERT_EQ(part.width(), 12);
+    ASSERT_EQ(part.height(), 7);
+    EXPECT_EQ(attribute<std::string>(part, "crop"), "5,17,3,10");
+    EXPECT_EQ(attribute<std::string>(part, "fullSize"), "24x16");
+    EXPECT_EQ(json("out.json")["width"], 12);
+    for (const auto& [name, values] : part.channels()) {
+        for (int y = 0; y < 7; ++y) {
+            for (int x = 0; x < 12; ++x) {
+                ASSERT_EQ(values[std::size_t(y * 12 + x)],
+                          full.find(name)->at(std::size_t((y + 3) * 24 + x + 5)))
+                    << name << " " << x << " " << y;
+            }
+        }
+    }
+}
+
+TEST_F(RenderOutput, CropOfMethodsWithSplatsIsThatPart) {
+    // Splats come from the light paths of the full image: equal but for the order of additions.
+    for (const char* method : {"lt", "bpt", "lvcbpt"}) {
+        ASSERT_EQ(run(quick(method, "--quiet")).exitCode, 0);
+        const Image full = readImage(path("out.exr"));
+        ASSERT_EQ(run(quick(method, "--quiet --crop 5,17,3,10")).exitCode, 0);
+        const Image part = readImage(path("out.exr"));
+        for (int y = 0; y < 7; ++y) {
+            for (int x = 0; x < 12; ++x) {
+                const Rgb &a = part.at(x, y), &b = full.at(x + 5, y + 3);
+                ASSERT_NEAR(a.r, b.r, 1e-4f * (1.0f + b.r)) << method << " " << x << " " << y;
+            }
+        }
+    }
+}
+
+TEST_F(RenderOutput, OtherFormats) {
+    const std::string start = "@room.gltf --method pt --width 24 --height 16 --iterations 2 --quiet ";
+    ASSERT_EQ(run(start + "-o @a.exr").exitCode, 0);
+    ASSERT_EQ(run(start + "-o @a.pfm").exitCode, 0);
+    ASSERT_EQ(run(start + "-o @a.png --exposure 1").exitCode, 0);
+    const Image exr = readImage(path("a.exr")), pfm = readImage(path("a.pfm"));
+    EXPECT_EQ(exr.pixels, pfm.pixels);
+    const Image png = readImage(path("a.png"));
+    for (std::size_t i = 0; i < exr.pixels.size(); ++i) {
+        EXPECT_NEAR(png.pixels[i].g, std::min(1.0f, 2.0f * exr.pixels[i].g), 0.01f);
+    }
+}
+
+TEST_F(RenderOutput, TechniqueLayersAddUpToThePicture) {
+    ASSERT_EQ(run(quick("bpt", "--quiet --techniques")).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    EXPECT_TRUE(image.hasRgb("unweighted.s01t02"));
+    std::vector<double> sum(24 * 16, 0.0);
+    int layers = 0;
+    for (const auto& [name, values] : image.channels()) {
+        if (name.substr(0, 9) != "weighted." || name.back() != 'G') continue;
+        ++layers;
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+    }
+    EXPECT_GT(layers, 10);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        EXPECT_NEAR(sum[i], image.find("G")->at(i), 1e-4) << i;
+    }
+}
+
+TEST_F(RenderOutput, SizeDepthAndLensComeFromTheSceneUnlessGiven) {
+    TinyScene scene;
+    scene.lacuna = {{"width", 20}, {"height", 10}, {"max_depth", 3}};
+    write("sized.gltf", scene.text());
+    const std::string start = "-o @out.exr --method pt --iterations 1 --quiet --json @o.json ";
+    ASSERT_EQ(run(start + "@sized.gltf").exitCode, 0);
+    EXPECT_EQ(json("o.json")["width"], 20);
+    EXPECT_EQ(json("o.json")["height"], 10);
+    EXPECT_EQ(json("o.json")["max_depth"], 3);
+    ASSERT_EQ(run(start + "@sized.gltf --width 8 --max-depth 2").exitCode, 0);
+    EXPECT_EQ(json("o.json")["width"], 8);
+    EXPECT_EQ(json("o.json")["height"], 10);
+    EXPECT_EQ(json("o.json")["max_depth"], 2);
+    // By the camera's aspect, 1.5.
+    ASSERT_EQ(run(start + "@room.gltf --height 10").exitCode, 0);
+    EXPECT_EQ(json("o.json")["width"], 15);
+    EXPECT_EQ(json("o.json")["max_depth"], 12);
+
+    scene.lacuna = {{"aperture", 0.2}, {"focus", 3.0}, {"width", 12}, {"height", 8}};
+    write("lens.gltf", scene.text());
+    ASSERT_EQ(run(start + "@lens.gltf").exitCode, 0);
+    const auto has = [&](const char* group) {
+        const auto names = json("o.json")["effects"][group];
+        return std::find(names.begin(), names.end(), "thin_lens") != names.end();
+    };
+    EXPECT_TRUE(has("simulated"));
+    ASSERT_EQ(run(start + "@lens.gltf --aperture 0").exitCode, 0);
+    EXPECT_TRUE(has("left_out"));
+}
+
+TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
+    TinyScene scene;
+    scene.lamp = false;
+    write("dark.gltf", scene.text());
+    for (const MethodRow& row : methods()) {
+        const Outcome o = run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 2 --method " +
+                              row.name + cheap(row.name));
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+        EXPECT_NE(o.err.find("light"), std::string::npos) << o.err;
+        for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
+    }
+}
+
+TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
+    LayeredImage sky(8, 4);
+    sky.setRgb("", Image(8, 4, Rgb(2.0f)));
+    writeExr(path("sky.exr"), sky);
+    // One edge: the sky seen directly past the room, exactly its radiance.
+    ASSERT_EQ(run(quick("pt", "--quiet --env @sky.exr --env-scale 0.25 --max-depth 1")).exitCode, 0);
+    EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).g, 0.5f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,112 @@
+#include "tests/render/render_tool.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "libcore/methods/registry.h"
+
+namespace lacuna::test {
+
+void RenderTool::SetUp() {
+    std::string name = (std::filesystem::temp_directory_path() / "lacuna-render-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    directory_ = name;
+    write("room.gltf", TinyScene{}.text());
+}
+
+void RenderTool::TearDown() {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
+}
+
+std::string RenderTool::write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+}
+
+std::string RenderTool::read(const std::string& name) const {
+    std::ifstream in(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> RenderTool::temporaries() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
+        if (entry.path().extension() == ".tmp") names.push_back(entry.path().string());
+    }
+    return names;
+}
+
+namespace {
+std::string withDirectory(std::string arguments, const std::string& directory) {
+    for (std::size_t at; (at = arguments.find('@')) != std::string::npos;) {
+        arguments.replace(at, 1, directory);
+    }
+    return arguments;
+}
+}  // namespace
+
+Outcome RenderTool::run(const std::string& arguments) const {
+    return runAndSignal(arguments, {}, {});
+}
+
+Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
+                                 std::chrono::milliseconds delay) const {
+    // The shell is replaced by the tool, so that the signals reach it.
+    const std::string command =
+        "exec " + std::string(LACUNA_RENDER) + " " + withDirectory(arguments, path(""));
+    const std::string out = path("stdout.txt"), err = path("stderr.txt");
+    const pid_t child = fork();
+    if (child == 0) {
+        const int outFile = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+        const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+        dup2(outFile, STDOUT_FILENO);
+        dup2(errFile, STDERR_FILENO);
+        execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    for (const int signal : signals) {
+        std::this_thread::sleep_for(delay);
+        kill(child, signal);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
+}
+
+void RenderTool::expectFailure(const std::string& arguments, int exitCode,
+                               const std::string& part) const {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.exitCode, exitCode) << arguments << "\n" << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
+    EXPECT_NE(o.err.find(part), std::string::npos) << arguments << "\n" << o.err;
+    EXPECT_EQ(o.out, "") << arguments;
+    EXPECT_TRUE(temporaries().empty()) << arguments;
+}
+
+nlohmann::json RenderTool::json(const std::string& name) const {
+    return nlohmann::json::parse(read(name));
+}
+
+std::string RenderTool::quick(const std::string& method, const std::string& more) const {
+    return "@room.gltf -o @out.exr --method " + method + cheap(method) +
+           " --width 24 --height 16 --iterations 2 --max-depth 6 " + more;
+}
+
+std::string cheap(const std::string& method) {
+    std::string text;
+    for (const Parameter& p : findMethod(method).parameters) {
+        if (p.name == "candidates") text += " --set candidates=100";
+    }
+    return text;
+}
+
+}  // namespace lacuna::test

@@ -1,0 +1,51 @@
+// Runs lacuna-render itself in a directory of the test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/render/tiny_scene.h"
+
+namespace lacuna::test {
+
+struct Outcome {
+    int exitCode = -1;  ///< -1: ended by a signal
+    std::string out, err;
+};
+
+class RenderTool : public ::testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    std::string path(const std::string& name) const { return (directory_ / name).string(); }
+    std::string write(const std::string& name, const std::string& text) const;
+    std::string read(const std::string& name) const;
+    bool exists(const std::string& name) const { return std::filesystem::exists(path(name)); }
+    /// Files of the directory that a tool left behind by mistake.
+    std::vector<std::string> temporaries() const;
+
+    /// `arguments` go through a shell; @ stands for the directory and its slash.
+    Outcome run(const std::string& arguments) const;
+    /// Starts it, sends `signals` one after the other, `delay` before each; waits for the end.
+    Outcome runAndSignal(const std::string& arguments, const std::vector<int>& signals,
+                         std::chrono::milliseconds delay) const;
+    /// Must fail with this code, `part` in one line on stderr, nothing on stdout.
+    void expectFailure(const std::string& arguments, int exitCode, const std::string& part) const;
+    nlohmann::json json(const std::string& name) const;
+    /// A quick render of @room.gltf (written by SetUp) to @out.exr.
+    std::string quick(const std::string& method, const std::string& more = "") const;
+
+  private:
+    std::filesystem::path directory_;
+};
+
+/// Parameters that make a method cheap on a tiny picture.
+std::string cheap(const std::string& method);
+
+}  // namespace lacuna::test

@@ -1,0 +1,171 @@
+// What lacuna-render says and returns for command lines and scenes, good and bad.
+#include <sys/stat.h>
+
+#include "libcore/methods/registry.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+class RenderUsage : public RenderTool {};
+
+TEST_F(RenderUsage, HelpNamesEveryOption) {
+    const Outcome o = run("--help");
+    EXPECT_EQ(o.exitCode, 0);
+    for (const char* option :
+         {"--method", "--set", "--width", "--height", "--iterations", "--time", "--count-setup",
+          "--max-depth", "--rr-depth", "--aperture", "--focus", "--camera", "--env", "--env-rotate",
+          "--env-scale", "--crop", "--reference", "--log", "--prepare", "--techniques", "--verify",
+          "--replay", "--effects", "--exposure", "--list-methods", "--help-method", "--threads",
+          "--seed", "--json", "--quiet", "--cache", "--version", "Exit codes"}) {
+        EXPECT_NE(o.out.find(option), std::string::npos) << option;
+    }
+    EXPECT_EQ(run("--version").exitCode, 0);
+    EXPECT_NE(run("--version").out.find("lacuna-render"), std::string::npos);
+}
+
+TEST_F(RenderUsage, MethodsAreListedWithTheirParameters) {
+    const Outcome list = run("--list-methods");
+    EXPECT_EQ(list.exitCode, 0);
+    for (const MethodRow& row : methods()) {
+        EXPECT_NE(list.out.find(row.name + " "), std::string::npos) << row.name;
+        const Outcome help = run("--help-method " + row.name);
+        EXPECT_EQ(help.exitCode, 0);
+        EXPECT_NE(help.out.find(row.summary), std::string::npos) << row.name;
+        for (const Parameter& p : row.parameters) {
+            EXPECT_NE(help.out.find("  " + p.name + " "), std::string::npos) << p.name;
+            EXPECT_NE(help.out.find(p.help), std::string::npos) << p.name;
+        }
+    }
+    expectFailure("--help-method nonsense", 2, "pt, lt, bpt");
+}
+
+TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
+    // No such scene: what is wrong on the command line is found before anything is loaded.
+    const std::string start = "@none.glb -o @out.exr --method pt ";
+    expectFailure("", 2, "SCENE.glb");
+    expectFailure("@none.glb -o @out.exr", 2, "--method");
+    expectFailure("@none.glb --method pt", 2, "-o");
+    expectFailure("@none.glb -o @out.exr --method fast", 2, "'fast'");
+    expectFailure("@none.glb -o @out.jpg --method pt", 2, ".jpg");
+    expectFailure(start + "--nonsense", 2, "--nonsense");
+    expectFailure(start + "--set candidates=3", 2, "candidates");
+    expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates", 2, "key=value");
+    expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates=0", 2, "found '0'");
+    expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates=1.5", 2, "integer");
+    expectFailure("@none.glb -o @out.exr --method lvcbpt --set next_event=yes", 2, "on or off");
+    for (const char* size : {"0", "-5", "65537", "99999999999"}) {
+        expectFailure(start + "--width " + size, 2, size);
+        expectFailure(start + "--height " + size, 2, size);
+    }
+    expectFailure(start + "--width 65536 --height 65536", 2, "pixels");
+    expectFailure(start + "--width 1e99", 2, "--width");
+    expectFailure(start + "--width wide", 2, "wide");
+    for (const char* time : {"0s", "-1s", "10", "10d", "s", "1e999s", "nans"}) {
+        expectFailure(start + "--time " + time, 2, "--time");
+    }
+    for (const char* crop : {"1,2,3", "0,0,0,4", "4,0,0,4", "-1,4,0,4", "a,b,c,d", "0,4,0,4,"}) {
+        expectFailure(start + "--crop " + crop, 2, "--crop");
+    }
+    for (const char* replay : {"1,2", "1,2,3,4", "light:1", "light:-1,0", "x,y,z", "-1,0,0"}) {
+        expectFailure(start + "--replay " + replay, 2, "--replay");
+    }
+    for (const char* option :
+         {"--iterations 0", "--iterations -1", "--max-depth 0", "--max-depth 255", "--rr-depth -1",
+          "--aperture -1", "--aperture nan", "--focus 0", "--env-scale -1", "--threads 0",
+          "--seed -1", "--exposure inf"}) {
+        expectFailure(start + option, 2, std::string(option).substr(0, 6));
+    }
+    expectFailure(start + "--count-setup", 2, "--time");
+    expectFailure("@none.glb -o @out.png --method pt --techniques", 2, ".exr");
+    expectFailure(start + "--display-server localhost:14158", 2, "not there yet");
+    expectFailure(start + "--checkpoint @state", 2, "not there yet");
+    expectFailure(start + "--json @out.exr", 2, "file of its own");
+}
+
+TEST_F(RenderUsage, WhatTheSceneDecidesExitsWith2Too) {
+    const std::string start = "@room.gltf -o @out.exr --method pt --iterations 1 --quiet ";
+    expectFailure(start + "--width 24 --height 16 --crop 0,25,0,16", 2, "24 x 16");
+    expectFailure(start + "--camera nobody", 2, "'eye'");
+    expectFailure(start + "--aperture 0.1", 2, "--focus");
+    expectFailure(start + "--env-scale 2", 2, "--env");
+    expectFailure(start + "--width 24 --height 16 --replay 24,0,0", 2, "24 x 16");
+    expectFailure(start + "--width 24 --height 16 --replay light:384,0", 2, "384");
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(RenderUsage, ScenesThatCannotBeUsedExitWith3) {
+    TinyScene scene;
+    scene.camera = false;
+    write("blind.gltf", scene.text());
+    write("broken.gltf", "{");
+    write("empty.glb", "");
+    expectFailure("@blind.gltf -o @out.exr --method pt --quiet", 3, "camera");
+    expectFailure("@none.glb -o @out.exr --method pt --quiet", 3, "none.glb");
+    expectFailure("@broken.gltf -o @out.exr --method pt --quiet", 3, "broken.gltf");
+    expectFailure("@empty.glb -o @out.exr --method pt --quiet", 3, "empty.glb");
+    expectFailure("@none.glb --effects", 3, "none.glb");
+    expectFailure("@room.gltf -o @out.exr --method pt --env @none.hdr --quiet", 3, "none.hdr");
+    expectFailure("@room.gltf -o @out.exr --method pt --reference @none.exr --quiet", 3,
+                  "none.exr");
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(RenderUsage, OutputsThatCannotBeWrittenExitWith1BeforeRendering) {
+    // An endless render: these return only because nothing is rendered.
+    const std::string endless = "@room.gltf --method pt --time 10h --quiet ";
+    expectFailure(endless + "-o @none/out.exr", 1, "none/out.exr");
+    expectFailure(endless + "-o @out.exr --json @none/out.json", 1, "none/out.json");
+    expectFailure(endless + "-o @out.exr --log @none/out.csv", 1, "none/out.csv");
+    std::filesystem::create_directory(path("folder.exr"));
+    expectFailure(endless + "-o @folder.exr", 1, "folder.exr");
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+TEST_F(RenderUsage, ResultsNeverReplaceInputs) {
+    ASSERT_EQ(run(quick("pt")).exitCode, 0);
+    expectFailure("@room.gltf -o @out.exr --reference @out.exr --method pt", 2, "file of its own");
+    const std::string before = read("room.gltf");
+    expectFailure("@room.gltf -o @o.exr --json @room.gltf --method pt", 2, "file of its own");
+    EXPECT_EQ(read("room.gltf"), before);
+}
+
+TEST_F(RenderUsage, QuietIsQuietAndResultsGoToStdout) {
+    const Outcome o = run(quick("pt", "--quiet"));
+    EXPECT_EQ(o.exitCode, 0);
+    EXPECT_EQ(o.err, "");
+    EXPECT_NE(o.out.find("out.exr"), std::string::npos);
+    EXPECT_NE(run(quick("pt", "-v")).err.find("12 triangles"), std::string::npos);
+    EXPECT_NE(run(quick("pt", "--prepare")).err.find("no caches"), std::string::npos);
+    EXPECT_EQ(run(quick("pt", "--cache @c --quiet")).exitCode, 0);
+}
+
+TEST_F(RenderUsage, EffectsNeedNeitherOutputNorMethod) {
+    const Outcome o = run("@room.gltf --effects");
+    EXPECT_EQ(o.exitCode, 0) << o.err;
+    for (const char* line :
+         {"simulated  area_lights", "simulated  diffuse", "simulated  glossy", "simulated  mirror",
+          "left_out   environment", "left_out   rough_refraction", "left_out   thin_lens",
+          "left_out   point_lights", "left_out   alpha_mask"}) {
+        EXPECT_NE(o.out.find(line), std::string::npos) << line << "\n" << o.out;
+    }
+    EXPECT_EQ(o.out.find("splats"), std::string::npos);
+    const Outcome pt = run("@room.gltf --effects --method pt --json @e.json --aperture 0.1");
+    EXPECT_NE(pt.out.find("left_out   splats"), std::string::npos) << pt.out;
+    EXPECT_NE(pt.out.find("simulated  thin_lens"), std::string::npos) << pt.out;
+    EXPECT_TRUE(json("e.json").at("effects").at("reasons").contains("mirror"));
+    expectFailure("@room.gltf --effects --method nonsense", 2, "nonsense");
+
+    TinyScene blind;  // no camera is needed to say what a scene calls for
+    blind.camera = false;
+    blind.pointLight = true;
+    blind.lamp = false;
+    write("blind.gltf", blind.text());
+    const Outcome b = run("@blind.gltf --effects --method bpt");
+    EXPECT_EQ(b.exitCode, 0) << b.err;
+    EXPECT_NE(b.out.find("simulated  point_lights"), std::string::npos) << b.out;
+    EXPECT_NE(b.out.find("left_out   hits"), std::string::npos) << b.out;
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,164 @@
+// The latitude-longitude map by itself (densities against draws: light_points_test.cpp).
+#include "libcore/scene/environment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "libcore/base/error.h"
+#include "tests/material/statistics.h"
+#include "tests/scene/scene_builder.h"
+#include "tests/scene/sphere_bins.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+Image noise(int width, int height) {
+    Image image(width, height);
+    Random random(1);
+    for (Rgb& c : image.pixels) c = {random.next(), random.next(), random.next()};
+    return image;
+}
+
+Vec3 towards(double longitudeDegrees, double latitudeDegrees) {
+    const double phi = longitudeDegrees * kPiD / 180, theta = latitudeDegrees * kPiD / 180;
+    return Vec3(
+        Vec3d{std::cos(theta) * std::sin(phi), std::sin(theta), -std::cos(theta) * std::cos(phi)});
+}
+
+void expectNear(const Rgb& a, const Rgb& b, float tolerance) {
+    EXPECT_NEAR(a.r, b.r, tolerance);
+    EXPECT_NEAR(a.g, b.g, tolerance);
+    EXPECT_NEAR(a.b, b.b, tolerance);
+}
+
+TEST(Environment, CentreIsMinusZRightIsPlusXTopIsPlusY) {
+    const Image image = noise(12, 7);
+    const Environment e(image, 1, 0, "noise");
+    const auto mid = [&](int x0, int x1, int y) {
+        return (image.at(x0, y) + image.at(x1, y)) * 0.5f;
+    };
+    expectNear(e.radiance({0, 0, -1}), mid(5, 6, 3), 1e-5f);
+    expectNear(e.radiance({1, 0, 0}), mid(8, 9, 3), 1e-5f);
+    expectNear(e.radiance({0, 0, 1}), mid(11, 0, 3), 1e-5f);
+    expectNear(e.radiance({-1, 0, 0}), mid(2, 3, 3), 1e-5f);
+    // Any length of direction: the poles look at the first and the last row.
+    const Image rows = [] {
+        Image i(4, 3);
+        for (int x = 0; x < 4; ++x) i.at(x, 0) = Rgb(1.0f), i.at(x, 2) = Rgb(3.0f);
+        return i;
+    }();
+    const Environment r(rows, 2, 0, "rows");
+    EXPECT_EQ(r.radiance({0, 1, 0}), Rgb(2.0f));
+    EXPECT_EQ(r.radiance({0, -1, 0}), Rgb(6.0f));
+    EXPECT_EQ(r.radiance({1e-20f, 1, 1e-20f}), Rgb(2.0f));
+}
+
+TEST(Environment, BilinearAtCentresAndBetween) {
+    const Image image = noise(10, 6);
+    const Environment e(image, 1, 0, "noise");
+    for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 10; ++x) {
+            const double longitude = (x + 0.5) * 36 - 180, latitude = 90 - (y + 0.5) * 30;
+            expectNear(e.radiance(towards(longitude, latitude)), image.at(x, y), 2e-5f);
+            const Rgb right = image.at((x + 1) % 10, y);
+            expectNear(e.radiance(towards(longitude + 0.25 * 36, latitude)),
+                       image.at(x, y) * 0.75f + right * 0.25f, 2e-5f);
+            if (y == 5) continue;
+            const Rgb below = image.at(x, y + 1) * 0.5f + image.at((x + 1) % 10, y + 1) * 0.5f;
+            expectNear(e.radiance(towards(longitude + 18, latitude - 0.4 * 30)),
+                       (image.at(x, y) + right) * (0.5f * 0.6f) + below * 0.4f, 2e-5f);
+        }
+    }
+}
+
+TEST(Environment, ContinuousAcrossTheSeam) {
+    for (const double rotation : {0.0, 33.0}) {
+        const Environment e(noise(16, 8), 1, rotation, "noise");
+        for (double latitude = -85; latitude <= 85; latitude += 5) {
+            const double seam = 180 + rotation;
+            expectNear(e.radiance(towards(seam - 1e-4, latitude)),
+                       e.radiance(towards(seam + 1e-4, latitude)), 1e-3f);
+        }
+    }
+}
+
+TEST(Environment, PositiveRotationTurnsFromMinusZTowardsPlusX) {
+    const Image image = noise(9, 5);
+    const Environment e(image, 1, 0, "noise");
+    expectNear(Environment(image, 1, 90, "noise").radiance({1, 0, 0}), e.radiance({0, 0, -1}),
+               1e-5f);
+    Rng rng(1, 0, StreamKind::User, 0);
+    for (const double degrees : {90.0, -90.0, 360.0, 765.0, -1e-9, 12.5}) {
+        const Environment turned(image, 1, degrees, "noise");
+        // About +Y by the right hand, -Z goes to -X: the other way round.
+        const Affine turn = rotation({0, 1, 0}, -degrees);
+        int differentTexel = 0;
+        for (int i = 0; i < 500; ++i) {
+            const Vec3 d = randomDirection(rng), moved(turn.vector(Vec3d(d)));
+            expectNear(turned.radiance(moved), e.radiance(d), 1e-4f);
+            differentTexel += std::abs(turned.pdfW(moved) - e.pdfW(d)) > 1e-5f * e.pdfW(d);
+        }
+        EXPECT_LE(differentTexel, 1) << degrees;
+    }
+}
+
+TEST(Environment, DensityWhereverThereIsLight) {
+    Image image(64, 32);
+    Random random(3);
+    for (int i = 0; i < 40; ++i) {
+        image.at(int(random.next() * 64), int(random.next() * 32)) = Rgb(random.next(), 0, 0);
+    }
+    image.at(5, 5) = Rgb(1e10f);  // texels below 2^-53 of all have no density
+    const Environment e(image, 1, 12, "sparse");
+    Rng rng(2, 0, StreamKind::User, 0);
+    int lit = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec3 d = randomDirection(rng);
+        if (isBlack(e.radiance(d))) continue;
+        ++lit;
+        ASSERT_GT(e.pdfW(d), 0.0f);
+    }
+    EXPECT_GT(lit, 1000);
+}
+
+TEST(Environment, IntegralIsThatOfTheRadiance) {
+    // By texel means against a fine grid: the tent is not flat in solid angle, a small difference.
+    const Environment e(noise(32, 16), 3, 10, "noise");
+    const SphereBins bins(Vec3{0, 1, 0}, 64, 64);
+    double sum = 0;
+    for (const double m : bins.integrate([&](Vec3 d) { return mean(e.radiance(d)); }, 4)) sum += m;
+    EXPECT_NEAR(mean(e.integral()) / sum, 1, 2e-3);
+    const Environment grey(Image(1, 1, Rgb(2.0f)), 0.5, 0, "grey");
+    EXPECT_NEAR(grey.integral().g, 4 * kPiD, 1e-5);
+    EXPECT_NEAR(grey.pdfW({0, 1, 0}), 0.25 / kPiD, 1e-7);
+}
+
+TEST(Environment, RefusesWhatIsNoRadiance) {
+    Image image(4, 3, Rgb(1.0f));
+    EXPECT_TRUE(Environment(Image(4, 3), 1, 0, "black").black());
+    EXPECT_TRUE(Environment(image, 0, 0, "scaled to nothing").black());
+    EXPECT_EQ(Environment(Image(4, 3), 1, 0, "black").pdfW({0, 1, 0}), 0.0f);
+    EXPECT_THROW(Environment(Image(), 1, 0, "empty"), InputError);
+    EXPECT_THROW(Environment(image, -1, 0, "negative scale"), InputError);
+    EXPECT_THROW(Environment(image, 1e39, 0, "overflow"), InputError);
+    for (const float bad : {-1e-3f, std::numeric_limits<float>::quiet_NaN(),
+                            std::numeric_limits<float>::infinity()}) {
+        image.at(2, 1).g = bad;
+        try {
+            Environment e(image, 1, 0, "sky.exr");
+            FAIL() << bad;
+        } catch (const InputError& error) {
+            EXPECT_EQ(std::string(error.what()).rfind("sky.exr: ", 0), 0u) << error.what();
+            EXPECT_NE(std::string(error.what()).find("2,1"), std::string::npos) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test

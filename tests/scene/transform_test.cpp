@@ -1,0 +1,199 @@
+// Positions, normals and texture coordinates of hits under every kind of transform, baked and
+// instanced.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libcore/base/rng.h"
+#include "tests/scene/sphere_bins.h"
+#include "tests/scene/surface_points.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A box with shading normals of any length, leaning up to 60 degrees away from the faces'.
+Mesh softBox() {
+    Mesh m = box({-0.5f, -0.4f, -0.3f}, {0.5f, 0.4f, 0.3f});
+    Rng rng(1, 0, StreamKind::User, 0);
+    for (std::size_t i = 0; i < m.positions.size(); ++i) {
+        const Vec3 face = normalize(cross(m.positions[i / 4 * 4 + 1] - m.positions[i / 4 * 4],
+                                          m.positions[i / 4 * 4 + 3] - m.positions[i / 4 * 4]));
+        const Vec3 lean = randomDirection(rng) * 0.85f;
+        m.normals.push_back((face + lean) * std::exp2(8 * rng.uniform() - 4));
+        m.uvs[i] = {rng.uniform() * 3 - 1, rng.uniform()};
+    }
+    return m;
+}
+
+TEST(SurfacePoint, AgainstExactTransforms) {
+    const Mesh mesh = softBox();
+    for (const NamedTransform& t : transforms()) {
+        for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+            SCOPED_TRACE(t.name + (placement == Placement::Baked ? ", baked" : ", instanced"));
+            SceneBuilder b;
+            place(b, mesh, t.toWorld, placement);
+            const auto scene = b.build();
+            RayTally tally;
+            Rng rng(2, 0, StreamKind::User, 0);
+            const double size = std::cbrt(std::abs(t.toWorld.determinant()));
+            for (int i = 0; i < 1000; ++i) {
+                const std::size_t triangle = rng.below(12);
+                const float u = 0.02f + 0.5f * rng.uniform(), v = 0.02f + 0.4f * rng.uniform();
+                const ExactSurface e = exactSurface(mesh, triangle, t.toWorld, u, v);
+                const Vec3d centre = scene->centre(), at = e.position - centre;
+                // From outside, leaning: a box hides none of its faces from where it looks.
+                const Vec3d from = at + (e.ng + Vec3d(randomDirection(rng)) * 0.5) * (0.1 * size);
+                const auto hit = scene->intersect(Vec3(from), {}, Vec3(normalize(at - from)),
+                                                  RayKind::Camera, tally);
+                ASSERT_TRUE(hit);
+                // The ray itself is rounded: allow for the scene's extent of 20.
+                const double cosine = std::abs(dot(e.ng, normalize(at - from)));
+                // On a needle of 1 x 6e-4 barycentrics are rough, but the point stays on its plane.
+                const double error = (t.name == "nearly flat" ? 2e-4 : 1e-5) / cosine;
+                ASSERT_LT(length(Vec3d(hit->position) - at), error);
+                ASSERT_NEAR(dot(Vec3d(hit->position) - at, e.ng), 0, 3e-6);
+                ASSERT_NEAR(length(Vec3d(hit->ng)), 1, 1e-6);
+                ASSERT_NEAR(length(Vec3d(hit->ns)), 1, 1e-6);
+                ASSERT_GT(dot(hit->ng, hit->ns), 0.0f);
+                // Corners are rounded too: what tilts a face depends on its size.
+                const double smallest = t.name == "tiny" || t.name == "nearly flat" ? 6e-5 : 0.1;
+                ASSERT_LT(length(Vec3d(hit->ng) - e.ng), 4e-6 / smallest * 0.6);
+                if (smallest < 0.1) continue;  // the hit's barycentrics are too rough for the rest
+                ASSERT_LT(length(Vec3d(hit->ns) - e.ns), 1e-3);
+                ASSERT_NEAR(hit->uv.x, e.uv.x, 1e-3);
+                ASSERT_NEAR(hit->uv.y, e.uv.y, 1e-3);
+                ASSERT_EQ(hit->light, kNone);
+            }
+            EXPECT_EQ(tally.counts[std::size_t(RayKind::Camera)], 1000u);
+            EXPECT_EQ(scene->triangleCount(), 24u);
+        }
+    }
+}
+
+TEST(SurfacePoint, InstancedEqualsBaked) {
+    const Mesh mesh = softBox();
+    for (const NamedTransform& t : transforms()) {
+        SCOPED_TRACE(t.name);
+        SceneBuilder baked, instanced;
+        place(baked, mesh, t.toWorld, Placement::Baked);
+        place(instanced, mesh, t.toWorld, Placement::Instanced);
+        const auto a = baked.build(), b = instanced.build();
+        ASSERT_EQ(a->centre(), b->centre());
+        ASSERT_EQ(a->radius(), b->radius());
+        RayTally tally;
+        Rng rng(3, 0, StreamKind::User, 0);
+        const double size = std::cbrt(std::abs(t.toWorld.determinant()));
+        const Vec3d middle = t.toWorld.point({0, 0, 0}) - a->centre();
+        int hits = 0, differentTriangle = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3d from = middle + Vec3d(randomDirection(rng)) * (3 * size);
+            const Vec3d to = middle + Vec3d(randomDirection(rng)) * (0.4 * size);
+            const Vec3 d(normalize(to - from));
+            const auto p = a->intersect(Vec3(from), {}, d, RayKind::Camera, tally);
+            const auto q = b->intersect(Vec3(from), {}, d, RayKind::Camera, tally);
+            if (p.has_value() != q.has_value() || (p && length(p->ng - q->ng) > 0.1f)) {
+                ++differentTriangle;  // the ray grazes an edge
+                continue;
+            }
+            if (!p) continue;
+            ++hits;
+            ASSERT_LT(length(p->position - q->position), 1e-5f / std::abs(dot(p->ng, d)));
+            ASSERT_EQ(p->material, q->material);
+            if (size < 0.2) continue;
+            ASSERT_LT(length(p->ng - q->ng), 1e-4f);
+            ASSERT_LT(length(p->ns - q->ns), 2e-3f);
+            ASSERT_NEAR(p->uv.x, q->uv.x, 2e-3f);
+            ASSERT_NEAR(p->uv.y, q->uv.y, 2e-3f);
+        }
+        EXPECT_GT(hits, 500);
+        EXPECT_LE(differentTriangle, size < 0.2 ? 40 : 4);
+    }
+}
+
+TEST(SurfacePoint, FlatInstances) {
+    // glTF allows a scale of zero: what is left of the mesh is still there, used once or twice.
+    const Affine flat = rotation({1, 1, 0}, 40) * scaling({1, 0, 1});
+    const Affine line = scaling({1, 0, 0}), point = scaling({0, 0, 0});
+    SceneBuilder b;
+    b.add(emitter(Rgb(1.0f)));
+    Mesh m = softBox();
+    m.material = 1;
+    const std::uint32_t mesh = b.add(m, flat);
+    b.instance(mesh, translation({3, 0, 0}) * flat);
+    b.instance(mesh, translation({6, 0, 0}));
+    b.instance(mesh, line);
+    b.instance(mesh, point);
+    const auto scene = b.build();
+    // Rounding leaves some of the flattened sides a little area.
+    EXPECT_GE(scene->triangleCount(), 4u + 4u + 12u);
+    EXPECT_LE(scene->triangleCount(), 12u + 12u + 12u);
+    EXPECT_EQ(scene->lights().size(), scene->triangleCount());
+    RayTally tally;
+    const Vec3d normal = normalize(rotation({1, 1, 0}, 40).vector({0, 1, 0}));
+    for (const double x : {0.0, 3.0}) {
+        const Vec3d at = Vec3d{x, 0, 0} + flat.vector({0.1, 0, 0.07}) - scene->centre();
+        const auto hit =
+            scene->intersect(Vec3(at + normal), {}, Vec3(-normal), RayKind::Camera, tally);
+        ASSERT_TRUE(hit) << x;
+        EXPECT_LT(length(Vec3d(hit->position) - at), 1e-5);
+        EXPECT_NEAR(std::abs(dot(Vec3d(hit->ng), normal)), 1, 1e-5);
+        EXPECT_GT(dot(hit->ng, hit->ns), 0.0f);
+    }
+}
+
+TEST(SurfacePoint, MissingZeroAndContradictingNormals) {
+    const auto hitWith = [](std::vector<Vec3> normals, Placement placement) {
+        Mesh m = triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+        m.normals = std::move(normals);
+        SceneBuilder b;
+        place(b, m, {}, placement);
+        const auto scene = b.build();
+        RayTally tally;
+        const auto hit = scene->intersect(Vec3(Vec3d{0.1, -0.2, 2} - scene->centre()), {},
+                                          {0, 0, -1}, RayKind::EyeWalk, tally);
+        EXPECT_TRUE(hit);
+        return hit ? *hit : SurfacePoint{};
+    };
+    const Vec3 up{0, 0, 1}, tilted = normalize(Vec3{0.6f, 0, 0.8f}), zero{};
+    for (const Placement p : {Placement::Baked, Placement::Instanced}) {
+        for (const auto& normals : std::vector<std::vector<Vec3>>{
+                 {},
+                 {zero, zero, zero},
+                 {up, -up, zero},  // may cancel, is never NaN
+                 {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}},
+                 {{1e-30f, 0, 1e-30f}, {-1e-30f, 0, 1e-30f}, {0, 0, 1e-30f}}}) {
+            const SurfacePoint s = hitWith(normals, p);
+            EXPECT_LT(length(s.ng - up), 1e-6f);
+            EXPECT_NEAR(length(s.ns), 1.0f, 1e-6f);
+            EXPECT_GT(dot(s.ns, s.ng), 0.0f);
+        }
+        EXPECT_LT(length(hitWith({tilted, tilted, tilted}, p).ns - tilted), 1e-5f);
+        // Against the winding: turned over, not believed.
+        EXPECT_LT(length(hitWith({-tilted, -tilted, -tilted}, p).ns - tilted), 1e-5f);
+        EXPECT_LT(length(hitWith({-up, -up, -up}, p).ns - up), 1e-6f);
+        // A zero normal leaves the others their say.
+        EXPECT_LT(length(hitWith({tilted, zero, tilted}, p).ns - tilted), 1e-5f);
+    }
+}
+
+TEST(SurfacePoint, SizesFarBelowOne) {
+    // Float squares of a triangle's edges underflow here; its normal must not.
+    for (const double size : {1e-12, 1e-9, 1e-6, 1.0, 1e6}) {
+        for (const Placement p : {Placement::Baked, Placement::Instanced}) {
+            SceneBuilder b;
+            const std::uint32_t mesh = b.add(softBox(), scaling({size, size, size}));
+            if (p == Placement::Instanced) b.instance(mesh, scaling({size, size, size}));
+            const auto scene = b.build();
+            RayTally tally;
+            const auto hit = scene->intersect(Vec3{float(3 * size), float(0.01 * size), 0}, {},
+                                              {-1, 0, 0}, RayKind::Camera, tally);
+            ASSERT_TRUE(hit) << size;
+            EXPECT_LT(length(hit->ng - Vec3{1, 0, 0}), 1e-5f) << size;
+            EXPECT_NEAR(length(hit->ns), 1.0f, 1e-5f) << size;
+            EXPECT_NEAR(hit->position.x / size, 0.5, 1e-5) << size;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
