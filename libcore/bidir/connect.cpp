@@ -37,7 +37,7 @@ void setSource(FullPath& path, const Lights& lights, const PathVertex& source, c
     const LightKind kind = lights.kind(source.light);
     path.sourceBeta = beta;
     path.hittable = isHittable(kind);
-    path.splattable = kind != LightKind::Directional;
+    path.splattable = path.hittable;
     path.survival[0] = 1.0f;
     path.delta[0] = false;
 }
@@ -51,7 +51,7 @@ struct EndValue {
 
 EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye) {
     if (y.index == 0) {
-        const Lights::Emission e = lights.emission(lightPointOf(lights, y), toEye);
+        const Lights::Emission e = emissionOf(lights, y, toEye);
         return {e.profile, e.pdfW, 0.0f};
     }
     const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
@@ -84,8 +84,9 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
                                  FullPath& path) {
     const PathVertex& y = light.back();
     const Lights& lights = walker.scene().lights();
-    // A directional light in the picture itself is a point of no size: no strategy makes that path.
-    if (y.index == 0 && lights.kind(y.light) == LightKind::Directional) return std::nullopt;
+    // A punctual light in the picture itself has no size: no strategy makes that path, so that all
+    // methods agree (and no pixel holds a spike that grows with the resolution).
+    if (y.index == 0 && !isHittable(lights.kind(y.light))) return std::nullopt;
     const Edge edge = edgeBetween(z0, y);
     if (!(edge.geometry > 0.0f)) return std::nullopt;
     const auto projection = walker.camera().project(z0.position, edge.direction);

@@ -140,9 +140,7 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
     const std::uint64_t pooled = method_.pool().subpaths;
     const bool splats = splat && techniqueSet_.splats;
     const std::uint64_t total = std::max(pooled, splats ? lightPaths_ : 0);
-    pool_.vertices.clear();
-    pool_.connectable.clear();
-    pool_.subpaths = pooled;
+    pool_.reset(pooled);
 
     // Where pixels trace their own light subpaths, those are left to the eye pass.
     const int filmWidth = camera_.film().width;
@@ -177,16 +175,7 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
         });
         if (cancel) return false;
 
-        // A vertex y_{s-1} can be connected while s + t - 1 <= maxDepth for t = 2.
-        const int lastConnected = settings_.limits.maxDepth - 2;
-        for (const Chunk& chunk : chunks) {
-            for (const PathVertex& v : chunk.vertices) {
-                if (int(v.index) <= lastConnected && v.connectable()) {
-                    pool_.connectable.push_back(std::uint32_t(pool_.vertices.size()));
-                }
-                pool_.vertices.push_back(v);
-            }
-        }
+        for (const Chunk& chunk : chunks) pool_.add(chunk.vertices, settings_.limits.maxDepth);
         collect(chunks, statistics);
     }
     return true;

@@ -2,14 +2,6 @@
 
 namespace lacuna {
 
-bool FullPath::exists(int t) const {
-    const int s = edges + 1 - t;
-    if (s == 0) return hittable;
-    if (edges == 1 && t == 1 && !splattable) return false;
-    // The connection's two ends scatter smoothly; the light's own point and the lens always do.
-    return !(s >= 2 && delta[s - 1]) && !(t >= 2 && delta[s]);
-}
-
 void FullPath::fillLightThroughputs(int rouletteDepth) {
     beta[0] = sourceBeta;
     for (int i = 1; i < edges; ++i) {
@@ -20,6 +12,18 @@ void FullPath::fillLightThroughputs(int rouletteDepth) {
     }
 }
 
+namespace {
+
+/// The part of effectiveCount that reads more than two flags.
+double samplesByDensity(const FullPath& path, const Techniques& techniques, int t) {
+    const int s = path.edges + 1 - t;
+    const ConnectionEnd eye{path.vertex[s], path.vertex[s + 1], t};
+    const ConnectionEnd light{path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s};
+    return techniques.connections->effectiveSamples(eye, light, path.beta[s - 1]);
+}
+
+}  // namespace
+
 double effectiveCount(const FullPath& path, const Techniques& techniques, int t) {
     if (!path.exists(t)) return 0.0;
     const int s = path.edges + 1 - t;
@@ -29,9 +33,7 @@ double effectiveCount(const FullPath& path, const Techniques& techniques, int t)
     if (techniques.constants) {
         return s == 1 ? techniques.constants->direct : techniques.constants->indirect;
     }
-    const ConnectionEnd eye{path.vertex[s], path.vertex[s + 1], t};
-    const ConnectionEnd light{path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s};
-    return techniques.connections->effectiveSamples(eye, light, path.beta[s - 1]);
+    return samplesByDensity(path, techniques, t);
 }
 
 double misWeight(FullPath& path, const Techniques& techniques, int t) {
@@ -44,18 +46,19 @@ double misWeight(FullPath& path, const Techniques& techniques, int t) {
     double sum = own;
 
     // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0.
+    const int rouletteDepth = techniques.rouletteDepth;
     double ratio = 1.0;
     for (int i = k - t; i >= 0; --i) {
-        ratio *= double(path.eyePdfA[i]) * path.eyeRoulette(i, techniques.rouletteDepth) /
-                 (double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth));
+        ratio *= path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth) /
+                 (path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth));
         if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
         sum += ratio * effectiveCount(path, techniques, k - i + 1);
     }
     // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}.
     ratio = 1.0;
     for (int i = k - t + 1; i <= k - 1; ++i) {
-        ratio *= double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth) /
-                 (double(path.eyePdfA[i]) * path.eyeRoulette(i, techniques.rouletteDepth));
+        ratio *= path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth) /
+                 (path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth));
         if (!(ratio > 0.0)) break;
         sum += ratio * effectiveCount(path, techniques, k - i);
     }

@@ -72,16 +72,22 @@ struct FullPath {
     std::array<Rgb, kMaxEdges + 1> scatter;      ///< f at x_i (x_0: emission profile)
     Rgb sourceBeta;                              ///< exitance over density at x_0
     bool hittable = false;                       ///< an eye walk can run into this light
-    bool splattable = true;                      ///< k = 1 under a directional light cannot be splatted
+    bool splattable = true;                      ///< k = 1 under a punctual light is not splatted
 
     /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
-    bool exists(int t) const;
+    bool exists(int t) const {
+        const int s = edges + 1 - t;
+        if (s == 0) return hittable;
+        if (edges == 1 && t == 1 && !splattable) return false;
+        // The connection's two ends scatter smoothly; the light's own point and the lens always do.
+        return !(s >= 2 && delta[s - 1]) && !(t >= 2 && delta[s]);
+    }
     /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
     double lightRoulette(int i, int rouletteDepth) const {
-        return i >= 2 && i - 1 >= rouletteDepth ? survival[i - 1] : 1.0;
+        return i >= 2 && i - 1 >= rouletteDepth ? double(survival[i - 1]) : 1.0;
     }
     double eyeRoulette(int i, int rouletteDepth) const {
-        return i <= edges - 2 && edges - i - 1 >= rouletteDepth ? survival[i + 1] : 1.0;
+        return i <= edges - 2 && edges - i - 1 >= rouletteDepth ? double(survival[i + 1]) : 1.0;
     }
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     std::array<Rgb, kMaxEdges + 1> beta;

@@ -4,6 +4,7 @@
 // from its own end: y_0 on the light, z_0 on the lens.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <type_traits>
@@ -54,18 +55,49 @@ using Subpath = std::span<const PathVertex>;
 /// Geometry of the edge between two vertices; symmetric but for the cosines.
 struct Edge {
     Vec3 direction;          ///< unit, from the first vertex to the second
-    float distance = 0;      ///< infinity: not set
     float toSecond = 0;      ///< density per solid angle at the first -> measure of the second
     float toFirst = 0;       ///< and back
     float geometry = 0;      ///< G without visibility
 };
 
+/// Cosine of the area measure at a vertex: 1 where it has no surface.
+inline float measureCosine(const PathVertex& v, Vec3 direction) {
+    return v.ng == Vec3{} ? 1.0f : std::fabs(dot(v.ng, direction));
+}
+
 /// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the measure
 /// of the infinite vertex is solid angle, and the factor towards the finite one is its cosine (from
 /// a disk's area). Coincident points give an edge whose geometry is 0: nothing is carried.
-Edge edgeBetween(const PathVertex& a, const PathVertex& b);
+inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
+    Edge e;
+    if (a.infinite() || b.infinite()) {
+        const bool toInfinity = b.infinite();
+        e.direction = toInfinity ? b.position : -a.position;
+        const float cosine = measureCosine(toInfinity ? a : b, e.direction);
+        e.toSecond = toInfinity ? 1.0f : cosine;
+        e.toFirst = toInfinity ? cosine : 1.0f;
+        e.geometry = cosine;
+        return e;
+    }
+    // Differences of floats are exact enough in double only once they are squared: a float square
+    // underflows for vertices 1e-20 apart.
+    const Vec3d d = Vec3d(b.position) - Vec3d(a.position);
+    const double d2 = lengthSquared(d);
+    if (!(d2 > 0.0)) return e;
+    const double inverse = 1.0 / std::sqrt(d2);
+    e.direction = Vec3(d * inverse);
+    const double inverse2 = inverse * inverse;
+    const float cosA = measureCosine(a, e.direction), cosB = measureCosine(b, e.direction);
+    e.toSecond = float(double(cosB) * inverse2);
+    e.toFirst = float(double(cosA) * inverse2);
+    e.geometry = cosA * e.toSecond;
+    return e;
+}
 
-/// The vertex as a point on its light, for Lights' questions. `vertex.light` must be set.
+/// The vertex as a point on its light with its density and exitance. `vertex.light` must be set.
 LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex);
+
+/// Profile and density of what leaves the light vertex along `direction`.
+Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex, Vec3 direction);
 
 }  // namespace lacuna

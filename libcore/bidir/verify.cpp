@@ -152,8 +152,8 @@ class Products {
         if (s >= 2 && !smooth(s - 1)) return 0.0;
         if (t >= 2 && !smooth(s)) return 0.0;
         if (t == 1) {
-            // A directional light seen directly has no size in the picture.
-            return k_ == 1 && source_.kind == LightKind::Directional ? 0.0 : techniques_.splats;
+            // A punctual light seen directly has no size in the picture.
+            return k_ == 1 && !isHittable(source_.kind) ? 0.0 : techniques_.splats;
         }
         if (!techniques_.connections) return 0.0;
         if (const auto c = techniques_.connections->constants()) {

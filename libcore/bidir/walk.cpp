@@ -42,7 +42,7 @@ void Walker::traceLight(Rng& rng, RayTally& tally, std::vector<PathVertex>& out)
     const auto ray = scene_.lights().sampleEmission(point, rng);
     if (!ray) return;
     out[0].scatter = ray->emission.profile;
-    const float cosine = y0.ng == Vec3{} ? 1.0f : std::fabs(dot(y0.ng, ray->direction));
+    const float cosine = measureCosine(y0, ray->direction);
     goOn(Side::Light, ray->origin, ray->direction, ray->emission.pdfW,
          y0.throughput * ray->emission.profile * (cosine / ray->emission.pdfW),
          std::size_t(limits_.maxDepth), rng, tally, out);
@@ -79,9 +79,7 @@ void Walker::addSurface(const SurfacePoint& point, Vec3 direction, float pdfW, R
     }
     const double inverse2 = 1.0 / lengthSquared(Vec3d(point.position) - Vec3d(previous.position));
     v.pdfA = float(double(pdfW) * double(cosine) * inverse2);
-    const float previousCosine =
-        previous.ng == Vec3{} ? 1.0f : std::fabs(dot(previous.ng, direction));
-    v.toPreviousFactor = float(double(previousCosine) * inverse2);
+    v.toPreviousFactor = float(double(measureCosine(previous, direction)) * inverse2);
 }
 
 void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throughput,
@@ -104,8 +102,7 @@ void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throug
                 v.light = scene_.lights().environmentIndex();
                 v.throughput = throughput;
                 v.pdfA = pdfW;
-                v.toPreviousFactor =
-                    previous.ng == Vec3{} ? 1.0f : std::fabs(dot(previous.ng, direction));
+                v.toPreviousFactor = measureCosine(previous, direction);
             }
             return;
         }

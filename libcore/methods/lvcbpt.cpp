@@ -29,8 +29,8 @@ class LightVertexCache final : public Method {
     void prepare(const LightPool& pool) override {
         pool_ = &pool;
         candidates_.clear();
-        for (const std::uint32_t v : pool.connectable) {
-            if (!nextEvent_ || pool.vertices[v].index > 0) candidates_.push_back(v);
+        for (const LightPool::Entry& e : pool.connectable()) {
+            if (!nextEvent_ || e.count > 1) candidates_.push_back(e);
         }
     }
 
@@ -38,9 +38,9 @@ class LightVertexCache final : public Method {
         if (nextEvent_) proposeFreshLight(context, rng, sink);
         const auto size = std::uint32_t(candidates_.size());
         if (size == 0) return;
-        const double weight = double(size) / (double(pool_->subpaths) * picks_);
+        const double weight = double(size) / (double(subpaths_) * picks_);
         for (int i = 0; i < picks_; ++i) {
-            sink.add({pool_->prefixOf(candidates_[rng.below(size)]), weight, 0});
+            sink.add({pool_->prefix(candidates_[rng.below(size)]), weight, 0});
         }
     }
 
@@ -58,7 +58,7 @@ class LightVertexCache final : public Method {
     double expectedVertices_ = 0.0;
     ConstantDensity density_;
     const LightPool* pool_ = nullptr;
-    std::vector<std::uint32_t> candidates_;
+    std::vector<LightPool::Entry> candidates_;
 };
 
 }  // namespace

@@ -179,11 +179,28 @@ bool Accel::occluded(const Ray& ray) const {
     return r.tfar < 0.0f;
 }
 
-Vec3 offsetOrigin(Vec3 origin, Vec3 ng, Vec3 direction, float floor) {
-    const float magnitude = std::max(
-        floor, std::max(std::fabs(origin.x), std::max(std::fabs(origin.y), std::fabs(origin.z))));
-    const float step = dot(direction, ng) < 0.0f ? -0x1p-16f : 0x1p-16f;
-    return origin + ng * (step * magnitude);
+std::size_t Accel::replay(std::span<const RecordedRay> rays) const {
+    std::size_t hits = 0;
+    for (const RecordedRay& recorded : rays) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        const bool any = recorded.kind == RayKind::Connection || recorded.kind == RayKind::Splat;
+        if (any) {
+            RTCRay r;
+            fill(r, recorded.ray);
+            rtcOccluded1(impl_->scene, &context, &r);
+            hits += r.tfar < 0.0f;
+        } else {
+            RTCRayHit rh;
+            fill(rh.ray, recorded.ray);
+            rh.ray.tfar = std::numeric_limits<float>::infinity();
+            rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(impl_->scene, &context, &rh);
+            hits += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    return hits;
 }
 
 }  // namespace lacuna

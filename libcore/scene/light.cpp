@@ -70,7 +70,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
     for (const EmissiveTriangle& t : triangles_) {
         const double a = triangleArea(t);
-        area_.push_back(float(a));
+        triangleNormal_.push_back(triangleNormal(t.corners[0], t.corners[1], t.corners[2]));
         kinds_.push_back(LightKind::Area);
         power.push_back(double(mean(t.radiance * meanTexture(t))) * a * std::numbers::pi *
                         (t.twoSided ? 2.0 : 1.0));
@@ -100,6 +100,9 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         power.push_back(environment_->black() ? 0.0 : double(mean(environment_->integral())) * disk);
     }
     selection_ = DiscreteDistribution(power);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+        trianglePdfA_.push_back(float(selection_.pmf(i) / triangleArea(triangles_[i])));
+    }
 }
 
 Rgb Lights::triangleRadiance(const EmissiveTriangle& t, Vec2 b) const {
@@ -116,7 +119,7 @@ LightPoint Lights::areaPoint(std::uint32_t light, Vec3 position, Vec3 ng, Vec2 u
     p.position = position;
     p.ng = ng;
     p.uv = uv;
-    p.pdf = float(selection_.pmf(light) / double(area_[light]));
+    p.pdf = trianglePdfA_[light];
     p.exitance = triangleRadiance(t, uv) * (t.twoSided ? 2.0f * kPi : kPi);
     return p;
 }
@@ -142,7 +145,7 @@ LightPoint Lights::samplePoint(Rng& rng) const {
             const Vec2 b{1.0f - s, u2 * s};
             const Vec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
             return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y,
-                             triangleNormal(t.corners[0], t.corners[1], t.corners[2]), b);
+                             triangleNormal_[light], b);
         }
         case LightKind::Environment: {
             const Environment::Sample s = environment_->sample(pick.remapped, u1, u2);

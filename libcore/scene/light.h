@@ -108,7 +108,8 @@ class Lights {
     std::vector<EmissiveTriangle> triangles_;  // lights [0, triangles)
     std::vector<PunctualLight> punctual_;      // then the punctual ones
     std::vector<Vec3> punctualPosition_, punctualDirection_;
-    std::vector<float> area_;
+    std::vector<Vec3> triangleNormal_;
+    std::vector<float> trianglePdfA_;  // selection included
     const Environment* environment_;
     std::uint32_t environmentIndex_ = kNone;  // the last one
     DiscreteDistribution selection_;

@@ -255,21 +255,14 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
     const auto trace = [&](std::uint32_t iteration, StreamKind kind, bool splat,
                            const Techniques& techniques) {
         double sum = 0;
-        pool = {};
-        pool.subpaths = method->pool().subpaths;
+        const std::uint64_t pooled = method->pool().subpaths;
+        pool.reset(pooled);
         const std::uint64_t total =
-            set.ownLightPath ? 0 : std::max(pool.subpaths, splat && set.splats ? splatPaths : 0);
+            set.ownLightPath ? 0 : std::max(pooled, splat && set.splats ? splatPaths : 0);
         for (std::uint64_t i = 0; i < total; ++i) {
             Rng rng(seed, iteration, kind, i);
             space.traceLight(rng, lightPath);
-            if (i < pool.subpaths) {
-                for (const PathVertex& v : lightPath) {
-                    if (v.index <= FiniteSpace::kMaxEdges - 2 && v.connectable()) {
-                        pool.connectable.push_back(std::uint32_t(pool.vertices.size()));
-                    }
-                    pool.vertices.push_back(v);
-                }
-            }
+            if (i < pooled) pool.add(lightPath, FiniteSpace::kMaxEdges);
             if (!splat || !set.splats || i >= splatPaths) continue;
             for (std::size_t s = 1; s <= lightPath.size(); ++s) {
                 const Subpath y(lightPath.data(), s);

@@ -20,20 +20,15 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         const auto method = row.create(resolve(row, settings));
         method->freeze(0);
         LightPool pool;
-        pool.subpaths = kSubpaths;
+        pool.reset(kSubpaths);
         std::vector<PathVertex> path;
         for (std::uint64_t i = 0; i < kSubpaths; ++i) {
             Rng rng(21, 0, StreamKind::LightPath, i);
             space.traceLight(rng, path);
-            for (const PathVertex& v : path) {
-                if (v.connectable() && v.index <= 4) {
-                    pool.connectable.push_back(std::uint32_t(pool.vertices.size()));
-                }
-                pool.vertices.push_back(v);
-            }
+            pool.add(path, FiniteSpace::kMaxEdges);
         }
-        ASSERT_GE(pool.connectable.size(), 5u);
-        ASSERT_LE(pool.connectable.size(), 25u);
+        ASSERT_GE(pool.connectable().size(), 5u);
+        ASSERT_LE(pool.connectable().size(), 25u);
         // Retaining rows see the same pool as the one they kept.
         method->prepare(pool);
         method->observe(pool);
@@ -53,8 +48,8 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
                 return 0.3 + 0.1 * state + 0.2 * v.index;
             };
             double truth = 0.0;
-            for (std::size_t i = 0; i < pool.connectable.size(); ++i) {
-                const PathVertex& v = pool.prefix(i).back();
+            for (std::size_t i = 0; i < pool.connectable().size(); ++i) {
+                const PathVertex& v = pool.prefix(pool.connectable()[i]).back();
                 if (v.index > 0) truth += g(v) / kSubpaths;
             }
             double sum = 0.0, squares = 0.0;

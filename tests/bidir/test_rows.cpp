@@ -16,7 +16,10 @@ class Potpourri final : public Method {
     PoolRequest pool() const override { return {subpaths_}; }
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
 
-    void prepare(const LightPool& pool) override { current_ = byLength(pool, pool_ = &pool); }
+    void prepare(const LightPool& pool) override {
+        pool_ = &pool;
+        current_ = byLength(pool);
+    }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         for (int i = 0; i < kFresh; ++i) {
@@ -25,13 +28,13 @@ class Potpourri final : public Method {
         }
         for (std::size_t s = 2; s < kMaxLength; ++s) {
             const bool kept = s % 2 == 0;
-            const std::vector<std::uint32_t>& candidates = kept ? kept_[s] : current_[s];
+            const std::vector<LightPool::Entry>& candidates = kept ? kept_[s] : current_[s];
             const LightPool& pool = kept ? keptPool_ : *pool_;
             for (int i = 0; i < kPicks; ++i) {
                 // An empty pick counts among the picks.
                 if (rng.uniform() < kEmpty || candidates.empty()) continue;
                 const auto n = std::uint32_t(candidates.size());
-                sink.add({pool.prefixOf(candidates[rng.below(n)]),
+                sink.add({pool.prefix(candidates[rng.below(n)]),
                           double(n) / (double(subpaths_) * kPicks * (1.0 - double(kEmpty))), 0});
             }
         }
@@ -39,20 +42,19 @@ class Potpourri final : public Method {
 
     void observe(const LightPool& pool) override {
         keptPool_ = pool;
-        kept_ = byLength(keptPool_, &keptPool_);
+        kept_ = byLength(keptPool_);
     }
 
   private:
     static constexpr int kFresh = 2, kPicks = 2;
     static constexpr float kEmpty = 0.25f;
     static constexpr std::size_t kMaxLength = 32;
-    using ByLength = std::vector<std::vector<std::uint32_t>>;
+    using ByLength = std::vector<std::vector<LightPool::Entry>>;
 
-    static ByLength byLength(const LightPool& pool, const LightPool*) {
+    static ByLength byLength(const LightPool& pool) {
         ByLength lists(kMaxLength);
-        for (const std::uint32_t v : pool.connectable) {
-            const std::size_t s = std::size_t(pool.vertices[v].index) + 1;
-            if (s < kMaxLength) lists[s].push_back(v);
+        for (const LightPool::Entry& e : pool.connectable()) {
+            if (e.count < kMaxLength) lists[e.count].push_back(e);
         }
         return lists;
     }
@@ -87,9 +89,9 @@ class UniformUnderHash final : public Method {
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
     void prepare(const LightPool& pool) override { pool_ = &pool; }
     void select(const EyeContext&, Rng& rng, ProposalSink& sink) const override {
-        const auto n = std::uint32_t(pool_->connectable.size());
+        const auto n = std::uint32_t(pool_->connectable().size());
         if (n == 0) return;
-        sink.add({pool_->prefix(rng.below(n)), double(n) / double(subpaths_), 0});
+        sink.add({pool_->prefix(pool_->connectable()[rng.below(n)]), double(n) / double(subpaths_), 0});
     }
 
   private:
