@@ -17,6 +17,7 @@ struct Scene::WorldMesh {
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
 };
 
@@ -158,6 +159,13 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             return triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]) ==
                    Vec3{};
         });
+        if (uses[m] == 1) {
+            to.faceNormals.reserve(to.triangles.size());
+            for (const auto& t : to.triangles) {
+                to.faceNormals.push_back(triangleNormal(to.positions[t[0]], to.positions[t[1]],
+                                                        to.positions[t[2]]));
+            }
+        }
         from = Mesh{};
     });
 
@@ -272,7 +280,7 @@ SurfacePoint Scene::surfaceAt(const Hit& hit) const {
     }
     SurfacePoint s;
     s.position = p0 * w + p1 * hit.u + p2 * hit.v;
-    s.ng = triangleNormal(p0, p1, p2);
+    s.ng = object.instanced ? triangleNormal(p0, p1, p2) : mesh.faceNormals[hit.primitive];
     s.barycentric = {hit.u, hit.v};
     if (object.instanced && object.mirrored) {
         s.ng = -s.ng;
