@@ -35,8 +35,8 @@ class Progress {
 
     /// A line of its own; nothing if quiet.
     void remark(const std::string& text);
-    /// A line of its own, quiet or not, in yellow on a terminal: something is wrong with the
-    /// result.
+    /// A line of its own, quiet or not, in yellow on a terminal: the picture may not be what was
+    /// meant.
     void warning(const std::string& text);
 
   private:

@@ -103,7 +103,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     stage.phaseSeconds["load"] = secondsSince(start);
     const auto warn = [&](const std::string& text) {
         stage.warnings.push_back(text);
-        progress.remark("warning: " + options.scene + ": " + text);
+        progress.warning("warning: " + options.scene + ": " + text);
     };
     for (const std::string& text : description.warnings) warn(text);
 

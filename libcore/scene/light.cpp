@@ -101,7 +101,9 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     }
     selection_ = DiscreteDistribution(power);
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-        trianglePdfA_.push_back(float(selection_.pmf(i) / triangleArea(triangles_[i])));
+        // A triangle without area is never picked; a ray may still run into what rounding left of it.
+        const double area = triangleArea(triangles_[i]);
+        trianglePdfA_.push_back(area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f);
     }
 }
 

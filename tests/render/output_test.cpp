@@ -42,8 +42,7 @@ TEST_F(RenderOutput, HeaderSaysHowItWasMade) {
     EXPECT_EQ(attribute<std::string>(image, "softwareVersion").substr(0, 2), "0.");
     EXPECT_NE(attribute<std::string>(image, "commandLine").find("--seed 7"), std::string::npos);
     EXPECT_EQ(attribute<std::string>(image, "method"), "lvcbpt");
-    const auto parameters =
-        nlohmann::json::parse(attribute<std::string>(image, "parameters"));
+    const auto parameters = nlohmann::json::parse(attribute<std::string>(image, "parameters"));
     EXPECT_EQ(parameters.at("candidates"), 100);
     EXPECT_EQ(parameters.at("connections"), 2);
     EXPECT_EQ(parameters.at("next_event"), "off");
@@ -89,10 +88,10 @@ TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
 TEST_F(RenderOutput, JsonHasItsKeys) {
     ASSERT_EQ(run(quick("lvcbpt", "--json @out.json --threads 2 --seed 3")).exitCode, 0);
     const nlohmann::json j = json("out.json");
-    for (const char* key : {"method", "iterations", "seconds", "setup_seconds", "rays",
-                            "invalid_samples", "peak_bytes", "mean_rgb", "mean_rgb_stderr", "width",
-                            "height", "threads", "seed", "warmup_iterations", "rays_by_kind",
-                            "phases", "effects", "stopped"}) {
+    for (const char* key :
+         {"method", "iterations", "seconds", "setup_seconds", "rays", "invalid_samples",
+          "peak_bytes", "mean_rgb", "mean_rgb_stderr", "width", "height", "threads", "seed",
+          "warmup_iterations", "rays_by_kind", "phases", "effects", "stopped"}) {
         EXPECT_TRUE(j.contains(key)) << key;
     }
     EXPECT_FALSE(j.contains("verify"));
@@ -145,9 +144,10 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
 
     // The 200 iterations as a reference: the error falls.
     std::filesystem::rename(path("out.exr"), path("reference.exr"));
-    const Outcome o = run(
-        quick("pt", "--quiet --iterations 64 --seed 2 --log @curve.csv --reference @reference.exr "
-                    "--json @out.json"));
+    const Outcome o =
+        run(quick("pt",
+                  "--quiet --iterations 64 --seed 2 --log @curve.csv --reference @reference.exr "
+                  "--json @out.json"));
     ASSERT_EQ(o.exitCode, 0) << o.err;
     const auto curve = csv("curve.csv");
     EXPECT_EQ(curve[0], header);
@@ -197,7 +197,8 @@ TEST_F(RenderOutput, CropOfMethodsWithSplatsIsThatPart) {
 }
 
 TEST_F(RenderOutput, OtherFormats) {
-    const std::string start = "@room.gltf --method pt --width 24 --height 16 --iterations 2 --quiet ";
+    const std::string start =
+        "@room.gltf --method pt --width 24 --height 16 --iterations 2 --quiet ";
     ASSERT_EQ(run(start + "-o @a.exr").exitCode, 0);
     ASSERT_EQ(run(start + "-o @a.pfm").exitCode, 0);
     ASSERT_EQ(run(start + "-o @a.png --exposure 1").exitCode, 0);
@@ -261,13 +262,18 @@ TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
     scene.lamp = false;
     write("dark.gltf", scene.text());
     for (const MethodRow& row : methods()) {
-        const Outcome o = run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 2 --method " +
-                              row.name + cheap(row.name));
+        const Outcome o =
+            run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 2 --method " + row.name +
+                cheap(row.name));
         EXPECT_EQ(o.exitCode, 0) << o.err;
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
         EXPECT_NE(o.err.find("light"), std::string::npos) << o.err;
         for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
     }
+    // A warning is no remark: --quiet leaves it.
+    const Outcome quiet =
+        run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 1 --method pt --quiet");
+    EXPECT_EQ(std::count(quiet.err.begin(), quiet.err.end(), '\n'), 1) << quiet.err;
 }
 
 TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
@@ -275,7 +281,8 @@ TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
     sky.setRgb("", Image(8, 4, Rgb(2.0f)));
     writeExr(path("sky.exr"), sky);
     // One edge: the sky seen directly past the room, exactly its radiance.
-    ASSERT_EQ(run(quick("pt", "--quiet --env @sky.exr --env-scale 0.25 --max-depth 1")).exitCode, 0);
+    ASSERT_EQ(run(quick("pt", "--quiet --env @sky.exr --env-scale 0.25 --max-depth 1")).exitCode,
+              0);
     EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).g, 0.5f, 1e-5f);
 }
 

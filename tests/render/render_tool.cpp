@@ -97,8 +97,13 @@ nlohmann::json RenderTool::json(const std::string& name) const {
 }
 
 std::string RenderTool::quick(const std::string& method, const std::string& more) const {
-    return "@room.gltf -o @out.exr --method " + method + cheap(method) +
-           " --width 24 --height 16 --iterations 2 --max-depth 6 " + more;
+    std::string text = "@room.gltf -o @out.exr --method " + method + cheap(method) + " " + more;
+    const std::pair<const char*, const char*> defaults[] = {
+        {" --width", " 24"}, {" --height", " 16"}, {" --iterations", " 2"}, {" --max-depth", " 6"}};
+    for (const auto& [option, value] : defaults) {
+        if (text.find(option) == std::string::npos) text += std::string(option) + value;
+    }
+    return text;
 }
 
 std::string cheap(const std::string& method) {

@@ -27,7 +27,7 @@ std::string base64(const std::vector<float>& values) {
 /// Two triangles a b c, a c d; the winding's front is the side that sees a b c d counter-clockwise.
 using Quad = std::array<std::array<float, 3>, 4>;
 
-void addQuad(json& root, const Quad& q, int material) {
+void addQuad(json& root, const Quad& q, int materialIndex) {
     std::vector<float> positions;
     for (const int corner : {0, 1, 2, 0, 2, 3}) {
         const auto& p = q[std::size_t(corner)];
@@ -41,8 +41,9 @@ void addQuad(json& root, const Quad& q, int material) {
         }
     }
     const std::size_t n = root["meshes"].size(), bytes = positions.size() * sizeof(float);
-    root["buffers"].push_back({{"byteLength", bytes},
-                               {"uri", "data:application/octet-stream;base64," + base64(positions)}});
+    root["buffers"].push_back(
+        {{"byteLength", bytes},
+         {"uri", "data:application/octet-stream;base64," + base64(positions)}});
     root["bufferViews"].push_back({{"buffer", n}, {"byteLength", bytes}});
     root["accessors"].push_back({{"bufferView", n},
                                  {"componentType", 5126},
@@ -50,8 +51,8 @@ void addQuad(json& root, const Quad& q, int material) {
                                  {"count", 6},
                                  {"min", low},
                                  {"max", high}});
-    root["meshes"].push_back(
-        {{"primitives", {{{"attributes", {{"POSITION", n}}}, {"material", material}}}}}});
+    const json primitive{{"attributes", {{"POSITION", n}}}, {"material", materialIndex}};
+    root["meshes"].push_back({{"primitives", json::array({primitive})}});
     root["scenes"][0]["nodes"].push_back(root["nodes"].size());
     root["nodes"].push_back({{"mesh", n}});
 }
@@ -67,40 +68,41 @@ json material(std::array<float, 4> color, float metallic, float roughness) {
 }  // namespace
 
 std::string TinyScene::text() const {
-    json root{{"asset", {{"version", "2.0"}}},
-              {"scene", 0},
-              {"scenes", {{{"nodes", json::array()}}}},
-              {"nodes", json::array()},
-              {"meshes", json::array()},
-              {"extensionsUsed", {"KHR_materials_specular"}}};
+    json root;
+    root["asset"]["version"] = "2.0";
+    root["scene"] = 0;
+    root["scenes"].push_back({{"nodes", json::array()}});
+    root["nodes"] = root["meshes"] = json::array();
+    root["extensionsUsed"].push_back("KHR_materials_specular");
     root["materials"] = {material({0.7f, 0.7f, 0.7f, 1.0f}, 0.0f, 1.0f),   // white
                          material({0.7f, 0.2f, 0.1f, 1.0f}, 0.0f, 1.0f),   // red
                          material({0.9f, 0.8f, 0.5f, 1.0f}, 1.0f, 0.4f),   // rough metal
                          material({0.9f, 0.9f, 0.9f, 1.0f}, 1.0f, 0.0f),   // mirror
                          material({0.0f, 0.0f, 0.0f, 1.0f}, 0.0f, 1.0f)};  // lamp
     if (lamp) root["materials"][4]["emissiveFactor"] = {1.0, 0.9, 0.8};
-    addQuad(root, {{{-1, -1, 1}, {1, -1, 1}, {1, -1, -1}, {-1, -1, -1}}}, 0);    // floor
-    addQuad(root, {{{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}}, 0);        // ceiling
-    addQuad(root, {{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}}}, 2);    // back
-    addQuad(root, {{{-1, -1, 1}, {-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}}}, 1);    // left
-    addQuad(root, {{{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}}, 3);        // right
-    addQuad(root, {{{-0.4f, 0.98f, -0.4f},                                       // lamp, faces down
-                    {0.4f, 0.98f, -0.4f},
-                    {0.4f, 0.98f, 0.4f},
-                    {-0.4f, 0.98f, 0.4f}}},
+    addQuad(root, {{{-1, -1, 1}, {1, -1, 1}, {1, -1, -1}, {-1, -1, -1}}}, 0);  // floor
+    addQuad(root, {{{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}}, 0);      // ceiling
+    addQuad(root, {{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}}}, 2);  // back
+    addQuad(root, {{{-1, -1, 1}, {-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}}}, 1);  // left
+    addQuad(root, {{{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}}, 3);      // right
+    addQuad(root,
+            {{{-0.4f, 0.98f, -0.4f},  // lamp, faces down
+              {0.4f, 0.98f, -0.4f},
+              {0.4f, 0.98f, 0.4f},
+              {-0.4f, 0.98f, 0.4f}}},
             4);
     if (camera) {
-        root["cameras"] = {
+        root["cameras"].push_back(
             {{"name", "eye"},
              {"type", "perspective"},
-             {"perspective", {{"yfov", 0.7}, {"aspectRatio", 1.5}, {"znear", 0.01}}}}};
+             {"perspective", {{"yfov", 0.7}, {"aspectRatio", 1.5}, {"znear", 0.01}}}});
         root["scenes"][0]["nodes"].push_back(root["nodes"].size());
         root["nodes"].push_back({{"camera", 0}, {"translation", {0.0, 0.0, 3.0}}});
     }
     if (pointLight) {
         root["extensionsUsed"].push_back("KHR_lights_punctual");
-        root["extensions"]["KHR_lights_punctual"]["lights"] = {
-            {{"type", "point"}, {"intensity", 2.0}, {"color", {1.0, 1.0, 1.0}}}};
+        root["extensions"]["KHR_lights_punctual"]["lights"].push_back(
+            {{"type", "point"}, {"intensity", 2.0}, {"color", {1.0, 1.0, 1.0}}});
         root["scenes"][0]["nodes"].push_back(root["nodes"].size());
         root["nodes"].push_back({{"translation", {0.3, 0.2, 0.1}},
                                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});

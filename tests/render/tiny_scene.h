@@ -8,8 +8,9 @@
 
 namespace lacuna::test {
 
-/// A room open towards the camera (which looks along -Z from z = 3), 2 units wide: diffuse floor and
-/// walls, a block-less rough metal back wall, a perfect mirror on the right, a lamp under the ceiling.
+/// A room open towards the camera (which looks along -Z from z = 3), 2 units wide: diffuse floor
+/// and walls, a block-less rough metal back wall, a perfect mirror on the right, a lamp under the
+/// ceiling.
 struct TinyScene {
     bool camera = true;
     bool lamp = true;

@@ -13,11 +13,13 @@ TEST_F(RenderUsage, HelpNamesEveryOption) {
     const Outcome o = run("--help");
     EXPECT_EQ(o.exitCode, 0);
     for (const char* option :
-         {"--method", "--set", "--width", "--height", "--iterations", "--time", "--count-setup",
-          "--max-depth", "--rr-depth", "--aperture", "--focus", "--camera", "--env", "--env-rotate",
-          "--env-scale", "--crop", "--reference", "--log", "--prepare", "--techniques", "--verify",
-          "--replay", "--effects", "--exposure", "--list-methods", "--help-method", "--threads",
-          "--seed", "--json", "--quiet", "--cache", "--version", "Exit codes"}) {
+         {"--method",      "--set",         "--width",     "--height",     "--iterations",
+          "--time",        "--count-setup", "--max-depth", "--rr-depth",   "--aperture",
+          "--focus",       "--camera",      "--env",       "--env-rotate", "--env-scale",
+          "--crop",        "--reference",   "--log",       "--prepare",    "--techniques",
+          "--verify",      "--replay",      "--effects",   "--exposure",   "--list-methods",
+          "--help-method", "--threads",     "--seed",      "--json",       "--quiet",
+          "--cache",       "--version",     "Exit codes"}) {
         EXPECT_NE(o.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").exitCode, 0);

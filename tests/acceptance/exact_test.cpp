@@ -1,0 +1,246 @@
+// Acceptance 5: scenes whose radiance is known without a reference.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+class Exact : public testing::TestWithParam<std::string> {
+  protected:
+    MethodRow row() const { return rowNamed(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(All, Exact, testing::ValuesIn(rowNames()), ByParameter());
+
+/// Closed room with things in it, every surface of albedo a and emission 1 - a: radiance is
+/// 1 - a^depth where paths end after `depth` edges.
+SceneBuilder furnace(float albedo) {
+    SceneBuilder b;
+    b.d.materials[0] = emitter(Rgb(1 - albedo), false, Rgb(albedo));
+    b.add(box({-1, -1, -1}, {1, 1, 1}, 0, true));
+    b.add(box({-0.7f, -0.99f, -0.6f}, {-0.3f, -0.2f, -0.2f}));
+    const auto mesh = b.add(box({-0.2f, -0.3f, -0.2f}, {0.2f, 0.3f, 0.2f}),
+                            translation({0.4, -0.2, -0.3}) * rotation({1, 2, 3}, 50));
+    b.instance(mesh,
+               translation({0.1, 0.5, -0.4}) * rotation({0, 1, 1}, 70) * scaling({1, -0.5, 1}));
+    b.add(lookAt({0, 0, 0.9}, {0, 0, -1}, 70));
+    return b;
+}
+
+TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
+    const auto scene = furnace(0.5f).build();
+    Shot shot;
+    shot.maxDepth = 5;
+    shot.iterations = 150;
+    const Picture p = render(*scene, row(), shot);
+    const double exact = 1 - std::pow(0.5, shot.maxDepth);
+    expectRadiance(p, exact, row().name + ", furnace");
+
+    // The film's border against its interior: filters and splats must agree on where it ends.
+    Moments border, inside;
+    const Image image = p.pixels.image();
+    for (int y = 0; y < shot.height; ++y) {
+        for (int x = 0; x < shot.width; ++x) {
+            const bool edge = x == 0 || y == 0 || x == shot.width - 1 || y == shot.height - 1;
+            (edge ? border : inside).add(mean(image.at(x, y)));
+        }
+    }
+    EXPECT_NEAR(border.mean(), exact, 5 * border.standardError() + 1e-5);
+    EXPECT_NEAR(inside.mean(), exact, 5 * inside.standardError() + 1e-5);
+}
+
+// Direct light on a plane
+// --------------------------------------------------------------------------
+
+/// Irradiance on the plane y = 0 at (x, z).
+using Irradiance = std::function<double(double x, double z)>;
+
+/// A floor of albedo 0.6 alone under the light that `light` adds, against the closed form.
+void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>& light,
+                 const Irradiance& irradiance, const std::string& what) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}));
+    b.add(lookAt({0.3, 1.5, 2}, {0, 0, 0.2}, 40));
+    light(b);
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 2;
+    shot.iterations = 200;
+    shot.lightPaths = 1024;
+    const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
+    std::vector<Rgb> exact;
+    constexpr int kSteps = 8;
+    for (int i = 0; i < shot.width * shot.height; ++i) {
+        double sum = 0;
+        for (int j = 0; j < kSteps * kSteps; ++j) {
+            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
+                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
+            const Vec3d d(camera.directionAt(camera.position(), raster).direction);
+            const Vec3d from = Vec3d(camera.position()) + scene->centre();
+            sum += irradiance(from.x - d.x * from.y / d.y, from.z - d.z * from.y / d.y);
+        }
+        exact.push_back(Rgb(float(sum / (kSteps * kSteps) * 0.6 / std::numbers::pi)));
+    }
+    expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what);
+}
+
+/// Of a rectangle [0, a] x [0, b] at distance 1, seen from below its corner at the origin.
+double cornerFormFactor(double a, double b) {
+    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * std::numbers::pi);
+}
+
+TEST_P(Exact, quadLightHasItsFormFactor) {
+    const double y = 1.8, x0 = -0.6, x1 = 0.4, z0 = -0.3, z1 = 0.3, radiance = 2;
+    for (const bool twoSided : {false, true}) {
+        expectFloor(
+            row(),
+            [&](SceneBuilder& b) {
+                b.add(quad({float(x0), float(y), float(z0)}, {float(x1 - x0), 0, 0},
+                           {0, 0, float(z1 - z0)}, b.add(emitter(Rgb(float(radiance)), twoSided))));
+            },
+            [&](double x, double z) {
+                const auto f = [&](double u, double v) {
+                    return cornerFormFactor((u - x) / y, (v - z) / y);
+                };
+                const double factor = f(x1, z1) - f(x0, z1) - f(x1, z0) + f(x0, z0);
+                return std::numbers::pi * radiance * factor;
+            },
+            twoSided ? "two-sided quad" : "quad");
+    }
+}
+
+TEST_P(Exact, pointLightFollowsTheInverseSquare) {
+    const Vec3d p{-0.4, 1.3, 0.3};
+    expectFloor(
+        row(), [&](SceneBuilder& b) { b.add(pointLight(p, Rgb(3.0f))); },
+        [&](double x, double z) {
+            const double d2 = lengthSquared(p - Vec3d{x, 0, z});
+            return 3 * p.y / std::sqrt(d2) / d2;
+        },
+        "point light");
+}
+
+TEST_P(Exact, spotLightHasItsFalloff) {
+    const Vec3d p{0.3, 1.6, 0.6}, axis = normalize(Vec3d{-0.2, -1, -0.3});
+    const double inner = 0.3, outer = 0.8;
+    expectFloor(
+        row(), [&](SceneBuilder& b) { b.add(spotLight(p, axis, Rgb(4.0f), inner, outer)); },
+        [&](double x, double z) {
+            const Vec3d d = Vec3d{x, 0, z} - p;
+            const double distance = length(d), cosine = dot(d, axis) / distance;
+            const double ramp = (cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
+            const double falloff = std::clamp(ramp, 0.0, 1.0);
+            return 4 * falloff * falloff * p.y / (distance * distance * distance);
+        },
+        "spot light");
+}
+
+TEST_P(Exact, directionalLightFollowsTheCosine) {
+    const Vec3d d = normalize(Vec3d{0.3, -1, -0.7});
+    expectFloor(
+        row(), [&](SceneBuilder& b) { b.add(directionalLight(d, Rgb(1.5f))); },
+        [&](double, double) { return 1.5 * -d.y; }, "directional light");
+}
+
+// A constant environment
+// ---------------------------------------------------------------------------
+
+TEST_P(Exact, emptySceneShowsItsEnvironment) {
+    SceneBuilder b;
+    b.environment(constantSky(1));
+    b.add(lookAt({0, 0, 0}, {0, 0.3, -1}, 60));
+    Shot shot;
+    shot.iterations = 100;
+    shot.lightPaths = 1024;
+    expectRadiance(render(*b.build(), row(), shot), 1, row().name + ", environment alone");
+}
+
+TEST_P(Exact, convexBodyUnderAConstantSkyShowsItsAlbedo) {
+    SceneBuilder b;
+    b.add(sphere({0, 0, 0}, 1, 16, 0));  // flat facets: no facet sees another one
+    b.environment(constantSky(1));
+    b.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
+    Shot shot;
+    shot.iterations = 200;
+    shot.lightPaths = 1024;
+    expectRadiance(render(*b.build(), row(), shot), 0.5, row().name + ", sphere under the sky");
+}
+
+/// The sky is dimmed as the scene grows, so that the light that it holds (and whatever a density
+/// makes of beta) stays what it was; Shot::gain takes that back.
+SceneBuilder sphereOnGround(double scale, Vec3d offset) {
+    SceneBuilder b;
+    const Affine place = translation(offset) * scaling({scale, scale, scale});
+    b.add(sphere({0, 0.5f, 0}, 0.5f, 16, b.add(plastic({0.6f, 0.3f, 0.2f}, 0.5f)), true), place);
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), place);
+    b.environment(sunnySky(), 1 / (scale * scale));
+    b.add(lookAt(place.point({0, 2.6, 1.6}), place.point({0, 0.3, 0}), 30));
+    return b;
+}
+
+TEST_P(Exact, sizeAndPlaceChangeNothingUnderTheSky) {
+    Shot shot;
+    shot.iterations = 150;
+    shot.maxDepth = 3;
+    shot.lightPaths = 1024;
+    const Picture reference = render(*sphereOnGround(1, {}).build(), pathTracer(), shot);
+    shot.seed = 2;
+    shot.gain = 1e6f;
+    expectSame(render(*sphereOnGround(1000, {}).build(), row(), shot), reference,
+               row().name + ", 1000 times as large");
+    shot.gain = 1;
+    expectSame(render(*sphereOnGround(1, {1e5, -1e5, 1e5}).build(), row(), shot), reference,
+               row().name + ", 1e5 away");
+}
+
+// Lossless glass that fills the picture. Only hits of the environment can make these paths, and
+// every one reads the same: no noise, so a lost factor shows in each pixel.
+
+void expectSmoothRadiance(const MethodRow& row, SceneBuilder b, double exact,
+                          const std::string& what) {
+    if (!seesThroughDeltas(row)) return;
+    b.environment(constantSky(1));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 100;
+    shot.iterations = 4;
+    shot.width = shot.height = 8;
+    expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what);
+}
+
+TEST_P(Exact, losslessGlassInAConstantEnvironmentReadsOne) {
+    SceneBuilder solid;
+    solid.add(sphere({0, 0, 0}, 1, 16, solid.add(glass())));
+    solid.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
+    expectSmoothRadiance(row(), solid, 1, "solid glass");
+
+    SceneBuilder thin;
+    lacuna::Material pane = glass();
+    pane.thin = true;
+    thin.add(sphere({0, 0, 0}, 1, 16, thin.add(pane)));
+    thin.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
+    expectSmoothRadiance(row(), thin, 1, "thin glass");
+
+    // Glass in glass: the inner surface is a body of ior 1.2 with air on its outside by our model.
+    SceneBuilder nested;
+    nested.add(sphere({0, 0, 0}, 1, 16, nested.add(glass())));
+    nested.add(sphere({0.1f, 0, 0.1f}, 0.5f, 16, nested.add(glass(1.2f))));
+    nested.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
+    expectSmoothRadiance(row(), nested, 1, "glass in glass");
+}
+
+TEST_P(Exact, insideGlassTheSkyReadsTheSquaredIndex) {
+    SceneBuilder b;
+    b.add(sphere({0, 0, 0}, 1, 16, b.add(glass())));
+    b.add(lookAt({0, 0, 0}, {0.2, 0.3, -1}, 60));  // from the middle nothing is trapped
+    expectSmoothRadiance(row(), b, 2.25, "inside glass");
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,107 @@
+// Acceptance 6: every row against path tracing, for every pair of light kinds in one small scene
+// without delta materials (so that path tracing and light tracing see everything), and on the
+// scenes of the repository. The smallest bias that each comparison can see is printed by
+// expectSame.
+#include <gtest/gtest.h>
+
+#include "libcore/gltf/gltf.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+struct Pair {
+    LightChoice a, b;
+    std::string name() const { return nameOf(a) + " and " + nameOf(b); }
+};
+void PrintTo(const Pair& p, std::ostream* out) {
+    *out << p.name();
+}
+std::vector<Pair> allPairs() {
+    std::vector<Pair> pairs;
+    for (int i = 0; i < kLightChoices; ++i) {
+        for (int j = i + 1; j < kLightChoices; ++j)
+            pairs.push_back({LightChoice(i), LightChoice(j)});
+    }
+    return pairs;
+}
+
+class LightPairsSlow : public testing::TestWithParam<Pair> {};
+
+TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
+    SceneBuilder b = stage();
+    addLight(b, GetParam().a);
+    addLight(b, GetParam().b);
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 4;
+    shot.iterations = 400;
+    shot.seed = 100;
+    const Picture reference = render(*scene, pathTracer(), shot);
+    shot.seed = 1;
+    shot.iterations = 200;
+    shot.lightPaths = 1024;
+    for (const std::string& name : rowNames()) {
+        expectSame(render(*scene, rowNamed(name), shot), reference, name);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LightPairsSlow, testing::ValuesIn(allPairs()), ByParameter());
+
+// Scenes of the repository
+// -------------------------------------------------------------------------
+
+struct SceneFile {
+    std::string name;
+    int iterations;
+    std::string reference = "pt";
+};
+void PrintTo(const SceneFile& s, std::ostream* out) {
+    *out << s.name;
+}
+
+/// Whether any material has a perfectly smooth lobe: then the lens sees some things through deltas.
+bool hasDeltas(const SceneDescription& scene) {
+    for (const lacuna::Material& m : scene.materials) {
+        const bool layered = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior > 1);
+        if (layered && double(m.roughness) * double(m.roughness) < double(kMinAlpha)) return true;
+    }
+    return false;
+}
+
+class SceneFilesSlow : public testing::TestWithParam<SceneFile> {};
+
+TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
+    const SceneDescription description =
+        loadGltf(std::string(LACUNA_SCENES "/") + GetParam().name + ".glb");
+    const Scene scene(description, pool());
+    Shot shot;
+    shot.width = 32;
+    shot.height = 24;
+    shot.maxDepth = 5;
+    shot.iterations = 2 * GetParam().iterations;
+    shot.seed = 100;
+    const Picture reference = render(scene, rowNamed(GetParam().reference), shot);
+    shot.seed = 1;
+    shot.iterations = GetParam().iterations;
+    for (const std::string& name : rowNames()) {
+        const MethodRow row = rowNamed(name);
+        if (hasDeltas(description) && !seesThroughDeltas(row)) continue;
+        expectSame(render(scene, row, shot), reference, name, Judge::BlocksAndMean);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SceneFilesSlow,
+    testing::Values(SceneFile{"cornell-box", 100}, SceneFile{"door", 60, "bpt"},
+                    SceneFile{"glossy-room", 60, "bpt"}, SceneFile{"kitchen-glass", 60, "bpt"},
+                    SceneFile{"ring-caustic", 60, "bpt"}, SceneFile{"furnace", 40},
+                    SceneFile{"light-quad", 60}, SceneFile{"light-sphere", 60},
+                    SceneFile{"light-two-sided", 60}, SceneFile{"light-point", 60},
+                    SceneFile{"light-spot", 60}, SceneFile{"light-directional", 60},
+                    SceneFile{"light-environment", 60}, SceneFile{"light-mesh-instanced", 60}),
+    ByParameter());
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,252 @@
+#include "tests/acceptance/render_test.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace lacuna::test {
+
+namespace {
+
+PixelRect cropOf(const Shot& shot) {
+    return shot.crop == PixelRect{} ? PixelRect{0, shot.width, 0, shot.height} : shot.crop;
+}
+
+Settings settingsOf(const MethodRow& row, const Shot& shot) {
+    std::vector<std::string> assignments = shot.settings;
+    for (const Parameter& p : row.parameters) {
+        if (p.name == "candidates") {
+            const int pool = shot.candidates ? shot.candidates : shot.width * shot.height;
+            assignments.push_back("candidates=" + std::to_string(pool));
+        }
+        if (p.name == "light_paths" && shot.lightPaths) {
+            assignments.push_back("light_paths=" + std::to_string(shot.lightPaths));
+        }
+    }
+    return resolve(row, assignments);
+}
+
+/// |z| that one of `tests` two-sided tests exceeds with probability kFalseAlarm.
+double threshold(double tests) {
+    const double significance = sidak(kFalseAlarm, tests);
+    double low = 0, high = 40;
+    for (int i = 0; i < 100; ++i) {
+        const double z = 0.5 * (low + high);
+        (normalTail(z, 2) > significance ? low : high) = z;
+    }
+    return low;
+}
+
+float channel(const Rgb& c, int i) {
+    return i == 0 ? c.r : i == 1 ? c.g : c.b;
+}
+
+/// Largest excess over `z` standard errors; messages for the first few that exceed it.
+void judge(const Image& a, const Image& varianceA, const Image& b, const Image& varianceB, double z,
+           const std::string& what) {
+    int complaints = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const double va = channel(a.pixels[i], c), vb = channel(b.pixels[i], c);
+            const double error = std::sqrt(double(channel(varianceA.pixels[i], c)) +
+                                           double(channel(varianceB.pixels[i], c)));
+            // What floats lose where there is no noise to speak of.
+            const double rounding = 2e-5 * std::max(std::fabs(va), std::fabs(vb));
+            if (std::fabs(va - vb) <= z * error + rounding || ++complaints > 4) continue;
+            ADD_FAILURE() << what << " " << i % std::size_t(a.width) << ","
+                          << i / std::size_t(a.width) << " channel " << c << ": " << va << " and "
+                          << vb << ", " << std::fabs(va - vb) / error
+                          << " standard errors, allowed " << z;
+        }
+    }
+    EXPECT_LE(complaints, 4) << what << ": in all " << complaints << " of " << 3 * a.pixels.size();
+}
+
+void expectValid(const Picture& p, const std::string& what) {
+    EXPECT_EQ(p.statistics.invalidSamples, 0u)
+        << what << ": "
+        << (p.statistics.invalidReplays.empty() ? "" : p.statistics.invalidReplays[0]);
+}
+
+void judgeAll(const Picture& a, const Image& pixels, const Image& pixelVariance,
+              const Image& blocks, const Image& blockVariance, const double mean[3],
+              const double meanError[3], const std::string& what, Judge which) {
+    double tests = 3;
+    if (which != Judge::MeanOnly) tests += 3.0 * double(blocks.pixels.size());
+    if (which == Judge::Everything) tests += 3.0 * double(pixels.pixels.size());
+    const double z = threshold(tests);
+    if (which == Judge::Everything) {
+        judge(a.pixels.image(), a.pixels.variance(), pixels, pixelVariance, z, what + ": pixel");
+    }
+    if (which != Judge::MeanOnly) {
+        judge(a.blocks.image(), a.blocks.variance(), blocks, blockVariance, z, what + ": block");
+    }
+    const Film::MeanColour own = a.pixels.meanColour();
+    double smallest = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double error = std::hypot(own.standardError[c], meanError[c]);
+        EXPECT_NEAR(own.mean[c], mean[c], z * error + 2e-5 * std::fabs(mean[c]))
+            << what << ": mean of channel " << c << ", " << std::fabs(own.mean[c] - mean[c]) / error
+            << " standard errors, allowed " << z;
+        if (mean[c] > 0) smallest = std::max(smallest, z * error / mean[c]);
+    }
+    std::printf("    %s: sees a bias of the mean from %.2f %% on\n", what.c_str(), 100 * smallest);
+}
+
+}  // namespace
+
+double Picture::mean() const {
+    const Film::MeanColour m = pixels.meanColour();
+    return (m.mean[0] + m.mean[1] + m.mean[2]) / 3;
+}
+
+double Picture::standardError() const {
+    // The channels of one path go together: as if they were equal.
+    const Film::MeanColour m = pixels.meanColour();
+    return (m.standardError[0] + m.standardError[1] + m.standardError[2]) / 3;
+}
+
+Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot)
+    : shot_(shot),
+      camera_(scene.makeCamera("", {shot.width, shot.height}, shot.lens)),
+      settings_(settingsOf(row, shot)),
+      own_(row.create(settings_)) {
+    start(scene, row, *own_);
+}
+
+Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot, Method& method)
+    : shot_(shot),
+      camera_(scene.makeCamera("", {shot.width, shot.height}, shot.lens)),
+      settings_(settingsOf(row, shot)) {
+    start(scene, row, method);
+}
+
+void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
+    RenderSettings r;
+    r.limits = {shot_.maxDepth, shot_.rouletteDepth};
+    r.seed = shot_.seed;
+    r.crop = cropOf(shot_);
+    const auto l = settings_.values().find("light_paths");
+    if (l != settings_.values().end()) r.lightPaths = std::uint64_t(l->second);
+    integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
+                                                    shot_.threads ? *shot_.threads : pool());
+    integrator_->setTechniqueFilm(shot_.techniques);
+    integrator_->setObserver(shot_.observer);
+    pixels_.resize(std::size_t(r.crop.width()) * std::size_t(r.crop.height()));
+}
+
+void Render::warmUp() {
+    const std::atomic<bool> never{false};
+    integrator_->warmUp(never, statistics_);
+}
+
+void Render::iterate(std::uint32_t iteration) {
+    const std::atomic<bool> never{false};
+    integrator_->render(iteration, pixels_, never, statistics_);
+}
+
+Picture Render::run() {
+    const PixelRect crop = cropOf(shot_);
+    Picture picture(crop);
+    const ThreadPool& threads = shot_.threads ? *shot_.threads : pool();
+    const int width = crop.width(), blocksX = picture.blocks.width();
+    std::vector<Rgb> blocks(std::size_t(blocksX) * std::size_t(picture.blocks.height()));
+    const int bx = std::min(4, width), by = std::min(4, crop.height());
+    warmUp();
+    for (int i = 0; i < shot_.iterations; ++i) {
+        iterate(std::uint32_t(i));
+        for (Rgb& c : pixels_) c *= shot_.gain;
+        picture.pixels.add(pixels_, threads);
+        std::fill(blocks.begin(), blocks.end(), Rgb{});
+        for (int y = 0; y < picture.blocks.height() * by; ++y) {
+            for (int x = 0; x < blocksX * bx; ++x) {
+                blocks[std::size_t(y / by * blocksX + x / bx)] +=
+                    pixels_[std::size_t(y * width + x)] * (1.0f / float(bx * by));
+            }
+        }
+        picture.blocks.add(blocks, threads);
+    }
+    picture.statistics = statistics_;
+    return picture;
+}
+
+Picture render(const Scene& scene, const MethodRow& row, const Shot& shot) {
+    return Render(scene, row, shot).run();
+}
+
+void expectSame(const Picture& a, const Picture& b, const std::string& what, Judge which) {
+    expectValid(a, what);
+    expectValid(b, what);
+    const Film::MeanColour m = b.pixels.meanColour();
+    judgeAll(a, b.pixels.image(), b.pixels.variance(), b.blocks.image(), b.blocks.variance(),
+             m.mean, m.standardError, what, which);
+}
+
+void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact,
+                    const std::string& what) {
+    expectValid(picture, what);
+    const int width = picture.pixels.width(), height = picture.pixels.height();
+    Image pixels(width, height), blocks(picture.blocks.width(), picture.blocks.height());
+    pixels.pixels = exact;
+    const int bx = std::min(4, width), by = std::min(4, height);
+    double mean[3] = {0, 0, 0};
+    const double none[3] = {0, 0, 0};
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const Rgb& c = pixels.at(x, y);
+            for (int i = 0; i < 3; ++i) mean[i] += channel(c, i) / double(width * height);
+            if (x / bx < blocks.width && y / by < blocks.height) {
+                blocks.at(x / bx, y / by) += c * (1.0f / float(bx * by));
+            }
+        }
+    }
+    judgeAll(picture, pixels, Image(width, height), blocks, Image(blocks.width, blocks.height),
+             mean, none, what, Judge::Everything);
+}
+
+void expectRadiance(const Picture& picture, double exact, const std::string& what) {
+    const auto n = std::size_t(picture.pixels.width()) * std::size_t(picture.pixels.height());
+    expectRadiance(picture, std::vector<Rgb>(n, Rgb(float(exact))), what);
+}
+
+std::vector<std::string> rowNames() {
+    std::vector<std::string> names;
+    for (const MethodRow& row : allRows()) names.push_back(row.name);
+    return names;
+}
+
+MethodRow rowNamed(const std::string& name) {
+    for (const MethodRow& row : allRows()) {
+        if (row.name == name) return row;
+    }
+    throw std::invalid_argument(name);
+}
+
+std::string testName(const std::string& text) {
+    std::string name = text;
+    for (char& c : name) {
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    }
+    return name;
+}
+
+bool seesThroughDeltas(const MethodRow& row) {
+    return row.techniques.hits || row.techniques.connects;
+}
+
+bool walksFromLights(const MethodRow& row) {
+    if (row.techniques.splats) return true;
+    if (!row.techniques.connects) return false;
+    const auto method = row.create(resolve(row, smallSettings(row, 4)));
+    const auto constants = method->freeze(0).constants();
+    return !constants || constants->indirect > 0;
+}
+
+const MethodRow& pathTracer() {
+    return findMethod("pt");
+}
+
+}  // namespace lacuna::test

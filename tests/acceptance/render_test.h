@@ -1,0 +1,119 @@
+// Renders a scene with one row of the method table and compares pictures by z-tests.
+//
+// What the tests state: `kFalseAlarm` is the probability that one comparison of two pictures fails
+// by chance (Sidak over its pixels, blocks and channels, normal approximation). A program has a few
+// hundred comparisons, so one in about 10^4 changes of random numbers raises a false alarm. Scenes
+// must keep samples tame enough for that: no tiny light behind a mirror, no corner that is lit by
+// unweighted connections.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libcore/bidir/integrator.h"
+#include "libcore/methods/registry.h"
+#include "tests/bidir/test_rows.h"
+#include "tests/material/statistics.h"
+#include "tests/scene/scene_builder.h"
+
+namespace lacuna::test {
+
+inline constexpr double kFalseAlarm = 1e-6;
+
+/// What is rendered and how long.
+struct Shot {
+    int width = 16, height = 16;
+    int maxDepth = 5;
+    int rouletteDepth = 3;
+    PixelRect crop{};  ///< empty: the whole film
+    Camera::Lens lens{};
+    int iterations = 256;
+    std::uint64_t seed = 1;
+    std::uint64_t lightPaths = 0;  ///< where the row has that parameter; 0: one per pixel
+    float gain = 1;                ///< what pixels are multiplied by before they are judged
+    int candidates = 0;            ///< likewise; 0: one light subpath per pixel
+    std::vector<std::string> settings = {};
+    const ThreadPool* threads = nullptr;  ///< null: the shared pool
+    TechniqueFilm* techniques = nullptr;
+    PathObserver observer = nullptr;
+};
+
+/// Sums of one render: by pixel, and by blocks of 4 x 4 pixels where the size allows it.
+struct Picture {
+    explicit Picture(PixelRect crop)
+        : pixels(crop.width(), crop.height()),
+          blocks(std::max(1, crop.width() / 4), std::max(1, crop.height() / 4)) {}
+    Film pixels, blocks;
+    IterationStatistics statistics;
+
+    /// Mean of all pixels and channels, and its standard error.
+    double mean() const;
+    double standardError() const;
+};
+
+/// Everything that must live as long as a render; for tests that drive the integrator themselves.
+class Render {
+  public:
+    Render(const Scene& scene, const MethodRow& row, const Shot& shot);
+    /// With a method of one's own under the techniques of `row`.
+    Render(const Scene& scene, const MethodRow& row, const Shot& shot, Method& method);
+
+    Picture run();
+    BidirIntegrator& integrator() { return *integrator_; }
+    const Camera& camera() const { return camera_; }
+    /// One iteration into pixels(); statistics are added up.
+    void iterate(std::uint32_t iteration);
+    void warmUp();
+    std::span<const Rgb> pixels() const { return pixels_; }
+    const IterationStatistics& statistics() const { return statistics_; }
+
+  private:
+    void start(const Scene& scene, const MethodRow& row, Method& method);
+
+    Shot shot_;
+    Camera camera_;
+    Settings settings_;
+    std::unique_ptr<Method> own_;
+    std::unique_ptr<BidirIntegrator> integrator_;
+    std::vector<Rgb> pixels_;
+    IterationStatistics statistics_;
+};
+
+Picture render(const Scene& scene, const MethodRow& row, const Shot& shot);
+
+/// Every pixel, every block and the mean, each channel, within what kFalseAlarm allows. Also that
+/// no sample was invalid. Prints the smallest bias of the mean that would have been seen.
+enum class Judge { Everything, BlocksAndMean, MeanOnly };
+void expectSame(const Picture& a, const Picture& b, const std::string& what,
+                Judge judge = Judge::Everything);
+/// The same against exact radiance.
+void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const std::string& what);
+void expectRadiance(const Picture& picture, double exact, const std::string& what);
+
+// Rows
+// ----------------------------------------------------------------------------------------------
+
+std::vector<std::string> rowNames();
+MethodRow rowNamed(const std::string& name);
+std::string testName(const std::string& text);
+/// For INSTANTIATE_TEST_SUITE_P: names a test after its parameter, as PrintTo writes it.
+struct ByParameter {
+    template <class T>
+    std::string operator()(const testing::TestParamInfo<T>& test) const {
+        return testName(testing::PrintToString(test.param));
+    }
+    std::string operator()(const testing::TestParamInfo<std::string>& test) const {
+        return testName(test.param);
+    }
+};
+
+/// Splats alone cannot make what the lens sees through mirrors and smooth glass.
+bool seesThroughDeltas(const MethodRow& row);
+/// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
+bool walksFromLights(const MethodRow& row);
+const MethodRow& pathTracer();
+
+}  // namespace lacuna::test

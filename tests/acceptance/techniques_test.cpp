@@ -1,0 +1,190 @@
+// Acceptance 7: strategies one by one. The unweighted image of every strategy that can make all
+// paths of a length has the same mean. Scenes are open and nothing in them touches: unweighted
+// connections need a geometry term that is bounded, or their variance is not finite.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr int kBatches = 40;
+
+struct TechniqueScene {
+    std::string name;
+    SceneBuilder builder;
+    int minEdges, maxEdges;
+    /// Whether strategy (s, t) makes all paths of s + t - 1 edges that any makes.
+    std::function<bool(int s, int t)> complete = [](int, int) { return true; };
+    int iterations = 40;
+};
+void PrintTo(const TechniqueScene& s, std::ostream* out) {
+    *out << s.name;
+}
+
+bool withoutHits(int s, int) {
+    return s > 0;
+}
+
+/// A floor and a slanted wall that do not touch; the camera sees no light.
+SceneBuilder plates(bool bent) {
+    SceneBuilder b;
+    Mesh floor = quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f});
+    Mesh wall =
+        quad({-1, 0.4f, -1.3f}, {2, 0, 0}, {0, 1.3f, -0.3f}, b.add(matte({0.7f, 0.5f, 0.4f})));
+    if (bent) {
+        floor.normals = {{0.3f, 1, 0.1f}, {-0.3f, 1, 0.2f}, {0.2f, 1, -0.3f}, {0, 1, 0.3f}};
+        wall.normals = {{0.2f, 0, 1}, {-0.3f, 0.2f, 1}, {0, -0.3f, 1}, {0.3f, 0.3f, 1}};
+    }
+    b.add(floor);
+    b.add(wall);
+    b.add(lookAt({0.2, 1.1, 3}, {0, 0.45, 0}, 45));
+    return b;
+}
+
+void addQuadLight(SceneBuilder& b) {
+    b.add(quad({-0.4f, 2, 0.2f}, {0.8f, 0, 0}, {0, 0.1f, 0.7f}, b.add(emitter(Rgb(4.0f)))));
+}
+
+std::vector<TechniqueScene> techniqueScenes() {
+    std::vector<TechniqueScene> scenes;
+    {
+        TechniqueScene s{"diffuse", plates(false), 2, 4};
+        s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0));
+        addQuadLight(s.builder);
+        scenes.push_back(s);
+    }
+    {
+        TechniqueScene s{"shading normals", plates(true), 2, 4};
+        s.builder.add(
+            sphere({0, 0.6f, 0}, 0.35f, 12, s.builder.add(metal({0.9f, 0.7f, 0.5f}, 0.7f)), true));
+        addQuadLight(s.builder);
+        scenes.push_back(s);
+    }
+    {
+        // Two rough faces of a plate of glass between light and floor.
+        TechniqueScene s{"rough refraction", plates(false), 2, 4};
+        // Very rough: unweighted connections across the plate meet two lobes at once.
+        const auto rough = s.builder.add(glass(1.5f, 0.95f));
+        s.builder.add(quad({-0.8f, 0.9f, -0.6f}, {0, 0.1f, 1.4f}, {1.6f, 0, 0}, rough));
+        s.builder.add(quad({-0.8f, 0.6f, -0.6f}, {1.6f, 0, 0}, {0, 0.1f, 1.4f}, rough));
+        addQuadLight(s.builder);
+        scenes.push_back(s);
+    }
+    {
+        // Light inside smooth glass: only splats and hits make what it casts on the floor, and the
+        // one has refracted importance where the other has refracted radiance.
+        SceneBuilder b;
+        b.add(quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}));
+        b.add(quad({-9, 0.9f, 9}, {0, 0, -18}, {18, 0, 0}, b.add(glass())));
+        b.add(quad({-0.4f, 1.4f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(4.0f)))));
+        b.add(lookAt({0, 0.7, 2.5}, {0, 0, 0.1}, 30));
+        TechniqueScene s{"light in smooth glass", b, 3, 3};
+        s.complete = [](int s_, int t) { return s_ == 0 || t == 1; };
+        scenes.push_back(s);
+    }
+    {
+        // Camera inside rough glass, floor and light outside.
+        SceneBuilder b;
+        b.add(quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}));
+        b.add(quad({-3, 0.9f, 3}, {0, 0, -6}, {6, 0, 0}, b.add(glass(1.5f, 0.6f))));
+        b.add(quad({1.1f, 0.4f, -0.5f}, {0, 0, 0.9f}, {-0.2f, 0.4f, 0}, b.add(emitter(Rgb(9.0f)))));
+        b.add(lookAt({0, 2.2, 1.2}, {0, 0, 0}, 40));
+        scenes.push_back({"camera in rough glass", b, 2, 3});
+    }
+    {
+        TechniqueScene s{"instanced and mirrored emitters", plates(false), 2, 3};
+        SceneBuilder& b = s.builder;
+        Mesh lamp = joined(quad({-0.2f, 0, -0.2f}, {0.4f, 0, 0}, {0, 0.1f, 0.4f}),
+                           triangle({-0.2f, 0, 0.4f}, {0.2f, 0, 0.4f}, {0, 0.1f, 0.7f}));
+        lamp.material = b.add(emitter({6, 4, 3}));
+        const auto mesh = b.add(lamp, translation({-0.6, 1.6, 0.3}));
+        b.instance(mesh, translation({0.7, 1.5, 0.3}) * scaling({-1.3, 1, 0.7}));
+        b.instance(mesh, translation({0, 2, 0.5}) * rotation({0, 0, 1}, 180) * scaling({1, -1, 1}));
+        scenes.push_back(s);
+    }
+    {
+        TechniqueScene s{"environment", plates(false), 1, 3};
+        s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0));
+        s.builder.environment(sunnySky());
+        s.iterations = 60;
+        scenes.push_back(s);
+    }
+    {
+        TechniqueScene s{"spot and point", plates(false), 2, 4};
+        s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0, true));
+        s.builder.add(spotLight({0.5, 2.2, 1}, {-0.2, -1, -0.4}, Rgb(5.0f), 0.3, 0.6));
+        s.builder.add(pointLight({-1, 1.7, 0.6}, Rgb(1.0f)));
+        s.complete = withoutHits;
+        scenes.push_back(s);
+    }
+    {
+        TechniqueScene s{"directional", plates(true), 2, 3};
+        s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0, true));
+        s.builder.add(directionalLight({0.3, -1, -0.6}, Rgb(2.0f)));
+        s.complete = withoutHits;
+        scenes.push_back(s);
+    }
+    return scenes;
+}
+
+class TechniquesSlow : public testing::TestWithParam<TechniqueScene> {};
+
+TEST_P(TechniquesSlow, unweightedImagesAgree) {
+    const TechniqueScene& s = GetParam();
+    const auto scene = s.builder.build();
+    const MethodRow row = rowNamed("bpt");  // has every strategy, with one sample of each
+    Shot shot;
+    shot.maxDepth = s.maxEdges;
+    shot.lightPaths = 1024;
+    shot.iterations = s.iterations;
+    std::vector<std::vector<Moments>> mean(std::size_t(s.maxEdges) + 2,
+                                           std::vector<Moments>(std::size_t(s.maxEdges) + 2));
+    for (int batch = 0; batch < kBatches; ++batch) {
+        TechniqueFilm film(shot.width, shot.height, shot.maxDepth);
+        shot.techniques = &film;
+        shot.seed = std::uint64_t(batch) + 1;
+        render(*scene, row, shot);
+        for (int k = s.minEdges; k <= s.maxEdges; ++k) {
+            for (int t = 1; t <= k + 1; ++t) {
+                double sum = 0;
+                for (const Rgb& c : film.unweighted(k + 1 - t, t).pixels)
+                    sum += double(lacuna::mean(c));
+                mean[std::size_t(k)][std::size_t(t)].add(sum / double(shot.width * shot.height));
+            }
+        }
+    }
+    for (int k = s.minEdges; k <= s.maxEdges; ++k) {
+        const auto& row_ = mean[std::size_t(k)];
+        int best = 0;
+        for (int t = 1; t <= k + 1; ++t) {
+            const auto relative = [&](int i) {
+                return row_[std::size_t(i)].standardError() / row_[std::size_t(i)].mean();
+            };
+            if (s.complete(k + 1 - t, t) && (best == 0 || relative(t) < relative(best))) best = t;
+        }
+        const Moments& reference = row_[std::size_t(best)];
+        EXPECT_GT(reference.mean(), 0);
+        for (int t = 1; t <= k + 1; ++t) {
+            if (!s.complete(k + 1 - t, t)) continue;
+            const Moments& m = row_[std::size_t(t)];
+            const double error = std::hypot(m.standardError(), reference.standardError());
+            std::printf("    k %d, s %d, t %d: %.5f +- %.2f %%\n", k, k + 1 - t, t, m.mean(),
+                        100 * m.standardError() / m.mean());
+            if (t == best) continue;
+            // Student's t with 39 degrees of freedom: 5.5 is exceeded in 3e-6 of the comparisons.
+            EXPECT_NEAR(m.mean(), reference.mean(), 5.5 * error)
+                << s.name << ", " << k << " edges: t = " << t << " against t = " << best;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TechniquesSlow, testing::ValuesIn(techniqueScenes()), ByParameter());
+
+}  // namespace
+}  // namespace lacuna::test

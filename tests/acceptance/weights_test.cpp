@@ -1,0 +1,222 @@
+// Acceptance 1 and 2: weights on real paths. They sum to one over the strategies that can make the
+// path, they equal the full products of verify.h, and they do not depend on this iteration's pool.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libcore/bidir/verify.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr int kPaths = 10000;
+
+const ThreadPool& oneThread() {
+    static const ThreadPool pool(1);
+    return pool;
+}
+
+Shot weightShot() {
+    Shot shot;
+    shot.maxDepth = 7;
+    shot.rouletteDepth = 2;
+    shot.threads = &oneThread();
+    shot.lightPaths = 512;
+    return shot;
+}
+
+/// Whether strategy t could have drawn every vertex: all densities of its two walks are positive.
+bool drawable(const FullPath& path, const Techniques& techniques, int t) {
+    const int s = path.edges + 1 - t;
+    for (int i = 0; i <= path.edges; ++i) {
+        const double pdf = i < s
+                               ? path.lightPdfA[i] * path.lightRoulette(i, techniques.rouletteDepth)
+                               : path.eyePdfA[i] * path.eyeRoulette(i, techniques.rouletteDepth);
+        if (i < path.edges && !(pdf > 0.0)) return false;
+    }
+    return true;
+}
+
+/// How far weights may be off where a density reads beta: throughputs are made from positions
+/// (float), densities from the walks' own directions, and over a short or grazing edge the two
+/// differ.
+double roundingOfThroughputs(const FullPath& path) {
+    double sum = 0;
+    for (int i = 0; i < path.edges; ++i) {
+        const PathVertex &a = *path.vertex[i], &b = *path.vertex[i + 1];
+        if (a.infinite()) continue;
+        const Vec3d d = Vec3d(b.position) - Vec3d(a.position);
+        const double size = std::max(length(Vec3d(a.position)), length(Vec3d(b.position)));
+        for (const PathVertex* v : {&a, &b}) {
+            const double slope = v->ng == Vec3{} ? length(d) : std::fabs(dot(Vec3d(v->ng), d));
+            sum += 0x1p-22 * size / slope;
+        }
+    }
+    return sum;
+}
+
+struct Case {
+    std::string row;
+    int scene;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.row << " in " << weightScenes()[std::size_t(c.scene)].name;
+}
+std::vector<Case> allCases() {
+    std::vector<Case> cases;
+    for (const std::string& row : rowNames()) {
+        for (int i = 0; i < int(weightScenes().size()); ++i) cases.push_back({row, i});
+    }
+    return cases;
+}
+
+class Weights : public testing::TestWithParam<Case> {};
+
+TEST_P(Weights, sumToOneAndEqualFullProducts) {
+    const NamedScene named = weightScenes()[std::size_t(GetParam().scene)];
+    const auto scene = named.builder.build();
+    const MethodRow row = rowNamed(GetParam().row);
+    Shot shot = weightShot();
+    int judged = 0;
+    double worstSum = 0, worstProduct = 0, ownDifference = 0;
+    std::string worstPath;
+    const Walker* walker = nullptr;
+    shot.observer = [&](const PathEvent& event) {
+        if (judged >= kPaths) return;
+        ++judged;
+        FullPath& path = event.path;
+        double sum = 0;
+        for (int t = 1; t <= path.edges + 1; ++t) {
+            if (!drawable(path, event.techniques, t)) continue;
+            if (!(effectiveCount(path, event.techniques, t) > 0)) continue;
+            const double w = misWeight(path, event.techniques, t);
+            sum += w;
+            if (t == event.t) ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
+        }
+        worstSum = std::max(worstSum, std::fabs(sum - 1));
+        const double again = misWeightByProducts(*walker, path, event.techniques, event.t);
+        double difference = std::fabs(again - event.weight);
+        if (row.techniques.connects && !event.techniques.connections->constants()) {
+            difference -= roundingOfThroughputs(path);
+        }
+        if (!(difference <= worstProduct)) {
+            worstProduct = difference;
+            float shortest = 1e30f;
+            for (int i = 0; i < path.edges; ++i) {
+                if (path.vertex[i]->infinite()) continue;
+                shortest = std::min(
+                    shortest, length(path.vertex[i]->position - path.vertex[i + 1]->position));
+            }
+            worstPath = "shortest edge " + std::to_string(shortest) + ", " +
+                        std::to_string(path.edges) + " edges, t = " + std::to_string(event.t) +
+                        ", weight " + std::to_string(event.weight) + ", sample " +
+                        std::to_string(event.sample) + " of iteration " +
+                        std::to_string(event.iteration);
+        }
+    };
+    Render render(*scene, row, shot);
+    const Walker theWalker(*scene, render.camera(), {shot.maxDepth, shot.rouletteDepth});
+    walker = &theWalker;
+    render.warmUp();
+    for (std::uint32_t i = 0; judged < kPaths && i < 2000; ++i) render.iterate(i);
+
+    EXPECT_EQ(judged, kPaths);
+    EXPECT_EQ(ownDifference, 0.0);
+    EXPECT_LE(worstSum, 1e-9);
+    EXPECT_LE(worstProduct, 1e-6) << worstPath;
+    EXPECT_EQ(render.statistics().invalidSamples, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Weights, testing::ValuesIn(allCases()), ByParameter());
+
+/// A method whose weights stay as they were after the warm-up, while its pools go on changing.
+class Frozen final : public Method {
+  public:
+    Frozen(Method& method) : method_(method) {}
+    int warmupIterations() const override { return method_.warmupIterations(); }
+    PoolRequest pool() const override { return method_.pool(); }
+    const ConnectionDensity& freeze(std::uint32_t iteration) override {
+        if (!warm_) return method_.freeze(iteration);
+        if (!density_) density_ = &method_.freeze(iteration);
+        return *density_;
+    }
+    void prepare(const LightPool& pool) override { method_.prepare(pool); }
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        method_.select(context, rng, sink);
+    }
+    void observe(const LightPool& pool) override {
+        if (!warm_) method_.observe(pool);
+    }
+    void endWarmUp() { warm_ = true; }
+
+  private:
+    Method& method_;
+    const ConnectionDensity* density_ = nullptr;
+    bool warm_ = false;
+};
+
+/// A path that outlives its walks.
+struct KeptPath {
+    std::vector<PathVertex> vertices;
+    FullPath path;
+    int t;
+    double weight;
+};
+
+class PathOnly : public testing::TestWithParam<std::string> {};
+
+TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
+    const auto scene = glossyBox().builder.build();
+    const MethodRow row = rowNamed(GetParam());
+    const auto method = row.create(resolve(row, smallSettings(row, 64)));
+    Frozen frozen(*method);
+    std::vector<std::unique_ptr<KeptPath>> kept;
+    Shot shot = weightShot();
+    const Techniques* now = nullptr;
+    shot.observer = [&](const PathEvent& event) {
+        now = &event.techniques;
+        if (kept.size() >= 2000 || event.sample % 5 != 0) return;
+        auto k = std::make_unique<KeptPath>();
+        k->path = event.path;
+        k->t = event.t;
+        k->weight = event.weight;
+        for (int i = 0; i <= event.path.edges; ++i) k->vertices.push_back(*event.path.vertex[i]);
+        for (int i = 0; i <= event.path.edges; ++i)
+            k->path.vertex[i] = &k->vertices[std::size_t(i)];
+        kept.push_back(std::move(k));
+    };
+    Render first(*scene, row, shot, frozen);
+    first.warmUp();
+    frozen.endWarmUp();
+    first.iterate(0);
+
+    // The first iteration of another seed: another pool, other eye paths.
+    shot.seed = 77;
+    double worst = 0;
+    std::size_t judged = 0;
+    const auto judge = [&](const Techniques& techniques) {
+        for (const auto& k : kept) {
+            worst = std::max(worst, std::fabs(misWeight(k->path, techniques, k->t) - k->weight));
+            ++judged;
+        }
+    };
+    ASSERT_GT(kept.size(), 20u);
+    bool done = false;
+    shot.observer = [&](const PathEvent& event) {
+        if (event.t == 1 || done) return;  // the pool is complete once the eye's pass has begun
+        done = true;
+        judge(event.techniques);
+    };
+    Render second(*scene, row, shot, frozen);
+    second.iterate(0);
+    if (!done) judge(*now);  // rows without an eye pass
+    EXPECT_GE(judged, kept.size());
+    EXPECT_EQ(worst, 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PathOnly, testing::ValuesIn(rowNames()), ByParameter());
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,69 @@
+// The same command gives the same pixels, bit for bit, whatever the number of threads.
+#include "libcore/image/exr.h"
+#include "libcore/methods/registry.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+/// Renders with 1, 2 and 7 threads and compares every channel.
+class RenderThreads : public RenderTool, public ::testing::WithParamInterface<std::string> {
+  protected:
+    void expectTheSame(const std::string& arguments) const {
+        std::map<std::string, std::vector<float>> first;
+        for (const char* threads : {"1", "2", "7"}) {
+            const Outcome o = run(arguments + " --quiet --threads " + threads);
+            ASSERT_EQ(o.exitCode, 0) << o.err;
+            const LayeredImage image = readExrLayers(path("out.exr"));
+            if (first.empty()) {
+                first = image.channels();
+                continue;
+            }
+            ASSERT_EQ(image.channels().size(), first.size());
+            for (const auto& [name, values] : image.channels()) {
+                EXPECT_EQ(values, first.at(name)) << name << ", " << threads << " threads";
+            }
+        }
+    }
+};
+
+class RenderThreadsSlow : public RenderThreads {};
+
+std::vector<std::string> names() {
+    std::vector<std::string> all;
+    for (const MethodRow& row : methods()) all.push_back(row.name);
+    return all;
+}
+
+TEST_P(RenderThreads, PixelsAreTheSame) {
+    expectTheSame(quick(GetParam(), "--width 50 --height 37 --iterations 3 --techniques"));
+}
+INSTANTIATE_TEST_SUITE_P(Methods, RenderThreads, ::testing::ValuesIn(names()),
+                         [](const auto& parameter) { return parameter.param; });
+
+TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
+    for (const char* scene : {"cornell-box", "kitchen-glass", "light-environment"}) {
+        const std::string file = std::string(LACUNA_SCENES) + "/" + scene + ".glb";
+        if (!std::filesystem::exists(file)) GTEST_SKIP() << file;
+        expectTheSame(file + " -o @out.exr --width 96 --height 54 --iterations 4 --method " +
+                      GetParam());
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()),
+                         [](const auto& parameter) { return parameter.param; });
+
+class RenderSeed : public RenderTool {};
+
+TEST_F(RenderSeed, AnotherSeedIsAnotherPicture) {
+    ASSERT_EQ(run(quick("pt", "--quiet --seed 1")).exitCode, 0);
+    const auto one = *readExrLayers(path("out.exr")).find("R");
+    ASSERT_EQ(run(quick("pt", "--quiet")).exitCode, 0);  // 1 is the default
+    EXPECT_EQ(*readExrLayers(path("out.exr")).find("R"), one);
+    for (const char* seed : {"2", "4294967297", "18446744073709551615"}) {
+        ASSERT_EQ(run(quick("pt", std::string("--quiet --seed ") + seed)).exitCode, 0) << seed;
+        EXPECT_NE(*readExrLayers(path("out.exr")).find("R"), one) << seed;
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test

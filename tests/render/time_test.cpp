@@ -1,0 +1,111 @@
+// Limits of time, and interrupts.
+#include <signal.h>
+
+#include "libcore/image/exr.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+class RenderTime : public RenderTool {};
+class RenderTimeSlow : public RenderTool {};
+class RenderInterrupt : public RenderTool {};
+
+TEST_F(RenderTime, TheSoonerLimitEndsIt) {
+    ASSERT_EQ(run(quick("pt", "--quiet --time 1h --iterations 3 --json @o.json")).exitCode, 0);
+    EXPECT_EQ(json("o.json")["stopped"], "iterations");
+    EXPECT_EQ(json("o.json")["iterations"], 3);
+
+    ASSERT_EQ(run("@room.gltf -o @out.exr --method pt --width 24 --height 16 --quiet --time 0.5s "
+                  "--json @o.json")
+                  .exitCode,
+              0);
+    const nlohmann::json j = json("o.json");
+    EXPECT_EQ(j["stopped"], "time");
+    EXPECT_GT(j["iterations"].get<int>(), 3);
+    // Iterations take milliseconds: it ends close to the limit, from either side.
+    EXPECT_GT(j["seconds"].get<double>(), 0.3);
+    EXPECT_LT(j["seconds"].get<double>(), 1.5);
+}
+
+TEST_F(RenderTime, SetupCountsOnlyIfAskedFor) {
+    // The setup alone takes longer than a microsecond: the first iteration is always rendered, and
+    // with setup counted nothing more is.
+    const std::string start =
+        "@room.gltf -o @out.exr --method pt --width 8 --height 8 --quiet --json @o.json ";
+    ASSERT_EQ(run(start + "--time 0.000001s --count-setup").exitCode, 0);
+    EXPECT_EQ(json("o.json")["iterations"], 1);
+    EXPECT_EQ(json("o.json")["stopped"], "time");
+    ASSERT_EQ(run(start + "--time 0.000001s").exitCode, 0);
+    EXPECT_EQ(json("o.json")["iterations"], 1);
+}
+
+TEST_F(RenderTimeSlow, AnIterationThatWouldEndFarPastTheLimitIsNotBegun) {
+    const std::string start =
+        "@room.gltf -o @out.exr --method bpt --width 400 --height 300 --quiet "
+        "--json @o.json ";
+    ASSERT_EQ(run(start + "--iterations 1").exitCode, 0);
+    const double one = json("o.json")["seconds"];
+    // Time for one and a quarter: the second would end 60 % past the limit.
+    ASSERT_EQ(run(start + "--time " + std::to_string(1.25 * one) + "s").exitCode, 0);
+    EXPECT_LT(json("o.json")["seconds"].get<double>(), 2.0 * 1.25 * one);
+    EXPECT_EQ(json("o.json")["stopped"], "time");
+}
+
+TEST_F(RenderInterrupt, SavesWhatThereIs) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const Outcome o = runAndSignal(
+            "@room.gltf -o @out.exr --method pt --width 24 --height 16 --time 1h --json @o.json "
+            "--log @o.csv",
+            {signal}, milliseconds(1500));
+        EXPECT_EQ(o.exitCode, 130) << o.err;
+        EXPECT_NE(o.out.find("interrupted"), std::string::npos) << o.out;
+        const LayeredImage image = readExrLayers(path("out.exr"));
+        EXPECT_EQ(std::get<std::string>(image.attributes.at("stopped")), "interrupt");
+        const nlohmann::json j = json("o.json");
+        EXPECT_EQ(j["stopped"], "interrupt");
+        EXPECT_EQ(j["iterations"], std::get<int>(image.attributes.at("iterations")));
+        std::string row(1, '\n');
+        row.append(j["iterations"].dump()).append(",");
+        EXPECT_NE(read("o.csv").find(row), std::string::npos);
+        double sum = 0.0;
+        for (const float v : *image.find("G")) sum += v;
+        EXPECT_GT(sum, 0.0);
+        EXPECT_TRUE(temporaries().empty());
+        std::filesystem::remove(path("out.exr"));
+    }
+}
+
+TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
+    // One iteration of a few seconds, interrupted in its middle.
+    const Outcome o = runAndSignal(
+        "@room.gltf -o @out.exr --method bpt --width 300 --height 200 --time 1h --json @o.json",
+        {SIGINT}, milliseconds(700));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_GE(json("o.json")["iterations"].get<int>(), 1);
+    EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
+    // The picture is the same as that many undisturbed iterations.
+    const auto values = *readExrLayers(path("out.exr")).find("R");
+    ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 300 --height 200 --quiet "
+                  "--iterations " +
+                  json("o.json")["iterations"].dump())
+                  .exitCode,
+              0);
+    EXPECT_EQ(values, *readExrLayers(path("out.exr")).find("R"));
+}
+
+TEST_F(RenderInterrupt, TheSecondExitsAtOnce) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome o =
+        runAndSignal("@room.gltf -o @out.exr --method bpt --width 3000 --height 3000 --time 1h",
+                     {SIGINT, SIGINT}, milliseconds(1000));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    EXPECT_FALSE(exists("out.exr"));
+    EXPECT_TRUE(temporaries().empty());
+}
+
+}  // namespace
+}  // namespace lacuna::test

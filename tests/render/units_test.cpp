@@ -1,0 +1,130 @@
+// Parts of lacuna-render by themselves.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "libcore/base/error.h"
+#include "render/curve_log.h"
+#include "render/effects.h"
+#include "render/options.h"
+#include "render/progress.h"
+
+namespace lacuna {
+namespace {
+
+TEST(RenderUnits, Durations) {
+    EXPECT_EQ(parseDuration("90s"), 90.0);
+    EXPECT_EQ(parseDuration("1.5m"), 90.0);
+    EXPECT_EQ(parseDuration("1h"), 3600.0);
+    for (const char* text : {"", "s", "1", "0s", "-1s", "1 s", "1ms", "infs", "nans", "0x1s"}) {
+        EXPECT_THROW(parseDuration(text), UsageError) << text;
+    }
+    EXPECT_EQ(durationText(0.4), "0s");
+    EXPECT_EQ(durationText(65.0), "1m05s");
+    EXPECT_EQ(durationText(7380.0), "2h03m");
+    EXPECT_EQ(durationText(-3.0), "0s");
+}
+
+TEST(RenderUnits, CropsAndReplays) {
+    EXPECT_EQ(parseCrop("1,2,3,5"), (PixelRect{1, 2, 3, 5}));
+    EXPECT_THROW(parseCrop("1,2,3"), UsageError);
+    EXPECT_THROW(parseCrop("1,2,3,99999999999"), UsageError);
+    const ReplayRequest eye = parseReplay("7,8,9");
+    EXPECT_FALSE(eye.light);
+    EXPECT_EQ(eye.x, 7);
+    EXPECT_EQ(eye.y, 8);
+    EXPECT_EQ(eye.iteration, 9u);
+    const ReplayRequest light = parseReplay("light:12345678901,9");
+    EXPECT_TRUE(light.light);
+    EXPECT_EQ(light.path, 12345678901u);
+    EXPECT_EQ(light.iteration, 9u);
+}
+
+TEST(RenderUnits, CommandLinesAreQuoted) {
+    const char* const arguments[] = {"tool", "a b", "it's", "--set", "x=1", ""};
+    EXPECT_EQ(commandLineText(6, arguments), "tool 'a b' 'it'\\''s' --set x=1 ''");
+}
+
+TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
+    const std::string file = (std::filesystem::temp_directory_path() /
+                              ("lacuna-curve-" + std::to_string(::getpid()) + ".csv"))
+                                 .string();
+    {
+        CurveLog log(file);
+        EXPECT_EQ(log.lastIteration(), 0u);
+        int rows = 0;
+        for (int i = 1; i <= 99999; ++i) {
+            const double seconds = 1e-3 * i * 1.0000001;
+            const bool wanted = log.wants(seconds);
+            EXPECT_TRUE(wanted || i > 1);
+            rows += wanted;
+        }
+        EXPECT_LE(rows, 50);
+        EXPECT_GT(rows, 40);
+        log.write({3, 0.5, 0.25, 7, std::nullopt});
+        ErrorMeasures e;
+        e.mae = 0.1;
+        e.relmse = std::numeric_limits<double>::infinity();
+        log.write({4, 1.0, 0.25, 9, e});
+        EXPECT_EQ(log.lastIteration(), 4u);
+    }
+    std::ifstream in(file);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    EXPECT_EQ(text,
+              "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse\n"
+              "3,0.5,0.25,7,,,,\n"
+              "4,1,0.25,9,0.1,0,0,inf\n");
+    std::filesystem::remove(file);
+    EXPECT_THROW(CurveLog("/nonexistent/curve.csv"), RunError);
+    CurveLog full("/dev/null");
+    EXPECT_NO_THROW(full.write({1, 1.0, 1.0, 1, std::nullopt}));
+    if (std::filesystem::exists("/dev/full")) {
+        EXPECT_THROW(CurveLog("/dev/full"), RunError);
+    }
+}
+
+TEST(RenderUnits, EffectsFollowWhatInstancesUse) {
+    SceneDescription scene;
+    scene.materials.resize(3);
+    scene.materials[1].transmission = 1.0f;
+    scene.materials[1].metallic = 0.0f;
+    scene.materials[1].thin = false;
+    scene.materials[1].roughness = 0.0f;
+    scene.materials[2].emission = Rgb(1.0f);
+    scene.materials[2].alphaMode = Material::Alpha::Blend;
+    scene.meshes.resize(3);
+    for (std::uint32_t m = 0; m < 3; ++m) {
+        scene.meshes[m].material = m;
+        scene.meshes[m].triangles = {{0, 1, 2}};
+    }
+    const auto simulated = [&](const std::string& name) {
+        for (const Effect& e : effectsOf(scene, 0.0, nullptr)) {
+            if (e.name == name) return e.simulated;
+        }
+        ADD_FAILURE() << name;
+        return false;
+    };
+    // Nothing is placed: nothing is called for.
+    for (const Effect& e : effectsOf(scene, 0.0, nullptr)) EXPECT_FALSE(e.simulated) << e.name;
+    scene.instances = {{1, {}}};
+    EXPECT_TRUE(simulated("smooth_refraction"));
+    EXPECT_TRUE(!simulated("rough_refraction") && !simulated("area_lights"));
+    EXPECT_TRUE(!simulated("diffuse"));
+    scene.instances = {{0, {}}, {2, {}}, {2, {}}};
+    EXPECT_TRUE(!simulated("smooth_refraction") && simulated("area_lights"));
+    EXPECT_TRUE(simulated("glossy") && !simulated("mirror"));
+    bool said = false;
+    for (const Effect& e : effectsOf(scene, 0.0, nullptr)) {
+        said = said || (e.name == "alpha_blend" && !e.simulated &&
+                        e.reason.find("opaque") != std::string::npos);
+        if (e.name == "area_lights") {
+            EXPECT_EQ(e.reason, "2 emissive triangles");
+        }
+    }
+    EXPECT_TRUE(said);
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,198 @@
+// --verify and --replay: the second way to every weight, and one sample run alone.
+#include <cmath>
+#include <mutex>
+#include <sstream>
+
+#include "libcore/base/parallel.h"
+#include "libcore/bidir/verify.h"
+#include "libcore/gltf/gltf.h"
+#include "libcore/image/exr.h"
+#include "libcore/methods/registry.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+class RenderVerify : public RenderTool {};
+class RenderVerifySlow : public RenderTool {};
+
+TEST_F(RenderVerify, WeightsEqualTheirFullProducts) {
+    TinyScene scene;
+    scene.pointLight = true;
+    write("both.gltf", scene.text());
+    for (const MethodRow& row : methods()) {
+        const Outcome o =
+            run("@both.gltf -o @out.exr --width 24 --height 16 --iterations 2 --verify --json "
+                "@o.json --method " +
+                row.name + cheap(row.name));
+        ASSERT_EQ(o.exitCode, 0) << o.err;
+        EXPECT_EQ(o.err, "") << row.name;
+        const nlohmann::json v = json("o.json").at("verify");
+        EXPECT_LT(v.at("max_difference").get<double>(), 1e-5) << row.name;
+        EXPECT_GT(v.at("paths").get<int>(), 200) << row.name;
+        EXPECT_EQ(v.at("not_a_number"), 0);
+        EXPECT_NE(o.out.find("verify"), std::string::npos);
+    }
+}
+
+TEST_F(RenderVerifySlow, OnOurScenes) {
+    for (const auto& entry : std::filesystem::directory_iterator(LACUNA_SCENES)) {
+        if (entry.path().extension() != ".glb") continue;
+        for (const MethodRow& row : methods()) {
+            for (const char* depth : {"1", "3", "100"}) {
+                const Outcome o = run(entry.path().string() +
+                                      " -o @out.exr --width 48 --height 32 --iterations 2 "
+                                      "--verify --json @o.json --quiet --rr-depth " +
+                                      depth + " --method " + row.name + cheap(row.name));
+                ASSERT_EQ(o.exitCode, 0) << o.err;
+                EXPECT_LT(json("o.json")["verify"]["max_difference"].get<double>(), 1e-4)
+                    << entry.path() << " " << row.name << " " << json("o.json")["verify"];
+                EXPECT_EQ(json("o.json")["invalid_samples"], 0) << entry.path() << " " << row.name;
+            }
+        }
+    }
+}
+
+TEST_F(RenderVerify, ReadsNoStoredDensity) {
+    // Every density that a walk stored is spoilt: misWeight must notice, the products must not.
+    const ThreadPool pool(2);
+    const Scene scene(loadGltf(path("room.gltf")), pool);
+    const Camera camera = scene.makeCamera("", {16, 12}, {});
+    const MethodRow& row = findMethod("bpt");
+    const auto method = row.create(resolve(row, {}));
+    RenderSettings settings;
+    settings.limits.rouletteDepth = 1;
+    settings.crop = {0, 16, 0, 12};
+    BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
+    const Walker walker(scene, camera, settings.limits);
+
+    std::mutex mutex;
+    int paths = 0, noticed = 0;
+    double worst = 0.0;
+    integrator.setObserver([&](const PathEvent& e) {
+        const std::lock_guard lock(mutex);
+        FullPath spoilt = e.path;
+        std::vector<PathVertex> vertices;
+        vertices.reserve(std::size_t(e.path.edges) + 1);
+        for (int i = 0; i <= e.path.edges; ++i) {
+            const auto n = std::size_t(i);
+            PathVertex v = *e.path.vertex[n];
+            v.pdfA = v.pdfReverseA = v.toPreviousFactor = v.survival = std::nanf("");
+            v.throughput = v.scatter = Rgb(std::nanf(""));
+            vertices.push_back(v);
+            spoilt.vertex[n] = &vertices.back();
+            spoilt.lightPdfA[n] *= 1.5f;
+            spoilt.survival[n] *= 0.5f;
+            spoilt.scatter[n] *= 2.0f;
+        }
+        const double again = misWeightByProducts(walker, spoilt, e.techniques, e.t);
+        worst = std::max(worst, std::fabs(again - e.weight));
+        noticed += std::fabs(misWeight(spoilt, e.techniques, e.t) - e.weight) > 1e-4;
+        ++paths;
+    });
+    const std::atomic<bool> never{false};
+    IterationStatistics statistics;
+    std::vector<Rgb> pixels(16 * 12);
+    integrator.warmUp(never, statistics);
+    integrator.render(0, pixels, never, statistics);
+    EXPECT_GT(paths, 500);
+    EXPECT_LT(worst, 1e-5);
+    EXPECT_GT(noticed, paths / 2);
+}
+
+TEST_F(RenderVerify, AWrongWeightIsReportedWithItsReplay) {
+    const ThreadPool pool(1);
+    const Scene scene(loadGltf(path("room.gltf")), pool);
+    const Camera camera = scene.makeCamera("", {16, 12}, {});
+    const MethodRow& row = findMethod("pt");
+    const auto method = row.create(resolve(row, {}));
+    RenderSettings settings;
+    settings.crop = {0, 16, 0, 12};
+    BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
+    WeightVerifier verifier(scene, camera, settings.limits, pool);
+    EXPECT_EQ(verifier.result().paths, 0u);
+    integrator.setObserver([&](const PathEvent& e) {
+        PathEvent wrong = e;
+        if (e.sample == 5 * 16 + 9) wrong.weight += 0.25;
+        if (e.sample == 6 * 16 + 2) wrong.weight = std::nan("");
+        verifier.check(wrong);
+    });
+    const std::atomic<bool> never{false};
+    IterationStatistics statistics;
+    std::vector<Rgb> pixels(16 * 12);
+    integrator.render(0, pixels, never, statistics);
+    const WeightVerifier::Result result = verifier.result();
+    EXPECT_GT(result.notNumbers, 0u);
+    EXPECT_EQ(result.maxDifference, 1.0);
+    EXPECT_EQ(result.replay, "2,6,0");
+}
+
+class RenderReplay : public RenderTool {
+  protected:
+    /// The numbers after `key` in every line that begins with `start`.
+    static std::vector<double> after(const std::string& text, const std::string& start,
+                                     const std::string& key, int count) {
+        std::vector<double> values;
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.rfind(start, 0) != 0) continue;
+            const std::size_t at = line.find(key);
+            if (at == std::string::npos) continue;
+            std::istringstream rest(line.substr(at + key.size()));
+            double value = 0.0;
+            for (int i = 0; i < count && rest >> value; ++i) values.push_back(value);
+        }
+        return values;
+    }
+};
+
+TEST_F(RenderReplay, GivesTheSampleThatWasRendered) {
+    // One iteration of path tracing: a pixel is the sum of its replayed contributions.
+    ASSERT_EQ(run(quick("pt", "--quiet --iterations 1")).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    int bright = 0;
+    for (const int x : {3, 12, 17}) {
+        for (const int y : {2, 9, 14}) {
+            const Outcome o =
+                run("@room.gltf --method pt --width 24 --height 16 --max-depth 6 --replay " +
+                    std::to_string(x) + "," + std::to_string(y) + ",0");
+            ASSERT_EQ(o.exitCode, 0) << o.err;
+            const auto total = after(o.out, "total:", "contributions,", 3);
+            ASSERT_EQ(total.size(), 3u) << o.out;
+            const auto pixel = std::size_t(y * 24 + x);
+            EXPECT_NEAR(total[0], image.find("R")->at(pixel), 1e-5 * (1.0 + total[0])) << o.out;
+            EXPECT_NEAR(total[2], image.find("B")->at(pixel), 1e-5 * (1.0 + total[2]));
+            bright += total[0] > 0.0;
+            for (const double sum : after(o.out, "contribution", "sum over strategies ", 1)) {
+                EXPECT_NEAR(sum, 1.0, 1e-5) << o.out;
+            }
+            const auto weights = after(o.out, "contribution", "weight ", 1);
+            const auto products = after(o.out, "contribution", "by products ", 1);
+            ASSERT_EQ(weights.size(), products.size());
+            for (std::size_t i = 0; i < weights.size(); ++i) {
+                EXPECT_NEAR(weights[i], products[i], 1e-5);
+            }
+            // z0 is the lens, in the file's coordinates.
+            EXPECT_NE(o.out.find("z0 lens at 0 0 3"), std::string::npos) << o.out;
+        }
+    }
+    EXPECT_GT(bright, 4);
+}
+
+TEST_F(RenderReplay, WorksForEveryMethodAndForLightPaths) {
+    for (const MethodRow& row : methods()) {
+        const std::string start =
+            "@room.gltf --width 24 --height 16 --method " + row.name + cheap(row.name);
+        const Outcome eye = run(start + " --replay 12,14,3");
+        EXPECT_EQ(eye.exitCode, 0) << eye.err;
+        EXPECT_NE(eye.out.find("z1 surface"), std::string::npos) << eye.out;
+        const Outcome light = run(start + " --replay light:5,3 --crop 0,2,0,2");
+        EXPECT_EQ(light.exitCode, 0) << light.err;
+        EXPECT_NE(light.out.find("y0 light"), std::string::npos) << light.out;
+        EXPECT_EQ(run(start + " --replay light:5,3").out, light.out);
+    }
+    EXPECT_FALSE(exists("out.exr"));
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Builds everything and runs every test: bash tests/run.sh [--quick] [-- CTEST OPTIONS]
+#
+#   --quick    leaves out the tests that take longer than seconds (label `slow`)
+#
+# Installs missing Debian packages first (apt-get, as root or through sudo). The last lines are ctest's.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../.ci/setup.sh"
+
+preset=all
+while (($#)); do
+    case $1 in
+        --quick) preset=quick ;;
+        -h | --help)
+            sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+            exit 0
+            ;;
+        --)
+            shift
+            break
+            ;;
+        *)
+            echo "tests/run.sh: expected --quick or nothing, found '$1'; see --help" >&2
+            exit 2
+            ;;
+    esac
+    shift
+done
+
+install_packages build test
+SECONDS=0
+# An earlier demo may have configured the same directory without them.
+configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON
+build_targets
+say "Built in $SECONDS s"
+
+say "Scenes: the files are what their generator makes"
+python3 "$project/scenes/make_scenes.py" --check
+
+say "Tests ($preset)"
+cd "$project"
+# One after the other: they use all processors themselves, and some measure times.
+exec ctest --preset "$preset" "$@"
