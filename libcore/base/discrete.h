@@ -8,8 +8,9 @@
 namespace lacuna {
 
 /// Cumulative distribution over n outcomes. Accumulated in double; the last POSITIVE entry and all
-/// after it are one, so that no outcome of weight zero is ever returned. One whose share of the sum is
-/// below 2^-53 may get probability zero. The reported pmf is the one that is realised: a difference of two stored entries.
+/// after it are one, so that no outcome of weight zero is ever returned. One whose share of the sum
+/// is below 2^-53 may get probability zero. The reported pmf is the one that is realised: a
+/// difference of two stored entries.
 class DiscreteDistribution {
   public:
     DiscreteDistribution() = default;

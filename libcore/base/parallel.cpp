@@ -35,9 +35,8 @@ void ThreadPool::forEach(std::size_t n, const std::function<void(std::size_t)>& 
         tbb::task_group_context::bound,
         tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     context.capture_fp_settings();
-    impl_->arena.execute([&] {
-        tbb::parallel_for(std::size_t(0), n, body, tbb::simple_partitioner{}, context);
-    });
+    impl_->arena.execute(
+        [&] { tbb::parallel_for(std::size_t(0), n, body, tbb::simple_partitioner{}, context); });
 }
 
 void ThreadPool::run(const std::function<void()>& body) const {

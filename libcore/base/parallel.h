@@ -1,5 +1,5 @@
-// Parallel loops over oneTBB. Every loop of ours writes to places that belong to one index alone, so
-// results never depend on the number of threads.
+// Parallel loops over oneTBB. Every loop of ours writes to places that belong to one index alone,
+// so results never depend on the number of threads.
 #pragma once
 
 #include <cstddef>

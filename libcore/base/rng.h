@@ -1,5 +1,6 @@
-// Counter-based random numbers: a stream is addressed, never advanced from a shared state, so that any
-// sample of any iteration can be drawn again alone and no result depends on the number of threads.
+// Counter-based random numbers: a stream is addressed, never advanced from a shared state, so that
+// any sample of any iteration can be drawn again alone and no result depends on the number of
+// threads.
 #pragma once
 
 #include <Random123/philox.h>

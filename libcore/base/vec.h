@@ -1,6 +1,6 @@
-// Small fixed-size vectors: points, directions, normals (Vec3), texture coordinates (Vec2) and linear
-// Rec. 709 colour (Rgb). Positions are float, relative to the recentred scene; products of densities
-// and anything that subtracts nearby numbers is done in double (Vec3d).
+// Small fixed-size vectors: points, directions, normals (Vec3), texture coordinates (Vec2) and
+// linear Rec. 709 colour (Rgb). Positions are float, relative to the recentred scene; products of
+// densities and anything that subtracts nearby numbers is done in double (Vec3d).
 #pragma once
 
 #include <algorithm>
@@ -134,7 +134,8 @@ struct Affine {
     constexpr Vec3d point(const Vec3d& p) const { return vector(p) + m[3]; }
     constexpr double determinant() const { return dot(m[0], cross(m[1], m[2])); }
     /// Normal transform up to scale: the cofactor matrix, which keeps the side under negative scale
-    /// (a normal that belongs to the winding stays on the winding's side after the sign is applied).
+    /// (a normal that belongs to the winding stays on the winding's side after the sign is
+    /// applied).
     constexpr Vec3d normal(const Vec3d& n) const {
         return cross(m[1], m[2]) * n.x + cross(m[2], m[0]) * n.y + cross(m[0], m[1]) * n.z;
     }

@@ -45,7 +45,7 @@ void setSource(FullPath& path, const Lights& lights, const PathVertex& source, c
 /// What leaves a connection's end: its BSDF, or the emission profile of y_0.
 struct EndValue {
     Rgb f;
-    float pdfWToOther = 0;     ///< density of the direction to the other end, by this end's own walk
+    float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
     float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
 };
 
@@ -72,8 +72,7 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
     path.edges = int(eye.size()) - 1;
     fillEyePart(path, eye);
     // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
-    setSource(path, lights, z,
-              point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
+    setSource(path, lights, z, point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
     path.scatter[0] = emission.profile;
     path.lightPdfA[0] = point.pdf;
     if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
@@ -120,9 +119,8 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     if (isBlack(atEye.f)) return std::nullopt;
     const Lights& lights = walker.scene().lights();
     const EndValue atLight = lightEnd(lights, y, edge.direction);
-    const Closed closed{z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry,
-                        int(eye.size()),
-                        {}};
+    const Closed closed{
+        z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry, int(eye.size()), {}};
     if (isBlack(closed.contribution)) return std::nullopt;
 
     const int s = int(light.size());

@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight, without
-/// the selector's weight and without visibility.
+/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight,
+/// without the selector's weight and without visibility.
 struct Closed {
     Rgb contribution;
     int t = 0;

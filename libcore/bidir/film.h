@@ -28,8 +28,8 @@ struct Splat {
     Rgb value;
 };
 
-/// Adds the lists of splats in order: chunk by chunk, each in its own order, so that sums are the same
-/// to the last bit for any number of threads (numerics.md 26).
+/// Adds the lists of splats in order: chunk by chunk, each in its own order, so that sums are the
+/// same to the last bit for any number of threads (numerics.md 26).
 void addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
                const ThreadPool& pool);
 

@@ -7,9 +7,9 @@
 namespace lacuna {
 
 namespace {
-constexpr std::uint64_t kPathsPerChunk = 1024;   // light subpaths per task
+constexpr std::uint64_t kPathsPerChunk = 1024;     // light subpaths per task
 constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
-constexpr int kTile = 16;                        // eye paths: tiles of kTile^2 pixels
+constexpr int kTile = 16;                          // eye paths: tiles of kTile^2 pixels
 constexpr std::size_t kReplaysKept = 8;
 
 /// Adds the time between construction and destruction to a phase.
@@ -17,9 +17,7 @@ class PhaseTimer {
   public:
     PhaseTimer(IterationStatistics& statistics, const char* phase)
         : seconds_(statistics.phaseSeconds[phase]), start_(Clock::now()) {}
-    ~PhaseTimer() {
-        seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
-    }
+    ~PhaseTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -78,9 +76,9 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
       settings_(settings),
       threads_(pool),
       walker_(scene, camera, settings.limits),
-      lightPaths_(settings.lightPaths ? settings.lightPaths
-                                      : std::uint64_t(camera.film().width) *
-                                            std::uint64_t(camera.film().height)) {
+      lightPaths_(settings.lightPaths
+                      ? settings.lightPaths
+                      : std::uint64_t(camera.film().width) * std::uint64_t(camera.film().height)) {
     for (int i = 0; i < pool.threads(); ++i) {
         workers_.push_back(std::make_unique<Worker>());
         workers_.back()->eye.reserve(std::size_t(settings.limits.maxDepth) + 1);
@@ -187,7 +185,8 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
     const int tilesX = (crop.width() + kTile - 1) / kTile;
     const int tilesY = (crop.height() + kTile - 1) / kTile;
     // Tile rows at a time: bounds the memory of splats.
-    const int rowsPerBatch = std::max(1, int(kPathsPerBatch / std::uint64_t(kTile * kTile * tilesX)));
+    const int rowsPerBatch =
+        std::max(1, int(kPathsPerBatch / std::uint64_t(kTile * kTile * tilesX)));
     for (int row = 0; row < tilesY; row += rowsPerBatch) {
         const int rows = std::min(rowsPerBatch, tilesY - row);
         std::vector<Chunk> chunks(std::size_t(rows) * std::size_t(tilesX));
@@ -200,9 +199,8 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
             const int y0 = crop.y0 + (row + int(c / std::size_t(tilesX))) * kTile;
             for (int y = y0; y < std::min(y0 + kTile, crop.y1); ++y) {
                 for (int x = x0; x < std::min(x0 + kTile, crop.x1); ++x) {
-                    const std::size_t pixel =
-                        std::size_t(y - crop.y0) * std::size_t(crop.width()) +
-                        std::size_t(x - crop.x0);
+                    const std::size_t pixel = std::size_t(y - crop.y0) * std::size_t(crop.width()) +
+                                              std::size_t(x - crop.x0);
                     eyePath(iteration, x, y, worker, chunk, pixels_[pixel]);
                 }
             }
@@ -216,7 +214,8 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
 void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& worker, Chunk& chunk,
                               Rgb& pixel) {
     const PixelRect& crop = settings_.crop;
-    const auto filmIndex = std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x);
+    const auto filmIndex =
+        std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x);
     const auto pixelIndex =
         std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
 
@@ -253,8 +252,8 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
         for (const Proposal& proposal : worker.proposals.proposals()) {
             if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
             const auto closed = closeConnection(walker_, proposal.light, eye, worker.path);
-            if (!closed || !connected(scene_, proposal.light.back(), z, RayKind::Connection,
-                                      chunk.tally)) {
+            if (!closed ||
+                !connected(scene_, proposal.light.back(), z, RayKind::Connection, chunk.tally)) {
                 continue;
             }
             deliver(*closed, &proposal, proposal.weight, iteration, filmIndex, pixelIndex, &pixel,

@@ -1,5 +1,5 @@
-// The one integrator: light paths -> pool -> eye paths -> connections -> weights -> film. It knows no
-// method by name.
+// The one integrator: light paths -> pool -> eye paths -> connections -> weights -> film. It knows
+// no method by name.
 #pragma once
 
 #include <atomic>
@@ -28,13 +28,13 @@ struct RenderSettings {
 struct PathEvent {
     FullPath& path;
     int t;
-    double weight;                ///< MIS
-    Rgb contribution;             ///< as it enters the pixel: weights and 1/L included
-    std::uint32_t pixel;          ///< row-major in the crop
-    const Proposal* proposal;     ///< connections only
+    double weight;             ///< MIS
+    Rgb contribution;          ///< as it enters the pixel: weights and 1/L included
+    std::uint32_t pixel;       ///< row-major in the crop
+    const Proposal* proposal;  ///< connections only
     const Techniques& techniques;
     std::uint32_t iteration;
-    std::uint64_t sample;         ///< t = 1: light subpath; else pixel, row-major in the full film
+    std::uint64_t sample;  ///< t = 1: light subpath; else pixel, row-major in the full film
 };
 /// Called from many threads at once; for values that are not finite too.
 using PathObserver = std::function<void(const PathEvent&)>;

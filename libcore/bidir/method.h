@@ -1,6 +1,6 @@
-// The seam between the one integrator and the methods: how a light vertex is picked for an eye vertex
-// (with its realised probability), and what the weights believe about that pick. These are two
-// different numbers, so they are two interfaces (architecture.md).
+// The seam between the one integrator and the methods: how a light vertex is picked for an eye
+// vertex (with its realised probability), and what the weights believe about that pick. These are
+// two different numbers, so they are two interfaces (architecture.md).
 //
 // A Method lives for the whole render and owns its caches. Per iteration:
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
@@ -49,8 +49,8 @@ class LightPool {
     std::span<const PathVertex> vertices() const { return vertices_; }
     std::span<const Entry> connectable() const { return connectable_; }
 
-    /// y_0 .. y_{s-1}. Asks the cache for the last vertex: it will be looked at soon, and lies anywhere
-    /// in some hundred megabytes.
+    /// y_0 .. y_{s-1}. Asks the cache for the last vertex: it will be looked at soon, and lies
+    /// anywhere in some hundred megabytes.
     Subpath prefix(Entry entry) const {
         const PathVertex* last = vertices_.data() + entry.vertex;
         const char* bytes = reinterpret_cast<const char*>(last);
@@ -67,7 +67,7 @@ class LightPool {
 /// A light vertex proposed for an eye vertex. `weight` holds everything about the pick, so that
 /// E[sum weight g] = (1/M) sum of g over this iteration's pool.
 struct Proposal {
-    Subpath light;            ///< y_0 .. y_{s-1}
+    Subpath light;  ///< y_0 .. y_{s-1}
     double weight = 1.0;
     std::uint32_t label = 0;  ///< routes the contribution to a layer (distribution, node, subspace)
 };
@@ -102,9 +102,9 @@ class LightSampler {
 
 /// What a selector may look at.
 struct EyeContext {
-    const PathVertex& vertex;       ///< z_{t-1}
-    Subpath eyePath;                ///< z_0 .. z_{t-1}
-    Subpath ownLightPath;           ///< the pixel's own light subpath, where the row asks for it
+    const PathVertex& vertex;  ///< z_{t-1}
+    Subpath eyePath;           ///< z_0 .. z_{t-1}
+    Subpath ownLightPath;      ///< the pixel's own light subpath, where the row asks for it
     std::uint32_t pixel;
     std::uint32_t iteration;
     const LightSampler& lights;
@@ -134,8 +134,8 @@ class Method {
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }
 
-    /// What the weights believe in the coming iteration: may depend on earlier iterations alone. Valid
-    /// until the next call.
+    /// What the weights believe in the coming iteration: may depend on earlier iterations alone.
+    /// Valid until the next call.
     virtual const ConnectionDensity& freeze(std::uint32_t iteration) = 0;
     /// Builds this iteration's pmfs, trees, bins. `pool` stays valid and unchanged until observe().
     virtual void prepare(const LightPool& pool) { (void)pool; }
@@ -143,7 +143,8 @@ class Method {
     virtual void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const = 0;
     /// What later iterations may learn from; after warm-ups as well.
     virtual void observe(const LightPool& pool) { (void)pool; }
-    /// Whether an iteration depends on earlier ones beyond the warm-up: --replay then runs them again.
+    /// Whether an iteration depends on earlier ones beyond the warm-up: --replay then runs them
+    /// again.
     virtual bool learns() const { return false; }
 };
 

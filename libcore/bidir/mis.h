@@ -1,12 +1,14 @@
-// The balance heuristic over all strategies of one full path: the only place where weights are made.
+// The balance heuristic over all strategies of one full path: the only place where weights are
+// made.
 //
-//     w_t(x) = n_t p_t(x) r_t(x) / sum_i n_i p_i(x) r_i(x)                            (methods.md 1)
+//     w_t(x) = n_t p_t(x) r_t(x) / sum_i n_i p_i(x) r_i(x)                            (methods.md
+//     1)
 //
-// Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k + 1.
-// Neighbouring strategies differ in one vertex:  p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so the sum
-// is a sweep of ratios in double and products of densities never occur (numerics.md 9, 10).
-// Delta events keep their generalised densities in the ratios; strategies that would connect through
-// one do not exist (numerics.md 2).
+// Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k
+// + 1. Neighbouring strategies differ in one vertex:  p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so
+// the sum is a sweep of ratios in double and products of densities never occur (numerics.md 9, 10).
+// Delta events keep their generalised densities in the ratios; strategies that would connect
+// through one do not exist (numerics.md 2).
 #pragma once
 
 #include <array>
@@ -22,13 +24,14 @@ inline constexpr int kMaxEdges = 254;
 /// One end of a connection as the density sees it, whichever walk made the vertex.
 struct ConnectionEnd {
     const PathVertex* vertex;
-    const PathVertex* predecessor;  ///< in this role: towards the light, or towards the lens; may be null
-    int count;                      ///< s for the light's end, t for the eye's
+    const PathVertex*
+        predecessor;  ///< in this role: towards the light, or towards the lens; may be null
+    int count;        ///< s for the light's end, t for the eye's
 };
 
 /// What MIS believes about the selector: the effective number of samples n r of methods.md that
-/// strategy (s, t) has for this connection. A function of the path and of frozen data alone; positive
-/// only where the selector can pick the vertex.
+/// strategy (s, t) has for this connection. A function of the path and of frozen data alone;
+/// positive only where the selector can pick the vertex.
 class ConnectionDensity {
   public:
     /// For densities that depend on nothing but whether s = 1.
@@ -94,12 +97,12 @@ struct FullPath {
     void fillLightThroughputs(int rouletteDepth);
 };
 
-/// n_t r_t of strategy t on this path; zero where it does not exist. Reads path.beta where the density
-/// has no constants.
+/// n_t r_t of strategy t on this path; zero where it does not exist. Reads path.beta where the
+/// density has no constants.
 double effectiveCount(const FullPath& path, const Techniques& techniques, int t);
 
-/// Weight of the strategy t that made the path (1 <= t <= edges + 1), in [0, 1]. O(k). Fills path.beta
-/// where the density asks for it.
+/// Weight of the strategy t that made the path (1 <= t <= edges + 1), in [0, 1]. O(k). Fills
+/// path.beta where the density asks for it.
 double misWeight(FullPath& path, const Techniques& techniques, int t);
 
 }  // namespace lacuna

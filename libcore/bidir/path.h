@@ -32,11 +32,11 @@ struct PathVertex {
     /// Throughput that arrives AT the vertex, before its BSDF: `beta` of methods.md for light
     /// subpaths, importance over density for eye subpaths. Roulette included.
     Rgb throughput;
-    Rgb scatter;             ///< f of the scatter that was sampled here (light: emission profile)
-    float pdfA = 0;          ///< density in the own walk, given the previous vertex; no roulette
-    float pdfReverseA = 0;   ///< density in the other walk, once the own one has gone two steps on
-    float survival = 1;      ///< probability of going on from here, before rr-depth is looked at
-    float toPreviousFactor = 0;  ///< |cos at the previous| / d^2: solid angle here to its measure
+    Rgb scatter;            ///< f of the scatter that was sampled here (light: emission profile)
+    float pdfA = 0;         ///< density in the own walk, given the previous vertex; no roulette
+    float pdfReverseA = 0;  ///< density in the other walk, once the own one has gone two steps on
+    float survival = 1;     ///< probability of going on from here, before rr-depth is looked at
+    float toPreviousFactor = 0;   ///< |cos at the previous| / d^2: solid angle here to its measure
     std::uint32_t light = kNone;  ///< light of this point, if it emits
     Vec2 lightUv;                 ///< barycentric on it
     VertexKind kind = VertexKind::Surface;
@@ -54,10 +54,10 @@ using Subpath = std::span<const PathVertex>;
 
 /// Geometry of the edge between two vertices; symmetric but for the cosines.
 struct Edge {
-    Vec3 direction;          ///< unit, from the first vertex to the second
-    float toSecond = 0;      ///< density per solid angle at the first -> measure of the second
-    float toFirst = 0;       ///< and back
-    float geometry = 0;      ///< G without visibility
+    Vec3 direction;      ///< unit, from the first vertex to the second
+    float toSecond = 0;  ///< density per solid angle at the first -> measure of the second
+    float toFirst = 0;   ///< and back
+    float geometry = 0;  ///< G without visibility
 };
 
 /// Cosine of the area measure at a vertex: 1 where it has no surface.
@@ -65,9 +65,10 @@ inline float measureCosine(const PathVertex& v, Vec3 direction) {
     return v.ng == Vec3{} ? 1.0f : std::fabs(dot(v.ng, direction));
 }
 
-/// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the measure
-/// of the infinite vertex is solid angle, and the factor towards the finite one is its cosine (from
-/// a disk's area). Coincident points give an edge whose geometry is 0: nothing is carried.
+/// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the
+/// measure of the infinite vertex is solid angle, and the factor towards the finite one is its
+/// cosine (from a disk's area). Coincident points give an edge whose geometry is 0: nothing is
+/// carried.
 inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     Edge e;
     if (a.infinite() || b.infinite()) {

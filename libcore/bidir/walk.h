@@ -11,9 +11,10 @@
 namespace lacuna {
 
 struct WalkLimits {
-    int maxDepth = 12;      ///< longest full path, in edges (1 = light seen directly), <= kMaxEdges
-    /// First vertex index at which Russian roulette is played. The survival probability is a function
-    /// of the vertex's material alone, so that both walks know it, and part of p(y) and p(z).
+    int maxDepth = 12;  ///< longest full path, in edges (1 = light seen directly), <= kMaxEdges
+    /// First vertex index at which Russian roulette is played. The survival probability is a
+    /// function of the vertex's material alone, so that both walks know it, and part of p(y) and
+    /// p(z).
     int rouletteDepth = 3;
 };
 
@@ -26,8 +27,8 @@ class Walker final : public LightSampler {
     const Camera& camera() const { return camera_; }
     const WalkLimits& limits() const { return limits_; }
 
-    /// Replaces `out` by y_0 .. of one light subpath: at most maxDepth vertices, none where the scene
-    /// has no light.
+    /// Replaces `out` by y_0 .. of one light subpath: at most maxDepth vertices, none where the
+    /// scene has no light.
     void traceLight(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const;
     /// Replaces `out` by z_0 .. of one eye subpath through `raster`: at most maxDepth + 1 vertices,
     /// the last one Infinite where it left a scene with an environment.

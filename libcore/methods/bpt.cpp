@@ -1,9 +1,9 @@
 // Bidirectional path tracing [Veach97 10], [Lafortune93].
 //
 // Every pixel traces one light subpath of its own; every eye vertex is connected to each of its
-// vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way for
-// a fresh light point per eye vertex: the same density, so r = 1 as well, without the correlation of
-// all direct light along an eye path.
+// vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way
+// for a fresh light point per eye vertex: the same density, so r = 1 as well, without the
+// correlation of all direct light along an eye path.
 #include "libcore/methods/methods.h"
 
 namespace lacuna {

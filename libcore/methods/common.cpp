@@ -14,8 +14,13 @@ Parameter lightPathsParameter() {
 }
 
 Parameter nextEventParameter(bool defaultOn) {
-    return {"next_event", Parameter::Kind::Switch, defaultOn ? 1.0 : 0.0, 0, 1,
-            "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light points"};
+    return {
+        "next_event",
+        Parameter::Kind::Switch,
+        defaultOn ? 1.0 : 0.0,
+        0,
+        1,
+        "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light points"};
 }
 
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {

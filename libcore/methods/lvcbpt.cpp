@@ -75,9 +75,8 @@ MethodRow lvcRow() {
         {"connections", Parameter::Kind::Integer, 3, 1, 64, "picks per eye vertex, N"},
         nextEventParameter(false)};
     row.create = [](const Settings& s) {
-        return std::make_unique<LightVertexCache>(s.integer("candidates"),
-                                                  int(s.integer("connections")),
-                                                  s.on("next_event"));
+        return std::make_unique<LightVertexCache>(
+            s.integer("candidates"), int(s.integer("connections")), s.on("next_event"));
     };
     return row;
 }

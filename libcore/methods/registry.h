@@ -1,4 +1,5 @@
-// The table of methods. Adding one = one file in this folder, one row in registry.cpp, one reference.
+// The table of methods. Adding one = one file in this folder, one row in registry.cpp, one
+// reference.
 #pragma once
 
 #include <functional>
@@ -44,7 +45,7 @@ struct MethodRow {
     std::string reference;  ///< key in REFERENCES.md
     std::string summary;    ///< one line
     TechniqueSet techniques;
-    bool biased = false;        ///< an experiment of a paper: skipped by tests of unbiasedness
+    bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     std::vector<Parameter> parameters;
     std::function<std::unique_ptr<Method>(const Settings&)> create;
 };

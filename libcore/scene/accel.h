@@ -21,12 +21,12 @@ class ThreadPool;
 struct AccelObject {
     std::uint32_t mesh = 0;
     bool instanced = false;
-    Affine toWorld;          ///< used where instanced
+    Affine toWorld;  ///< used where instanced
     bool alphaMasked = false;
 };
 
-/// Triangles as Embree reads them. `positions` must have one more element than vertices: Embree loads
-/// 16 bytes at a time.
+/// Triangles as Embree reads them. `positions` must have one more element than vertices: Embree
+/// loads 16 bytes at a time.
 struct AccelMesh {
     std::span<const Vec3> positions;
     std::span<const std::array<std::uint32_t, 3>> triangles;
@@ -59,10 +59,11 @@ class Accel {
     std::unique_ptr<Impl> impl_;
 };
 
-/// `origin` moved off its surface along `ng`, towards the side that `direction` leads to, by 2^-16 of
-/// its largest coordinate (128 to 256 of the float steps there) or of `floor` where that is larger.
-/// Follows [Waechter and Binder 2019], but free of absolute constants: `floor`, a fixed share of the
-/// scene's radius, stands for the error of points that lie near the origin on large triangles.
+/// `origin` moved off its surface along `ng`, towards the side that `direction` leads to, by 2^-16
+/// of its largest coordinate (128 to 256 of the float steps there) or of `floor` where that is
+/// larger. Follows [Waechter and Binder 2019], but free of absolute constants: `floor`, a fixed
+/// share of the scene's radius, stands for the error of points that lie near the origin on large
+/// triangles.
 inline Vec3 offsetOrigin(Vec3 origin, Vec3 ng, Vec3 direction, float floor) {
     const float magnitude = std::max(
         floor, std::max(std::fabs(origin.x), std::max(std::fabs(origin.y), std::fabs(origin.z))));

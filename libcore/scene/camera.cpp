@@ -45,7 +45,8 @@ Camera::Direction Camera::directionAt(Vec3 lensPoint, Vec2 raster) const {
 std::optional<Camera::Projection> Camera::project(Vec3 lensPoint, Vec3 direction) const {
     const float cosine = dot(direction, forward_);
     if (!(cosine > 1e-6f)) return std::nullopt;
-    Vec3 q = direction * (1.0f / cosine);  // on the image plane at distance 1, seen from the pinhole
+    Vec3 q =
+        direction * (1.0f / cosine);  // on the image plane at distance 1, seen from the pinhole
     if (lens_.radius > 0.0f) q += (lensPoint - position_) * (1.0f / lens_.focus);
     const Vec2 raster{(dot(q, right_) / tanX_ + 1.0f) * 0.5f * float(film_.width),
                       (1.0f - dot(q, up_) / tanY_) * 0.5f * float(film_.height)};

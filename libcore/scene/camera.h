@@ -20,8 +20,8 @@ class Camera {
         float focus = 0.0f;   ///< distance of the plane in focus along the viewing axis, > 0
     };
 
-    /// `offset` is subtracted from the camera's position (the scene's centre). Pixels are square: the
-    /// vertical angle is the file's, the horizontal one follows from the film.
+    /// `offset` is subtracted from the camera's position (the scene's centre). Pixels are square:
+    /// the vertical angle is the file's, the horizontal one follows from the film.
     Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens);
 
     Film film() const { return film_; }
@@ -44,8 +44,8 @@ class Camera {
         /// left out on both sides: the importance that a splat needs.
         float pdfW;
     };
-    /// Where a ray that leaves `lensPoint` along `direction` (unit) crosses the film; empty behind the
-    /// camera or outside the film.
+    /// Where a ray that leaves `lensPoint` along `direction` (unit) crosses the film; empty behind
+    /// the camera or outside the film.
     std::optional<Projection> project(Vec3 lensPoint, Vec3 direction) const;
 
   private:

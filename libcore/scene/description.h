@@ -1,5 +1,5 @@
-// What a scene file says, before anything is built from it: plain values in the file's own units and
-// coordinates. gltf.h fills it; scene.h turns it into something rays can be traced in.
+// What a scene file says, before anything is built from it: plain values in the file's own units
+// and coordinates. gltf.h fills it; scene.h turns it into something rays can be traced in.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace lacuna {
 
-/// 8-bit image, row 0 at the top, texel (x, y) at [(y * width + x) * 4]. `srgb` says how RGB is coded;
-/// alpha is always linear.
+/// 8-bit image, row 0 at the top, texel (x, y) at [(y * width + x) * 4]. `srgb` says how RGB is
+/// coded; alpha is always linear.
 struct Texture {
     enum class Wrap : std::uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 
@@ -38,7 +38,7 @@ struct Material {
     std::string name;
     Rgb baseColor{1.0f};
     float baseAlpha = 1.0f;
-    TextureIndex baseColorTexture;          ///< sRGB, times baseColor and baseAlpha
+    TextureIndex baseColorTexture;  ///< sRGB, times baseColor and baseAlpha
     float metallic = 1.0f;
     float roughness = 1.0f;                 ///< GGX alpha = roughness^2; 0 is a perfect mirror
     TextureIndex metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
@@ -54,7 +54,8 @@ struct Material {
     float alphaCutoff = 0.5f;
 };
 
-/// One glTF primitive: triangles only (strips and fans are unrolled), in the mesh's own coordinates.
+/// One glTF primitive: triangles only (strips and fans are unrolled), in the mesh's own
+/// coordinates.
 struct Mesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty, or one per position (not necessarily unit)
@@ -98,7 +99,8 @@ struct SceneDescription {
     std::string file;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
-    std::vector<Material> materials;  ///< never empty: glTF's default material is added where needed
+    std::vector<Material>
+        materials;  ///< never empty: glTF's default material is added where needed
     std::vector<Texture> textures;
     std::vector<CameraDescription> cameras;
     std::vector<PunctualLight> lights;

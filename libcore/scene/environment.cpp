@@ -30,12 +30,11 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     for (std::size_t i = 0; i < image_.size(); ++i) {
         const Rgb c = image_[i] *= float(scale);
         if (!isFinite(c) || c.r < 0.0f || c.g < 0.0f || c.b < 0.0f) {
-            throw InputError(file + ": expected radiance that is finite and not negative, found " +
-                             std::to_string(c.r) + " " + std::to_string(c.g) + " " +
-                             std::to_string(c.b) + " at pixel " +
-                             std::to_string(i % std::size_t(width_)) + "," +
-                             std::to_string(i / std::size_t(width_)) +
-                             ": repair the image or its scale");
+            throw InputError(
+                file + ": expected radiance that is finite and not negative, found " +
+                std::to_string(c.r) + " " + std::to_string(c.g) + " " + std::to_string(c.b) +
+                " at pixel " + std::to_string(i % std::size_t(width_)) + "," +
+                std::to_string(i / std::size_t(width_)) + ": repair the image or its scale");
         }
     }
 

@@ -8,12 +8,12 @@
 namespace lacuna {
 
 /// Centre of the image -Z, right half +X, top row +Y (interface.md). Radiance is the bilinear
-/// interpolation of the texels (periodic in longitude); the density is constant per texel and positive
-/// wherever that interpolation is.
+/// interpolation of the texels (periodic in longitude); the density is constant per texel and
+/// positive wherever that interpolation is.
 class Environment {
   public:
-    /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError for
-    /// an empty image or negative or non-finite texels, naming `file`.
+    /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError
+    /// for an empty image or negative or non-finite texels, naming `file`.
     Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
 
     Rgb radiance(Vec3 direction) const;

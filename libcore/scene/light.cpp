@@ -51,8 +51,8 @@ Rgb meanTexture(const EmissiveTriangle& t) {
     for (int i = 0; i < kSteps; ++i) {
         for (int j = 0; j < kSteps - i; ++j, ++n) {
             const float u = (float(i) + 1.0f / 3) / kSteps, v = (float(j) + 1.0f / 3) / kSteps;
-            sum += sampleTexture(*t.texture, t.uvs[0] * (1 - u - v) + t.uvs[1] * u + t.uvs[2] * v)
-                       .rgb;
+            sum +=
+                sampleTexture(*t.texture, t.uvs[0] * (1 - u - v) + t.uvs[1] * u + t.uvs[2] * v).rgb;
         }
     }
     // A dark mean may still hide a bright texel between the samples: keep the light pickable.
@@ -97,11 +97,13 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     if (environment_) {
         environmentIndex_ = std::uint32_t(kinds_.size());
         kinds_.push_back(LightKind::Environment);
-        power.push_back(environment_->black() ? 0.0 : double(mean(environment_->integral())) * disk);
+        power.push_back(environment_->black() ? 0.0
+                                              : double(mean(environment_->integral())) * disk);
     }
     selection_ = DiscreteDistribution(power);
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-        // A triangle without area is never picked; a ray may still run into what rounding left of it.
+        // A triangle without area is never picked; a ray may still run into what rounding left of
+        // it.
         const double area = triangleArea(triangles_[i]);
         trianglePdfA_.push_back(area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f);
     }
@@ -146,8 +148,7 @@ LightPoint Lights::samplePoint(Rng& rng) const {
             const float s = std::sqrt(u1);
             const Vec2 b{1.0f - s, u2 * s};
             const Vec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
-            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y,
-                             triangleNormal_[light], b);
+            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y, triangleNormal_[light], b);
         }
         case LightKind::Environment: {
             const Environment::Sample s = environment_->sample(pick.remapped, u1, u2);
@@ -173,8 +174,8 @@ LightPoint Lights::samplePoint(Rng& rng) const {
         p.exitance = l.intensity;
     } else {
         p.position = punctualPosition_[i];
-        p.exitance = l.intensity * float(p.kind == LightKind::Point ? 4.0 * std::numbers::pi
-                                                                    : spotSolidAngle(l));
+        p.exitance = l.intensity *
+                     float(p.kind == LightKind::Point ? 4.0 * std::numbers::pi : spotSolidAngle(l));
     }
     return p;
 }
@@ -210,8 +211,7 @@ Lights::Emission Lights::emission(const LightPoint& point, Vec3 direction) const
     return {Rgb(1.0f), 1.0f / (kPi * diskRadius_ * diskRadius_)};
 }
 
-std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point,
-                                                          Rng& rng) const {
+std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point, Rng& rng) const {
     const float u1 = rng.uniform(), u2 = rng.uniform();
     switch (point.kind) {
         case LightKind::Area: {

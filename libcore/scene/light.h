@@ -7,8 +7,8 @@
 //   environment    direction;        pdf: pmf * pdfW                  [solid angle]
 //   directional    direction;        pdf: pmf                         [delta direction left out]
 // `beta` of y_0 is its (spatial) exitance over that density; the emission profile
-// f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's density is
-// that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
+// f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's density
+// is that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
 #pragma once
 
 #include <cstdint>
@@ -41,11 +41,11 @@ struct EmissiveTriangle {
 struct LightPoint {
     std::uint32_t light = kNone;
     LightKind kind = LightKind::Area;
-    Vec3 position;   ///< at infinity: unit direction from the scene towards the light
-    Vec3 ng;         ///< area lights: the emitting side
-    Vec2 uv;         ///< barycentric (area lights)
-    float pdf = 0;   ///< in the light's own measure, see above; includes the selection pmf
-    Rgb exitance;    ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr)
+    Vec3 position;  ///< at infinity: unit direction from the scene towards the light
+    Vec3 ng;        ///< area lights: the emitting side
+    Vec2 uv;        ///< barycentric (area lights)
+    float pdf = 0;  ///< in the light's own measure, see above; includes the selection pmf
+    Rgb exitance;   ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr)
 };
 
 inline bool isInfinite(LightKind k) {
@@ -58,8 +58,8 @@ inline bool isHittable(LightKind k) {
 
 class Lights {
   public:
-    /// `sceneRadius`: of the bounding sphere about the origin. Environment may be null. Lights without
-    /// power are kept (so that indices stay) but never picked.
+    /// `sceneRadius`: of the bounding sphere about the origin. Environment may be null. Lights
+    /// without power are kept (so that indices stay) but never picked.
     Lights(std::vector<EmissiveTriangle> triangles, std::span<const PunctualLight> punctual,
            Vec3d offset, const Environment* environment, float sceneRadius);
 
@@ -82,11 +82,12 @@ class Lights {
     LightPoint environmentPoint(Vec3 direction) const;
 
     struct Emission {
-        Rgb profile;     ///< f_0(w) = Le(w) / exitance, per projected solid angle (area) or solid angle
+        Rgb profile;     ///< f_0(w) = Le(w) / exitance, per projected solid angle (area) or solid
+                         ///< angle
         float pdfW = 0;  ///< of w given y_0; at infinity: of the point on the disk (area measure)
     };
-    /// Profile and density for light that leaves `point` along the unit `direction`. At infinity the
-    /// direction is the light's own and is not read.
+    /// Profile and density for light that leaves `point` along the unit `direction`. At infinity
+    /// the direction is the light's own and is not read.
     Emission emission(const LightPoint& point, Vec3 direction) const;
 
     struct EmissionRay {

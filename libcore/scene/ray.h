@@ -1,4 +1,5 @@
-// Rays, hits and their bookkeeping: plain structs that everything but accel.cpp sees instead of Embree.
+// Rays, hits and their bookkeeping: plain structs that everything but accel.cpp sees instead of
+// Embree.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;
 struct Hit {
     std::uint32_t object = kNone;     ///< index of the scene's object
     std::uint32_t primitive = kNone;  ///< triangle of the object's mesh
-    float u = 0, v = 0;               ///< barycentric weights of the triangle's second and third corner
+    float u = 0, v = 0;  ///< barycentric weights of the triangle's second and third corner
 };
 
 using RayCounts = std::array<std::uint64_t, kRayKinds>;

@@ -25,8 +25,8 @@ struct Scene::Object {
     std::uint32_t mesh = 0;
     bool instanced = false;
     bool mirrored = false;
-    std::array<Vec3, 4> toWorld;   // columns and translation
-    std::array<Vec3, 3> normal;    // normalTransform's columns
+    std::array<Vec3, 4> toWorld;  // columns and translation
+    std::array<Vec3, 3> normal;   // normalTransform's columns
     std::uint32_t firstLight = kNone;
 
     Vec3 point(Vec3 p) const {
@@ -70,7 +70,8 @@ Vec3d centreOf(const Mesh& mesh) {
     return box.centre();
 }
 
-/// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's side.
+/// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's
+/// side.
 Affine normalTransform(const Affine& a) {
     const Vec3d columns[3] = {a.normal({1, 0, 0}), a.normal({0, 1, 0}), a.normal({0, 0, 1})};
     double largest = 0.0;
@@ -79,8 +80,8 @@ Affine normalTransform(const Affine& a) {
     return {{columns[0] * scale, columns[1] * scale, columns[2] * scale, Vec3d{}}};
 }
 
-/// Whether rays can be taken into the mesh's space in float: not for a scale of zero (glTF allows it)
-/// nor for one whose determinant leaves float's range.
+/// Whether rays can be taken into the mesh's space in float: not for a scale of zero (glTF allows
+/// it) nor for one whose determinant leaves float's range.
 bool canBeInstanced(const Affine& a) {
     double largest = 0.0;
     for (int c = 0; c < 3; ++c) largest = std::max(largest, length(a.m[c]));
@@ -141,11 +142,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         const Affine& transform = meshTransform[m];
         to.material = from.material;
         to.positions.reserve(from.positions.size() + 1);
-        for (const Vec3& p : from.positions) to.positions.push_back(Vec3(transform.point(Vec3d(p))));
+        for (const Vec3& p : from.positions)
+            to.positions.push_back(Vec3(transform.point(Vec3d(p))));
         to.positions.push_back({});
         to.normals.reserve(from.normals.size());
-        // Unit before the transform and not after it: interpolated first, transformed then, as for an
-        // instance.
+        // Unit before the transform and not after it: interpolated first, transformed then, as for
+        // an instance.
         const Affine normals = normalTransform(transform);
         for (const Vec3& n : from.normals) {
             to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
@@ -162,8 +164,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         if (uses[m] == 1) {
             to.faceNormals.reserve(to.triangles.size());
             for (const auto& t : to.triangles) {
-                to.faceNormals.push_back(triangleNormal(to.positions[t[0]], to.positions[t[1]],
-                                                        to.positions[t[2]]));
+                to.faceNormals.push_back(
+                    triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]));
             }
         }
         from = Mesh{};
@@ -183,8 +185,9 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
             EmissiveTriangle e;
             auto triangle = mesh.triangles[k];
-            // The front is the image of the mesh's front: for a mirrored instance, which still has the
-            // mesh's winding, two corners change places (barycentrics are swapped where it is hit).
+            // The front is the image of the mesh's front: for a mirrored instance, which still has
+            // the mesh's winding, two corners change places (barycentrics are swapped where it is
+            // hit).
             if (object.instanced && object.mirrored) std::swap(triangle[1], triangle[2]);
             for (int c = 0; c < 3; ++c) {
                 const Vec3 p = mesh.positions[triangle[c]];
@@ -201,10 +204,9 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
     }
 
     if (d.environment) {
-        environment_ = std::make_unique<Environment>(readImage(d.environment->file),
-                                                     d.environment->scale,
-                                                     d.environment->rotationDegrees,
-                                                     d.environment->file);
+        environment_ =
+            std::make_unique<Environment>(readImage(d.environment->file), d.environment->scale,
+                                          d.environment->rotationDegrees, d.environment->file);
     }
     lights_ = std::make_unique<Lights>(std::move(emitters), d.lights, centre_, environment_.get(),
                                        radius_);

@@ -1,5 +1,5 @@
-// The scene as rays see it: recentred (the origin is the middle of the bounding box), in float, const
-// after construction.
+// The scene as rays see it: recentred (the origin is the middle of the bounding box), in float,
+// const after construction.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct SurfacePoint {
     Vec3 position;
     Vec3 ng;  ///< unit, by the winding (sign of the transform's determinant included)
     Vec3 ns;  ///< unit, on ng's side
-    Vec2 uv;           ///< texture coordinates
+    Vec2 uv;  ///< texture coordinates
     Vec2 barycentric;
     std::uint32_t material = 0;
     std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
@@ -33,16 +33,16 @@ struct SurfacePoint {
 
 class Scene {
   public:
-    /// Bakes meshes that are used once into world space, keeps the others as Embree instances, builds
-    /// lights, tables and hierarchies. Degenerate triangles are dropped. Throws InputError for an
-    /// environment that cannot be read, RunError if memory runs out.
+    /// Bakes meshes that are used once into world space, keeps the others as Embree instances,
+    /// builds lights, tables and hierarchies. Degenerate triangles are dropped. Throws InputError
+    /// for an environment that cannot be read, RunError if memory runs out.
     Scene(SceneDescription description, const ThreadPool& pool);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    /// Replaces nothing, decides nothing: the camera of that name, or the first. Throws InputError if
-    /// the scene has no camera, UsageError if none has that name (both list what there is).
+    /// Replaces nothing, decides nothing: the camera of that name, or the first. Throws InputError
+    /// if the scene has no camera, UsageError if none has that name (both list what there is).
     Camera makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const;
 
     const SceneDescription& description() const { return description_; }
@@ -55,7 +55,8 @@ class Scene {
     float radius() const { return radius_; }
     std::size_t triangleCount() const { return triangleCount_; }
 
-    /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no surface).
+    /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no
+    /// surface).
     std::optional<SurfacePoint> intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
                                           RayTally& tally) const;
     /// Whether two points see each other; each is moved off its surface towards the other.

@@ -1,4 +1,5 @@
-// Texture look-ups: bilinear, without mip maps, because f must not depend on the strategy that asks.
+// Texture look-ups: bilinear, without mip maps, because f must not depend on the strategy that
+// asks.
 #pragma once
 
 #include "libcore/base/vec.h"

@@ -1,9 +1,9 @@
 // How much of the rays' own speed is left after shading, connecting and weighting.
 //
 //   render/SCENE/METHOD   one iteration; counters: million samples and rays per second, and
-//                         `of_bare_embree`: that rate over the rate at which bare Embree traces the very
-//                         rays of that iteration, replayed in their order by as many threads, measured
-//                         right after it in the same run, because machines drift
+//                         `of_bare_embree`: that rate over the rate at which bare Embree traces the
+//                         very rays of that iteration, replayed in their order by as many threads,
+//                         measured right after it in the same run, because machines drift
 //
 // Scenes: the repository's Cornell box and door, and every .glb of $LACUNA_SHARED_SCENES.
 #include <benchmark/benchmark.h>
@@ -63,8 +63,7 @@ void render(benchmark::State& state, const std::string& file, const MethodRow& r
         constexpr std::size_t kBlock = 4096;
         pool.forEach((rays.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
             const std::size_t n = std::min(kBlock, rays.size() - b * kBlock);
-            benchmark::DoNotOptimize(
-                scene.accel().replay(std::span(rays).subspan(b * kBlock, n)));
+            benchmark::DoNotOptimize(scene.accel().replay(std::span(rays).subspan(b * kBlock, n)));
         });
         replaySeconds += secondsSince(replayStart);
     }

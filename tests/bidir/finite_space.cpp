@@ -15,8 +15,8 @@ FiniteSpace::FiniteSpace(std::uint64_t seed) {
     };
     const AlbedoTables tables;
     for (int i = 0; i < kStates; ++i) {
-        // A ring: distances differ, but not by orders of magnitude, which would only cost samples. x
-        // tells the state.
+        // A ring: distances differ, but not by orders of magnitude, which would only cost samples.
+        // x tells the state.
         const double angle = i * 2.0 * 3.14159265 / kStates + between(-0.2, 0.2);
         canonical_[i].position = {0.01f * (float(i) + 0.5f), float(4.0 * std::cos(angle)),
                                   float(4.0 * std::sin(angle))};
@@ -93,8 +93,8 @@ Rgb FiniteSpace::exact(const Techniques& techniques) const {
         std::vector<int> x(std::size_t(k) + 1, 0);
         x[std::size_t(k)] = kLens;
         for (;;) {
-            // Paths that no strategy can make (through deltas, or where both walks are blind) are in
-            // no method's picture.
+            // Paths that no strategy can make (through deltas, or where both walks are blind) are
+            // in no method's picture.
             fill(x, path);
             path.fillLightThroughputs(techniques.rouletteDepth);
             bool possible = false;
@@ -131,7 +131,7 @@ void FiniteSpace::fill(const std::vector<int>& x, FullPath& path) const {
         path.vertex[i] = &canonical_[x[i]];
         path.survival[i] = i == 0 || i == k ? 1.0f : float(survival_[x[i]]);
         path.delta[i] = i != 0 && i != k && delta_[x[i]];
-        path.scatter[i] = i == 0 ? profile_[x[0]][x[1]]
+        path.scatter[i] = i == 0  ? profile_[x[0]][x[1]]
                           : i < k ? scatter_[x[i - 1]][x[i]][x[i + 1]]
                                   : Rgb{};
         path.lightPdfA[i] = float(i == 0   ? sourcePmf_[x[0]]
@@ -198,8 +198,7 @@ void FiniteSpace::goOn(Side side, Rng& rng, std::vector<PathVertex>& out) const 
         PathVertex v = canonical_[to];
         v.index = std::uint16_t(n);
         v.pdfA = float(row[to]);
-        v.throughput =
-            out.back().throughput * f * float(geometry(here, to) / (row[to] * survival));
+        v.throughput = out.back().throughput * f * float(geometry(here, to) / (row[to] * survival));
         out.back().scatter = f;
         if (isBlack(v.throughput)) return;
         out.push_back(v);
@@ -230,8 +229,8 @@ Rgb FiniteSpace::splat(Subpath light) const {
 Rgb FiniteSpace::connect(Subpath light, Subpath eye) const {
     const int y = stateOf(light.back()), z = stateOf(eye.back());
     if (y == z || !visible_[y][z]) return {};
-    const Rgb fy = light.size() == 1 ? profile_[y][z]
-                                     : scatter_[stateOf(light[light.size() - 2])][y][z];
+    const Rgb fy =
+        light.size() == 1 ? profile_[y][z] : scatter_[stateOf(light[light.size() - 2])][y][z];
     const Rgb fz = scatter_[y][z][stateOf(eye[eye.size() - 2])];
     return light.back().throughput * fy * fz * eye.back().throughput * float(geometry(y, z));
 }
@@ -244,10 +243,9 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
     const std::unique_ptr<Method> method = row.create(settings);
     const TechniqueSet& set = row.techniques;
     const std::uint64_t splatPaths =
-        row.techniques.ownLightPath ? kPixels
-                                    : (settings.values().contains("light_paths")
-                                           ? settings.integer("light_paths")
-                                           : 1);
+        row.techniques.ownLightPath
+            ? kPixels
+            : (settings.values().contains("light_paths") ? settings.integer("light_paths") : 1);
     FullPath path;
     std::vector<PathVertex> lightPath, eyePath;
     ProposalSink sink;
@@ -338,8 +336,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
                     const Rgb c = space.connect(p.light, eye);
                     if (isBlack(c)) continue;
                     space.fill(FiniteSpace::join(p.light, eye), path);
-                    pixelValue +=
-                        double(mean(c)) * p.weight * misWeight(path, techniques, int(t));
+                    pixelValue += double(mean(c)) * p.weight * misWeight(path, techniques, int(t));
                 }
             }
             value += pixelValue / kPixels;

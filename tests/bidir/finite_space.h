@@ -2,8 +2,8 @@
 // selector, density and misWeight must reproduce, free of geometry, rays and BSDFs.
 //
 // States 0 and 1 emit and scatter, 2..7 scatter, 8 is the lens. Walks are asymmetric, absorb, and
-// cannot make some transitions; BSDF, emission and visibility have zeros; state 5 is a delta. Measures
-// are counts, so densities are probabilities. G is 1 / d^2 of the states' positions.
+// cannot make some transitions; BSDF, emission and visibility have zeros; state 5 is a delta.
+// Measures are counts, so densities are probabilities. G is 1 / d^2 of the states' positions.
 #pragma once
 
 #include <array>
@@ -57,12 +57,12 @@ class FiniteSpace final : public LightSampler {
     std::array<PathVertex, kStates> canonical_;
     std::array<double, kEmitters> sourcePmf_{};
     std::array<Rgb, kEmitters> exitance_{};
-    std::array<std::array<Rgb, kStates>, kEmitters> profile_{};      // [x_0][x_1]
-    std::array<std::array<double, kStates>, kEmitters> emitPmf_{};   // [x_0][x_1]
-    std::array<double, kStates> lensPmf_{}, importance_{};           // [z_1]
-    Table3<Rgb> scatter_{};          // [towards light][here][towards eye]
-    Table3<double> lightPmf_{};      // [from][here][to]
-    Table3<double> eyePmf_{};        // [from][here][to]
+    std::array<std::array<Rgb, kStates>, kEmitters> profile_{};     // [x_0][x_1]
+    std::array<std::array<double, kStates>, kEmitters> emitPmf_{};  // [x_0][x_1]
+    std::array<double, kStates> lensPmf_{}, importance_{};          // [z_1]
+    Table3<Rgb> scatter_{};      // [towards light][here][towards eye]
+    Table3<double> lightPmf_{};  // [from][here][to]
+    Table3<double> eyePmf_{};    // [from][here][to]
     Table2<bool> visible_{};
     std::array<double, kStates> survival_{};
     std::array<bool, kStates> delta_{};
@@ -74,8 +74,9 @@ struct FiniteEstimate {
     std::uint64_t iterations = 0;
 };
 
-/// Runs `row` through the integrator's sequence (freeze, light pass, prepare, eye pass, observe) with
-/// `pixels` eye paths per iteration, until the standard error falls to `relativeError` of the truth.
+/// Runs `row` through the integrator's sequence (freeze, light pass, prepare, eye pass, observe)
+/// with `pixels` eye paths per iteration, until the standard error falls to `relativeError` of the
+/// truth.
 FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
                         const std::vector<std::string>& settings, std::uint64_t seed,
                         double relativeError);

@@ -12,8 +12,8 @@
 namespace lacuna::test {
 namespace {
 
-/// Two-sided 4.5 standard errors: a false alarm in 7e-6 of the comparisons, of which there are fewer
-/// than 50 here. With the error asked for, a bias of 0.1 % is seen almost surely.
+/// Two-sided 4.5 standard errors: a false alarm in 7e-6 of the comparisons, of which there are
+/// fewer than 50 here. With the error asked for, a bias of 0.1 % is seen almost surely.
 constexpr double kStandardErrors = 4.5;
 
 std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
@@ -29,13 +29,15 @@ void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
     const FiniteSpace space(3);
     const FiniteEstimate e = estimate(space, row, settings, 11, relativeError);
     ASSERT_GT(e.truth, 0.0) << row.name;
-    EXPECT_LT(e.standardError, 1.01 * relativeError * e.truth) << row.name << ": too noisy to judge";
+    EXPECT_LT(e.standardError, 1.01 * relativeError * e.truth)
+        << row.name << ": too noisy to judge";
     EXPECT_NEAR(e.mean / e.truth, 1.0, kStandardErrors * e.standardError / e.truth)
         << row.name << ": mean " << e.mean << ", truth " << e.truth << ", standard error "
         << e.standardError << ", " << e.iterations << " iterations";
 }
 
-/// A row and the settings under which it meets the truth; one test each, so that they run in parallel.
+/// A row and the settings under which it meets the truth; one test each, so that they run in
+/// parallel.
 struct Case {
     MethodRow row;
     std::vector<std::string> settings;
@@ -122,7 +124,8 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
             for (int t = 1; t <= k + 1; ++t) {
                 double p = effectiveCount(path, techniques, t);
                 for (int i = 0; i <= k - t; ++i) {
-                    p *= double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth);
+                    p *=
+                        double(path.lightPdfA[i]) * path.lightRoulette(i, techniques.rouletteDepth);
                 }
                 for (int i = k - t + 1; i <= k; ++i) {
                     p *= double(path.eyePdfA[i]) * path.eyeRoulette(i, techniques.rouletteDepth);

@@ -1,5 +1,5 @@
-// Acceptance 3: selectors alone. Over picks from a small fixed pool, the mean of sum weight g equals
-// (1/M) sum g, for a positive g and for one that is zero on half of the pool.
+// Acceptance 3: selectors alone. Over picks from a small fixed pool, the mean of sum weight g
+// equals (1/M) sum g, for a positive g and for one that is zero on half of the pool.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -70,8 +70,9 @@ class HashedDensity final : public ConnectionDensity {
   public:
     double effectiveSamples(const ConnectionEnd& eye, const ConnectionEnd& light,
                             const Rgb& beta) const override {
-        const double h = double((cell(*eye.vertex) * 73856093u ^ cell(*light.vertex) * 19349663u) %
-                                1000u + 1u) / 1000.0;
+        const double h =
+            double((cell(*eye.vertex) * 73856093u ^ cell(*light.vertex) * 19349663u) % 1000u + 1u) /
+            1000.0;
         return h * std::pow(double(mean(beta)), 0.7);
     }
 
@@ -91,7 +92,8 @@ class UniformUnderHash final : public Method {
     void select(const EyeContext&, Rng& rng, ProposalSink& sink) const override {
         const auto n = std::uint32_t(pool_->connectable().size());
         if (n == 0) return;
-        sink.add({pool_->prefix(pool_->connectable()[rng.below(n)]), double(n) / double(subpaths_), 0});
+        sink.add(
+            {pool_->prefix(pool_->connectable()[rng.below(n)]), double(n) / double(subpaths_), 0});
     }
 
   private:

@@ -8,8 +8,9 @@
 
 namespace lacuna::test {
 
-/// Several picks per length; picks that come out empty; s = 1 fresh, even lengths from vertices that
-/// were kept from the previous iteration, odd ones from the pool. Credit: 3 for s = 1, 0.5 beyond.
+/// Several picks per length; picks that come out empty; s = 1 fresh, even lengths from vertices
+/// that were kept from the previous iteration, odd ones from the pool. Credit: 3 for s = 1, 0.5
+/// beyond.
 MethodRow potpourriRow();
 /// Uniform picks from the pool under a density r = hash(eye cell, light cell) mean(beta)^0.7.
 MethodRow hashedDensityRow();
