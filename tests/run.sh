@@ -34,6 +34,9 @@ configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON
 build_targets
 say "Built in $SECONDS s"
 
+say "Layout of the sources"
+bash "$project/.ci/format.sh"
+
 say "Scenes: the files are what their generator makes"
 python3 "$project/scenes/make_scenes.py" --check
 

@@ -55,7 +55,10 @@ INSTANTIATE_TEST_SUITE_P(All, LightPairsSlow, testing::ValuesIn(allPairs()), ByP
 struct SceneFile {
     std::string name;
     int iterations;
-    std::string reference = "pt";
+    /// Gloss gathers the light of a small or punctual light: eye walks alone meet it too rarely for
+    /// a z-test. The reference is bpt, and rows whose light walks go no further than y_0 are left
+    /// out.
+    bool caustics = false;
 };
 void PrintTo(const SceneFile& s, std::ostream* out) {
     *out << s.name;
@@ -82,24 +85,25 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
     shot.maxDepth = 5;
     shot.iterations = 2 * GetParam().iterations;
     shot.seed = 100;
-    const Picture reference = render(scene, rowNamed(GetParam().reference), shot);
+    const Picture reference = render(scene, rowNamed(GetParam().caustics ? "bpt" : "pt"), shot);
     shot.seed = 1;
     shot.iterations = GetParam().iterations;
     for (const std::string& name : rowNames()) {
         const MethodRow row = rowNamed(name);
         if (hasDeltas(description) && !seesThroughDeltas(row)) continue;
+        if (GetParam().caustics && !walksFromLights(row)) continue;
         expectSame(render(scene, row, shot), reference, name, Judge::BlocksAndMean);
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, SceneFilesSlow,
-    testing::Values(SceneFile{"cornell-box", 100}, SceneFile{"door", 60, "bpt"},
-                    SceneFile{"glossy-room", 60, "bpt"}, SceneFile{"kitchen-glass", 60, "bpt"},
-                    SceneFile{"ring-caustic", 60, "bpt"}, SceneFile{"furnace", 40},
+    testing::Values(SceneFile{"cornell-box", 100}, SceneFile{"door", 60},
+                    SceneFile{"glossy-room", 60, true}, SceneFile{"kitchen-glass", 60, true},
+                    SceneFile{"ring-caustic", 60, true}, SceneFile{"furnace", 40},
                     SceneFile{"light-quad", 60}, SceneFile{"light-sphere", 60},
                     SceneFile{"light-two-sided", 60}, SceneFile{"light-point", 60},
-                    SceneFile{"light-spot", 60}, SceneFile{"light-directional", 60},
+                    SceneFile{"light-spot", 60, true}, SceneFile{"light-directional", 60},
                     SceneFile{"light-environment", 60}, SceneFile{"light-mesh-instanced", 60}),
     ByParameter());
 
