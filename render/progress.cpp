@@ -56,6 +56,7 @@ Progress::~Progress() {
 
 void Progress::phase(const std::string& name) {
     const std::lock_guard lock(mutex_);
+    sayInterrupt();
     phase_ = name;
     phaseStart_ = Clock::now();
 }
@@ -113,17 +114,20 @@ std::string Progress::line() const {
     return text;
 }
 
+void Progress::sayInterrupt() {
+    if (quiet_ || interruptSaid_ || !interrupted_) return;
+    interruptSaid_ = true;
+    print(iterations_.done > 0
+              ? "interrupted: saving what there is (again: exit at once)"
+              : "interrupted: no iteration is complete yet, the first one will be finished "
+                "and saved (again: exit at once)");
+}
+
 void Progress::run() {
     std::unique_lock lock(mutex_);
     Clock::time_point nextPlain = Clock::now() + kPlainEvery;
     while (!wake_.wait_for(lock, kTick, [this] { return stop_; })) {
-        if (interrupted_ && !interruptSaid_) {
-            interruptSaid_ = true;
-            print(iterations_.done > 0
-                      ? "interrupted: saving what there is (again: exit at once)"
-                      : "interrupted: no iteration is complete yet, the first one will be finished "
-                        "and saved (again: exit at once)");
-        }
+        sayInterrupt();
         if (phase_.empty()) continue;
         if (terminal_) {
             std::fprintf(stderr, "\r%s\x1b[K", line().c_str());

@@ -46,6 +46,7 @@ class Progress {
     std::string line() const;
     void clearLine();
     void print(const std::string& text);
+    void sayInterrupt();
 
     const bool quiet_;
     const bool terminal_;

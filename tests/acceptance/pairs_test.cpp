@@ -43,7 +43,8 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
     shot.iterations = 200;
     shot.lightPaths = 1024;
     for (const std::string& name : rowNames()) {
-        expectSame(render(*scene, rowNamed(name), shot), reference, name);
+        const MethodRow row = rowNamed(name);
+        expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name);
     }
 }
 
@@ -92,7 +93,8 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
         const MethodRow row = rowNamed(name);
         if (hasDeltas(description) && !seesThroughDeltas(row)) continue;
         if (GetParam().caustics && !walksFromLights(row)) continue;
-        expectSame(render(scene, row, shot), reference, name, Judge::BlocksAndMean);
+        expectSame(render(scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
+                   Judge::BlocksAndMean);
     }
 }
 

@@ -237,6 +237,14 @@ bool seesThroughDeltas(const MethodRow& row) {
     return row.techniques.hits || row.techniques.connects;
 }
 
+Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row) {
+    Shot result = shot;
+    if (!row.techniques.hits && !row.techniques.connects) {
+        result.lightPaths = 32 * std::uint64_t(shot.width) * std::uint64_t(shot.height);
+    }
+    return result;
+}
+
 bool walksFromLights(const MethodRow& row) {
     if (row.techniques.splats) return true;
     if (!row.techniques.connects) return false;

@@ -81,14 +81,14 @@ TEST_F(RenderInterrupt, SavesWhatThereIs) {
 TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
     // One iteration of a few seconds, interrupted in its middle.
     const Outcome o = runAndSignal(
-        "@room.gltf -o @out.exr --method bpt --width 300 --height 200 --time 1h --json @o.json",
+        "@room.gltf -o @out.exr --method bpt --width 900 --height 600 --time 1h --json @o.json",
         {SIGINT}, milliseconds(700));
     EXPECT_EQ(o.exitCode, 130) << o.err;
     EXPECT_GE(json("o.json")["iterations"].get<int>(), 1);
     EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
     // The picture is the same as that many undisturbed iterations.
     const auto values = *readExrLayers(path("out.exr")).find("R");
-    ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 300 --height 200 --quiet "
+    ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 900 --height 600 --quiet "
                   "--iterations " +
                   json("o.json")["iterations"].dump())
                   .exitCode,
