@@ -112,10 +112,10 @@ struct ByParameter {
 
 /// Splats alone cannot make what the lens sees through mirrors and smooth glass.
 bool seesThroughDeltas(const MethodRow& row);
-/// `shot` with 32 light subpaths per pixel for a row of splats alone. Light subpaths start on all of
-/// the scene (those of a sky: on a disk as wide) and few of them meet what one pixel sees; with one
-/// subpath per pixel a pixel's variance is that of the handful of splats that it happened to get,
-/// and a z-test means nothing.
+/// `shot` with 32 light subpaths per pixel for a row of splats alone. Light subpaths start on all
+/// of the scene (those of a sky: on a disk as wide) and few of them meet what one pixel sees; with
+/// one subpath per pixel a pixel's variance is that of the handful of splats that it happened to
+/// get, and a z-test means nothing.
 Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
