@@ -115,10 +115,10 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     const PathVertex& z = eye.back();
     const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
     if (!(edge.geometry > 0.0f)) return std::nullopt;
-    const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
-    if (isBlack(atEye.f)) return std::nullopt;
     const Lights& lights = walker.scene().lights();
     const EndValue atLight = lightEnd(lights, y, edge.direction);
+    if (isBlack(atLight.f)) return std::nullopt;
+    const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
     const Closed closed{
         z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry, int(eye.size()), {}};
     if (isBlack(closed.contribution)) return std::nullopt;

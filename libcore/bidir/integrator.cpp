@@ -236,7 +236,7 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
     for (std::size_t t = 2; t <= worker.eye.size(); ++t) {
         const Subpath eye(worker.eye.data(), t);
         const PathVertex& z = eye.back();
-        if (techniqueSet_.hits) {
+        if (techniqueSet_.hits && z.light != kNone) {
             if (const auto closed = closeHit(walker_, eye, worker.path)) {
                 deliver(*closed, nullptr, 1.0, iteration, filmIndex, pixelIndex, &pixel, worker,
                         chunk);

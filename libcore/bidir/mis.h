@@ -71,7 +71,7 @@ struct FullPath {
     std::array<float, kMaxEdges + 1> lightPdfA;  ///< pL(x_i | x_{i-1}, x_{i-2}), no roulette
     std::array<float, kMaxEdges + 1> eyePdfA;    ///< pE(x_i | x_{i+1}, x_{i+2}), no roulette
     std::array<float, kMaxEdges + 1> survival;   ///< 1 at both ends
-    std::array<bool, kMaxEdges + 1> delta;       ///< of the event at x_i on THIS path
+    std::array<bool, kMaxEdges + 1> delta;       ///< of the event at x_i on THIS path; not at ends
     std::array<Rgb, kMaxEdges + 1> scatter;      ///< f at x_i (x_0: emission profile)
     Rgb sourceBeta;                              ///< exitance over density at x_0
     bool hittable = false;                       ///< an eye walk can run into this light
@@ -82,15 +82,15 @@ struct FullPath {
         const int s = edges + 1 - t;
         if (s == 0) return hittable;
         if (edges == 1 && t == 1 && !splattable) return false;
-        // The connection's two ends scatter smoothly; the light's own point and the lens always do.
-        return !(s >= 2 && delta[s - 1]) && !(t >= 2 && delta[s]);
+        // The connection's two ends scatter smoothly, as the light's point and the lens always do.
+        return !delta[s - 1] && !delta[s];
     }
     /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
     double lightRoulette(int i, int rouletteDepth) const {
-        return i >= 2 && i - 1 >= rouletteDepth ? double(survival[i - 1]) : 1.0;
+        return i - 1 >= rouletteDepth ? double(survival[i - 1]) : 1.0;
     }
     double eyeRoulette(int i, int rouletteDepth) const {
-        return i <= edges - 2 && edges - i - 1 >= rouletteDepth ? double(survival[i + 1]) : 1.0;
+        return edges - i - 1 >= rouletteDepth ? double(survival[i + 1]) : 1.0;
     }
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     std::array<Rgb, kMaxEdges + 1> beta;

@@ -18,12 +18,7 @@ LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex) {
 }
 
 Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex, Vec3 direction) {
-    // Neither density nor exitance is asked for here: textures and tables stay unread.
-    LightPoint p;
-    p.light = vertex.light;
-    p.kind = lights.kind(vertex.light);
-    p.ng = vertex.ng;
-    return lights.emission(p, direction);
+    return lights.emission(vertex.light, vertex.ng, direction);
 }
 
 }  // namespace lacuna

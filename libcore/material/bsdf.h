@@ -87,6 +87,13 @@ class Bsdf {
     /// base (a smooth layer merely gets its mean reflectance faster from it). An ior without a
     /// table of its own takes the nearest one's. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
+    /// The same material at another point.
+    Bsdf at(Vec3 ng, Vec3 ns) const {
+        Bsdf b = *this;
+        b.ng_ = ng;
+        b.ns_ = ns;
+        return b;
+    }
 
     /// Value and densities of the Smooth event (all lobes with a density together).
     BsdfEvaluation evaluate(Vec3 toEye, Vec3 toLight) const;

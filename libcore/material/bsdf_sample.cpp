@@ -90,10 +90,14 @@ std::optional<BsdfSample> Bsdf::sample(Side side, Vec3 from, float uLobe, float 
         }
     }
     to = renormalize(to);
-    const BsdfEvaluation evaluation =
-        side == Side::Eye ? evaluate(from, to, event) : evaluate(to, from, event);
-    if ((side == Side::Eye ? evaluation.pdfWToLight : evaluation.pdfWToEye) > 0.0f) {
-        result.emplace(BsdfSample{to, event, evaluation});
+    const Vec3 toEye = side == Side::Eye ? from : to, toLight = side == Side::Eye ? to : from;
+    BsdfSample& s = result.emplace();
+    s.to = to;
+    s.event = event;
+    s.evaluation = event == ScatterEvent::Smooth ? evaluate(toEye, toLight)
+                                                 : evaluateDelta(toEye, toLight, event);
+    if (!((side == Side::Eye ? s.evaluation.pdfWToLight : s.evaluation.pdfWToEye) > 0.0f)) {
+        result.reset();
     }
     return result;
 }

@@ -190,11 +190,11 @@ Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) co
     return {Rgb(float(falloff / spotSolidAngle(l))), float(1.0 / capSolidAngle(l.outerConeAngle))};
 }
 
-Lights::Emission Lights::emission(const LightPoint& point, Vec3 direction) const {
-    switch (point.kind) {
+Lights::Emission Lights::emission(std::uint32_t light, Vec3 ng, Vec3 direction) const {
+    switch (kinds_[light]) {
         case LightKind::Area: {
-            const float cosine = dot(point.ng, direction);
-            if (triangles_[point.light].twoSided) {
+            const float cosine = dot(ng, direction);
+            if (triangles_[light].twoSided) {
                 return {Rgb(0.5f / kPi), std::fabs(cosine) * (0.5f / kPi)};
             }
             if (cosine <= 0.0f) return {};
@@ -203,7 +203,7 @@ Lights::Emission Lights::emission(const LightPoint& point, Vec3 direction) const
         case LightKind::Point:
             return {Rgb(0.25f / kPi), 0.25f / kPi};
         case LightKind::Spot:
-            return spotEmission(punctual_[point.light - triangles_.size()], direction);
+            return spotEmission(punctual_[light - triangles_.size()], direction);
         case LightKind::Directional:
         case LightKind::Environment:
             break;

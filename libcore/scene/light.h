@@ -88,7 +88,11 @@ class Lights {
     };
     /// Profile and density for light that leaves `point` along the unit `direction`. At infinity
     /// the direction is the light's own and is not read.
-    Emission emission(const LightPoint& point, Vec3 direction) const;
+    Emission emission(const LightPoint& point, Vec3 direction) const {
+        return emission(point.light, point.ng, direction);
+    }
+    /// The same; nothing else about the point matters.
+    Emission emission(std::uint32_t light, Vec3 ng, Vec3 direction) const;
 
     struct EmissionRay {
         Vec3 origin;

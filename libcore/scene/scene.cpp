@@ -70,6 +70,19 @@ Vec3d centreOf(const Mesh& mesh) {
     return box.centre();
 }
 
+/// Whether every corner's normal is its face's own: then the face's is enough.
+bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
+            std::span<const std::array<std::uint32_t, 3>> triangles) {
+    if (normals.empty()) return true;
+    for (const auto& t : triangles) {
+        const Vec3 ng = triangleNormal(positions[t[0]], positions[t[1]], positions[t[2]]);
+        for (const std::uint32_t corner : t) {
+            if (lengthSquared(normalize(normals[corner]) - ng) > 1e-12f) return false;
+        }
+    }
+    return true;
+}
+
 /// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's
 /// side.
 Affine normalTransform(const Affine& a) {
@@ -168,6 +181,7 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
                     triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]));
             }
         }
+        if (isFlat(to.positions, to.normals, to.triangles)) to.normals = {};
         from = Mesh{};
     });
 
@@ -219,6 +233,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         if (diffuse && m.specular > 0.0f && m.ior > 1.0f) iors.push_back(m.ior);
     }
     tables_ = std::make_unique<AlbedoTables>(iors);
+    for (const Material& m : d.materials) {
+        std::optional<Bsdf>& bsdf = constantBsdfs_.emplace_back();
+        if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture) {
+            bsdf = Bsdf(bsdfParameters(m, {}), {}, {}, *tables_);
+        }
+    }
 
     std::vector<AccelMesh> accelMeshes;
     for (const WorldMesh& m : meshes_) accelMeshes.push_back({m.positions, m.triangles});
@@ -269,7 +289,7 @@ bool Scene::alphaTest(const Hit& hit) const {
     return alpha >= material.alphaCutoff;
 }
 
-SurfacePoint Scene::surfaceAt(const Hit& hit) const {
+void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     const Object& object = objects_[hit.object];
     const WorldMesh& mesh = meshes_[object.mesh];
     const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
@@ -280,7 +300,6 @@ SurfacePoint Scene::surfaceAt(const Hit& hit) const {
         p1 = object.point(p1);
         p2 = object.point(p2);
     }
-    SurfacePoint s;
     s.position = p0 * w + p1 * hit.u + p2 * hit.v;
     s.ng = object.instanced ? triangleNormal(p0, p1, p2) : mesh.faceNormals[hit.primitive];
     s.barycentric = {hit.u, hit.v};
@@ -300,23 +319,20 @@ SurfacePoint Scene::surfaceAt(const Hit& hit) const {
     s.uv = uvAt(mesh, t, hit.u, hit.v);
     s.material = mesh.material;
     if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
-    return s;
 }
 
 std::optional<SurfacePoint> Scene::intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
                                              RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
     const Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
+    std::optional<SurfacePoint> point;
     const std::optional<Hit> hit = accel_->intersect(ray);
-    if (!hit) {
-        if (tally.recording) tally.recording->push_back({ray, kind});
-        return std::nullopt;
-    }
-    const SurfacePoint s = surfaceAt(*hit);
+    if (hit) surfaceAt(*hit, point.emplace());
     if (tally.recording) {
-        tally.recording->push_back({{ray.origin, direction, length(s.position - origin)}, kind});
+        const float distance = point ? length(point->position - origin) : ray.tFar;
+        tally.recording->push_back({{ray.origin, direction, distance}, kind});
     }
-    return s;
+    return point;
 }
 
 bool Scene::visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& tally) const {
@@ -338,7 +354,13 @@ bool Scene::visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind,
 }
 
 Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
-    const Material& m = description_.materials[point.material];
+    const std::optional<Bsdf>& constant = constantBsdfs_[point.material];
+    if (constant) return constant->at(point.ng, point.ns);
+    return Bsdf(bsdfParameters(description_.materials[point.material], point.uv), point.ng,
+                point.ns, *tables_);
+}
+
+Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     const auto& textures = description_.textures;
     Bsdf::Parameters p;
     p.baseColor = m.baseColor;
@@ -349,17 +371,17 @@ Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
     p.transmission = m.transmission;
     p.thin = m.thin;
     if (m.baseColorTexture) {
-        p.baseColor *= sampleTexture(textures[m.baseColorTexture.value], point.uv).rgb;
+        p.baseColor *= sampleTexture(textures[m.baseColorTexture.value], uv).rgb;
     }
     if (m.metallicRoughnessTexture) {
-        const Rgb t = sampleTexture(textures[m.metallicRoughnessTexture.value], point.uv).rgb;
+        const Rgb t = sampleTexture(textures[m.metallicRoughnessTexture.value], uv).rgb;
         p.roughness *= t.g;
         p.metallic *= t.b;
     }
     if (m.transmissionTexture) {
-        p.transmission *= sampleTexture(textures[m.transmissionTexture.value], point.uv).rgb.r;
+        p.transmission *= sampleTexture(textures[m.transmissionTexture.value], uv).rgb.r;
     }
-    return Bsdf(p, point.ng, point.ns, *tables_);
+    return p;
 }
 
 }  // namespace lacuna

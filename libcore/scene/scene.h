@@ -72,8 +72,9 @@ class Scene {
     struct Object;
     struct WorldMesh;
 
-    SurfacePoint surfaceAt(const Hit& hit) const;
+    void surfaceAt(const Hit& hit, SurfacePoint& out) const;
     bool alphaTest(const Hit& hit) const;
+    Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv) const;
     Vec2 uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& triangle, float u,
               float v) const;
 
@@ -85,6 +86,7 @@ class Scene {
     std::vector<WorldMesh> meshes_;
     std::vector<Object> objects_;
     std::unique_ptr<AlbedoTables> tables_;
+    std::vector<std::optional<Bsdf>> constantBsdfs_;  // by material; where no texture is asked
     std::unique_ptr<Environment> environment_;
     std::unique_ptr<Lights> lights_;
     std::unique_ptr<Accel> accel_;
