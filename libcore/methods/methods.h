@@ -11,6 +11,7 @@ MethodRow bidirectionalRow();             // bpt.cpp
 MethodRow lvcRow();                       // lvcbpt.cpp
 MethodRow probabilisticConnectionsRow();  // pcbpt.cpp
 MethodRow resamplingAwareRow();           // risbpt.cpp
+MethodRow twoStageResamplingRow();        // tsr.cpp
 
 /// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
 Parameter lightPathsParameter();

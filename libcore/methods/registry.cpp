@@ -14,7 +14,8 @@ std::span<const MethodRow> methods() {
                                                 bidirectionalRow(),
                                                 lvcRow(),
                                                 probabilisticConnectionsRow(),
-                                                resamplingAwareRow()};
+                                                resamplingAwareRow(),
+                                                twoStageResamplingRow()};
     return rows;
 }
 
