@@ -74,9 +74,13 @@ void removeHidden(std::vector<WeightedVertex>& candidates, double untested, Visi
     const auto lighter = [](const WeightedVertex& a, const WeightedVertex& b) {
         return a.weight != b.weight ? a.weight < b.weight : a.index > b.index;
     };
-    double rest = 0.0, seen = 0.0;
-    for (const WeightedVertex& v : candidates) rest += v.weight;
     std::size_t left = candidates.size();  // [0, left) is the heap of what is not tested yet
+    const auto sumOfRest = [&] {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < left; ++i) sum += candidates[i].weight;
+        return sum;
+    };
+    double sum = sumOfRest(), rest = sum, seen = 0.0;
     if (untested > 0.0) std::make_heap(candidates.begin(), candidates.end(), lighter);
     std::vector<WeightedVertex> kept;
     while (left > 0 && (untested <= 0.0 || rest > untested * seen)) {
@@ -85,6 +89,8 @@ void removeHidden(std::vector<WeightedVertex>& candidates, double untested, Visi
         }
         const WeightedVertex v = candidates[--left];
         rest -= v.weight;
+        // What is left of a difference of nearly equal numbers is their rounding.
+        if (untested > 0.0 && rest < 1e-6 * sum) sum = rest = sumOfRest();
         if (!visible(v.index)) continue;
         seen += v.weight;
         kept.push_back(v);

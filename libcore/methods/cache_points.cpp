@@ -91,14 +91,25 @@ std::uint64_t CachePoints::bytes() const {
            size() * (sizeof(Vec3) + sizeof(std::uint32_t) * (2 + perPoint_) + sizeof(double));
 }
 
-std::vector<double> carriedOver(const CachePoints& from, std::span<const double> values,
-                                const CachePoints& to, int count, const ThreadPool& threads) {
-    std::vector<double> result(to.size(), 0.0);
-    if (from.empty()) return result;
-    forEachPoint(threads, to.size(), [&](std::uint32_t i) {
-        std::vector<std::uint32_t> found(std::size_t(count), 0u);
-        found.resize(from.find(to.position(i), found));
-        for (const std::uint32_t j : found) result[i] += values[j] / double(found.size());
+void EarlierValues::add(CachePoints points, std::vector<double> values) {
+    if (points.empty()) return;
+    if (history_.size() == sets_) history_.pop_front();
+    history_.push_back({std::move(points).takeNearest(), std::move(values)});
+}
+
+std::vector<double> EarlierValues::at(const CachePoints& points, const ThreadPool& threads) const {
+    std::vector<double> result(points.size() * columns_, 0.0);
+    forEachPoint(threads, points.size(), [&](std::uint32_t i) {
+        std::vector<std::uint32_t> found(count_);
+        for (const Set& set : history_) {
+            const std::size_t n = set.nearest.find(points.position(i), found);
+            const double share = 1.0 / (double(n) * double(history_.size()));
+            for (std::size_t j = 0; j < n; ++j) {
+                for (std::size_t k = 0; k < columns_; ++k) {
+                    result[i * columns_ + k] += share * set.values[found[j] * columns_ + k];
+                }
+            }
+        }
     });
     return result;
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -40,10 +41,6 @@ class CachePoints {
         if (serving == kNone) return {};
         return std::span(around_).subspan(serving * perPoint_, perPoint_);
     }
-    /// Up to out.size() points by distance from `position`; returns how many.
-    std::size_t find(Vec3 position, std::span<std::uint32_t> out) const {
-        return nearest_.find(position, out);
-    }
 
     /// Upper limit of G in everything that is kept at a point: a light vertex closer than the
     /// point's neighbours are says little about the vertices that it serves, and may be infinitely
@@ -51,6 +48,9 @@ class CachePoints {
     double geometryLimit(std::uint32_t point) const { return geometryLimit_[point]; }
 
     std::uint64_t bytes() const;
+
+    /// The search structure alone: all that is needed of a set whose iteration is over.
+    NearestPoints takeNearest() && { return std::move(nearest_); }
 
   private:
     std::vector<PathVertex> vertices_;   // whole eye subpaths
@@ -61,9 +61,27 @@ class CachePoints {
     NearestPoints nearest_;
 };
 
-/// Values at the points of one set, carried over to another: each new point takes the mean of the
-/// `count` old ones nearest to it (N_q). Zero where there are no old points.
-std::vector<double> carriedOver(const CachePoints& from, std::span<const double> values,
-                                const CachePoints& to, int count, const ThreadPool& threads);
+/// What earlier iterations found at their cache points, to be read at new ones: the frozen
+/// normalisers Q. Holds the last `sets` sets.
+class EarlierValues {
+  public:
+    /// `columns` values per point; `count`: N_q.
+    EarlierValues(int columns, int sets, int count)
+        : columns_(std::size_t(columns)), sets_(std::size_t(sets)), count_(std::size_t(count)) {}
+
+    /// Forgets the oldest set where there are too many. An empty set is not one.
+    void add(CachePoints points, std::vector<double> values);
+    /// For each new point the mean over all sets of the mean over the N_q points nearest to it:
+    /// columns values each. Zero without sets.
+    std::vector<double> at(const CachePoints& points, const ThreadPool& threads) const;
+
+  private:
+    struct Set {
+        NearestPoints nearest;
+        std::vector<double> values;
+    };
+    std::size_t columns_, sets_, count_;
+    std::deque<Set> history_;
+};
 
 }  // namespace lacuna

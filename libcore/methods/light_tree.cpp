@@ -42,12 +42,7 @@ LightTree::LightTree(const LightPool& pool, std::span<const LightPool::Entry> ca
     build(leaves, 0, infinite_, threads);
     build(leaves, infinite_, n, threads);
     order_.reserve(n);
-    powerBefore_.reserve(n + 1);
-    powerBefore_.push_back(0.0);
-    for (const Leaf& leaf : leaves) {
-        order_.push_back(leaf.candidate);
-        powerBefore_.push_back(powerBefore_.back() + leaf.power);
-    }
+    for (const Leaf& leaf : leaves) order_.push_back(leaf.candidate);
 }
 
 // A subtree over n leaves takes 2 n - 1 nodes in a row: its root, the left subtree, the right one.
@@ -109,7 +104,7 @@ void LightTree::fillNode(std::uint32_t node, std::span<Leaf> leaves, std::uint32
         n.axis = leaf.normal;
         n.sine = 0.0f;
         n.cosine = 1.0f;
-        n.power = float(leaf.power);
+        n.power = leaf.power;
         return;
     }
     const Vec3 size = n.high - n.low;
@@ -148,13 +143,20 @@ void LightTree::joinChildren(std::uint32_t node) {
 }
 
 LightTree::Draw LightTree::draw(Cluster c, double u) const {
-    const double first = powerBefore_[c.begin], sum = power(c);
-    const auto begin = powerBefore_.begin() + c.begin + 1, end = powerBefore_.begin() + c.end + 1;
-    auto found = std::upper_bound(begin, end, first + u * sum);
-    // Rounding may lead past the end: the last leaf that has a probability.
-    if (found == end) found = std::lower_bound(begin, end, powerBefore_[c.end]);
-    const auto leaf = std::uint32_t(found - powerBefore_.begin()) - 1;
-    return {order_[leaf], (powerBefore_[leaf + 1] - powerBefore_[leaf]) / sum};
+    std::uint32_t node = c;
+    while (nodes_[node].end - nodes_[node].begin > 1) {
+        const std::uint32_t left = node + 1, right = rightOf(node);
+        const double share = nodes_[left].power / nodes_[node].power;
+        if (u < share) {
+            u /= share;
+            node = left;
+        } else {
+            u = (u - share) / (1.0 - share);
+            node = right;
+        }
+        u = std::min(u, 1.0 - 0x1p-53);
+    }
+    return {order_[nodes_[node].begin], nodes_[node].power / nodes_[c].power};
 }
 
 /// An estimate from above of power x G towards the eye vertex, visibility and BSDFs left out.
@@ -165,11 +167,11 @@ double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal)
     const float radius2 = dot(half, half);
     if (node.begin >= infinite_) {
         const float cosine = dot(eyeNormal, centre) + std::sqrt(radius2);
-        return double(node.power) * double(std::clamp(cosine, kLeastCosine, 1.0f));
+        return node.power * double(std::clamp(cosine, kLeastCosine, 1.0f));
     }
     const Vec3 to = eye.position - centre;
     const float d2 = dot(to, to);
-    if (d2 <= radius2) return double(node.power) / double(std::max(radius2, 1e-30f));
+    if (d2 <= radius2) return node.power / double(std::max(radius2, 1e-30f));
     const float d = std::sqrt(d2), radius = std::sqrt(radius2);
     const float atEye = eyeNormal == Vec3{}
                             ? 1.0f
@@ -186,7 +188,7 @@ double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal)
         atLight = inside ? 1.0f : std::max(cosine * openCosine + sine * openSine, kLeastCosine);
     }
     const float near = std::max(d - radius, radius);
-    return double(node.power) * double(atEye * atLight) / (double(near) * double(near));
+    return node.power * double(atEye * atLight) / (double(near) * double(near));
 }
 
 void LightTree::cut(const PathVertex& eye, std::size_t budget, std::vector<CutNode>& heap,
@@ -200,7 +202,7 @@ void LightTree::cut(const PathVertex& eye, std::size_t budget, std::vector<CutNo
     const auto add = [&](std::uint32_t node) {
         const Node& n = nodes_[node];
         if (n.end - n.begin == 1) {
-            cut.push_back({n.begin, n.end});
+            cut.push_back(node);
             return;
         }
         heap.push_back({bound(n, eye, normal), node});
@@ -215,12 +217,11 @@ void LightTree::cut(const PathVertex& eye, std::size_t budget, std::vector<CutNo
         add(node + 1);
         add(rightOf(node));
     }
-    for (const CutNode& n : heap) cut.push_back({nodes_[n.node].begin, nodes_[n.node].end});
+    for (const CutNode& n : heap) cut.push_back(n.node);
 }
 
 std::uint64_t LightTree::bytes() const {
-    return order_.size() * sizeof(order_[0]) + powerBefore_.size() * sizeof(double) +
-           nodes_.size() * sizeof(Node);
+    return order_.size() * sizeof(order_[0]) + nodes_.size() * sizeof(Node);
 }
 
 }  // namespace lacuna

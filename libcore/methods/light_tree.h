@@ -15,9 +15,7 @@ namespace lacuna {
 
 class LightTree {
   public:
-    struct Cluster {
-        std::uint32_t begin, end;  ///< leaves
-    };
+    using Cluster = std::uint32_t;  ///< a node
     /// A vertex drawn from a cluster.
     struct Draw {
         std::uint32_t candidate;  ///< index into the span that the tree was built over
@@ -31,11 +29,13 @@ class LightTree {
 
     std::size_t size() const { return order_.size(); }
     /// Sum of mean(beta) over a cluster.
-    double power(Cluster c) const { return powerBefore_[c.end] - powerBefore_[c.begin]; }
-    /// u in [0, 1); the cluster must have power.
+    double power(Cluster c) const { return nodes_[c].power; }
+    /// u in [0, 1). A walk down the tree: exact for any range of powers.
     Draw draw(Cluster c, double u) const;
-    /// Index of the candidate at a leaf.
-    std::uint32_t candidate(std::uint32_t leaf) const { return order_[leaf]; }
+    /// Indices of the cluster's candidates.
+    std::span<const std::uint32_t> candidates(Cluster c) const {
+        return std::span(order_).subspan(nodes_[c].begin, nodes_[c].end - nodes_[c].begin);
+    }
 
     /// Scratch memory of cut().
     struct CutNode {
@@ -57,10 +57,10 @@ class LightTree {
         std::uint32_t candidate;
     };
     struct Node {
+        double power;
         Vec3 low, high;
         Vec3 axis;           ///< of the cone around all normals; zero: any direction
         float sine, cosine;  ///< of the cone's half angle
-        float power;
         std::uint32_t begin, end;
     };
 
@@ -74,7 +74,6 @@ class LightTree {
     double bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal) const;
 
     std::vector<std::uint32_t> order_;  // by leaf
-    std::vector<double> powerBefore_;   // of all leaves before this one
     std::vector<Node> nodes_;
     std::uint32_t infinite_ = 0;  // first leaf at infinity
 };

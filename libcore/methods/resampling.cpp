@@ -60,7 +60,8 @@ class ResampledDensity final : public ConnectionDensity {
 
 class Resampling final : public Method {
   public:
-    explicit Resampling(const ResamplingOptions& options) : options_(options), density_(options) {}
+    explicit Resampling(const ResamplingOptions& options)
+        : options_(options), density_(options), earlier_(1, options.qSets, options.qPoints) {}
 
     // The first finds out how many vertices there are and leaves cache points, the second fills
     // them.
@@ -134,7 +135,8 @@ class Resampling final : public Method {
         PhaseTimer timer(context.statistics, "cache points");
         CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
         if (options_.aware) {
-            q_ = carriedOver(points_, flow_, next, options_.qPoints, context.threads);
+            earlier_.add(std::move(points_), std::move(flow_));
+            q_ = earlier_.at(next, context.threads);
         }
         points_ = std::move(next);
         pmfs_ = {};
@@ -161,7 +163,8 @@ class Resampling final : public Method {
     ResamplingOptions options_;
     ResampledDensity density_;
     CachePoints points_;     // of this iteration
-    std::vector<double> q_;  // by point, from the iteration before
+    std::vector<double> q_;  // by point, from earlier iterations
+    EarlierValues earlier_;
     std::uint64_t vertices_ = 0, pools_ = 0;
     std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;

@@ -16,6 +16,8 @@ MethodRow resamplingAwareRow() {
     row.parameters.push_back({"connections", Kind::Integer, 1, 1, 64, "picks per eye vertex, N"});
     row.parameters.push_back({"q_points", Kind::Integer, 3, 1, 16,
                               "cache points of the last iteration whose Q are averaged, N_q"});
+    row.parameters.push_back({"q_iterations", Kind::Integer, 16, 1, 256,
+                              "earlier iterations whose Q are averaged; the paper: 1"});
     row.parameters.push_back(
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
     row.parameters.push_back({"weights",
@@ -29,6 +31,7 @@ MethodRow resamplingAwareRow() {
         ResamplingOptions o = resamplingOptions(s);
         o.picks = int(s.integer("connections"));
         o.qPoints = int(s.integer("q_points"));
+        o.qSets = int(s.integer("q_iterations"));
         o.clamp = s.real("clamp");
         o.aware = s.integer("weights") == 0;
         return makeResampling(o);

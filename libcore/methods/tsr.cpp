@@ -12,7 +12,8 @@
 //   MIS       the mean over the N_c points of                                       [eq 17]
 //                 [ 1/M1 + (1 - 1/M1) ( (1/M2) p/q1 + (1 - 1/M2) p/q2 ) ]^-1,
 //             p/q1 = Q1(c) / q1*(y, z), p/q2 = Q2(c) / q2*(y, z), each at least `clamp`, V = 1;
-//             Q1 = (1/M1) sum_j B_j G, Q2 = (1/M1) sum_j T_j of the iteration before
+//             Q1 = (1/M1) sum_j B_j G, Q2 = (1/M1) sum_j T_j of earlier iterations,
+//             averaged (as printed: of the one before)
 //             where Q2(c) = 0 only stage 1 helps: p/q1 takes the place of p/q2
 #include <algorithm>
 
@@ -37,6 +38,7 @@ struct Options {
     double cacheDensity;
     int cachePoints;  ///< N_c
     int qPoints;      ///< N_q
+    int qSets;        ///< earlier iterations whose Q are averaged
     double clamp;
     double defensive;  ///< d
     double untested;   ///< removeHidden
@@ -45,18 +47,13 @@ struct Options {
     bool nextEvent;
 };
 
-/// Q1 and Q2 by cache point.
-struct Normalisers {
-    std::vector<double> first, second;
-};
-
 class TwoStageDensity final : public ConnectionDensity {
   public:
     explicit TwoStageDensity(const Options& options) : options_(options) {}
 
-    void freeze(const CachePoints& points, const Normalisers& q, double expectedVertices) {
+    void freeze(const CachePoints& points, std::span<const double> q, double expectedVertices) {
         points_ = &points;
-        q_ = &q;
+        q_ = q;
         const auto m1 = double(options_.subpaths);
         uniform_ = m1 / expectedVertices;
     }
@@ -80,9 +77,9 @@ class TwoStageDensity final : public ConnectionDensity {
         double sum = 0.0;
         for (const std::uint32_t i : around) {
             const double g = std::min(c.geometry, points_->geometryLimit(i));
-            const double ratio1 = std::max(options_.clamp, q_->first[i] / (power * g));
-            const double ratio2 =
-                q_->second[i] > 0.0 ? std::max(options_.clamp, q_->second[i] / (flow * g)) : ratio1;
+            const double q1 = q_[2 * i], q2 = q_[2 * i + 1];
+            const double ratio1 = std::max(options_.clamp, q1 / (power * g));
+            const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
             sum += effective(ratio1, ratio2);
         }
         return sum / double(around.size());
@@ -97,7 +94,7 @@ class TwoStageDensity final : public ConnectionDensity {
 
     Options options_;
     const CachePoints* points_ = nullptr;
-    const Normalisers* q_ = nullptr;
+    std::span<const double> q_;  // Q1, Q2 by cache point
     double uniform_ = 1.0;
 };
 
@@ -110,7 +107,8 @@ struct Offer {
 
 class TwoStageResampling final : public Method {
   public:
-    explicit TwoStageResampling(const Options& options) : options_(options), density_(options) {}
+    explicit TwoStageResampling(const Options& options)
+        : options_(options), density_(options), earlier_(2, options.qSets, options.qPoints) {}
 
     // The first leaves cache points, the second finds their Q.
     int warmupIterations() const override { return 2; }
@@ -137,8 +135,7 @@ class TwoStageResampling final : public Method {
         perPoint_ = tree_.size() == 0 ? 0 : std::max<std::size_t>(2, options_.clusters);
         offers_.resize(points_.size() * perPoint_);
         offered_.assign(points_.size(), 0);
-        sums_.first.assign(points_.size(), 0.0);
-        sums_.second.assign(points_.size(), 0.0);
+        sums_.assign(2 * points_.size(), 0.0);
         if (perPoint_ == 0) return;
         std::vector<RayTally> tallies((points_.size() + kPointsPerChunk - 1) / kPointsPerChunk);
         context.threads.forEach(tallies.size(), [&](std::size_t chunk) {
@@ -179,8 +176,8 @@ class TwoStageResampling final : public Method {
         ++pools_;
         PhaseTimer timer(context.statistics, "cache points");
         CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
-        q_.first = carriedOver(points_, sums_.first, next, options_.qPoints, context.threads);
-        q_.second = carriedOver(points_, sums_.second, next, options_.qPoints, context.threads);
+        earlier_.add(std::move(points_), std::move(sums_));
+        q_ = earlier_.at(next, context.threads);
         points_ = std::move(next);
     }
 
@@ -204,7 +201,7 @@ class TwoStageResampling final : public Method {
         s.flows.clear();
         s.weights.clear();
         double power = 0.0;
-        for (const LightTree::Cluster& cluster : s.cut) {
+        for (const LightTree::Cluster cluster : s.cut) {
             const auto j = std::uint32_t(s.draws.size());
             const LightTree::Draw draw = tree_.draw(cluster, rng.uniformDouble());
             s.draws.push_back(draw);
@@ -213,7 +210,7 @@ class TwoStageResampling final : public Method {
             power += own / draw.pmf;
             const PathSpace::Arrival a = context.space.arrival(light, eye, false);
             const double g = std::min(a.geometry, limit), flow = double(mean(a.value));
-            sums_.first[c] += own / draw.pmf * g * perSubpath;
+            sums_[2 * c] += own / draw.pmf * g * perSubpath;
             s.flows.push_back(flow * g / draw.pmf);
             const double target =
                 options_.secondStage == SecondStage::Energy ? s.flows.back() : flow / own;
@@ -224,7 +221,7 @@ class TwoStageResampling final : public Method {
             return context.space.visible(light.back(), eye.back(), tally);
         });
         for (const WeightedVertex& w : s.weights) {
-            sums_.second[c] += s.flows[w.index] * perSubpath;
+            sums_[2 * c + 1] += s.flows[w.index] * perSubpath;
         }
         fill(c, power, perSubpath, s);
     }
@@ -254,8 +251,9 @@ class TwoStageResampling final : public Method {
 
     Options options_;
     TwoStageDensity density_;
-    CachePoints points_;  // of this iteration
-    Normalisers q_;       // by point, from the iteration before
+    CachePoints points_;     // of this iteration
+    std::vector<double> q_;  // Q1, Q2 by point, from earlier iterations
+    EarlierValues earlier_;
     std::uint64_t vertices_ = 0, pools_ = 0;
     std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;
@@ -264,7 +262,7 @@ class TwoStageResampling final : public Method {
     std::size_t perPoint_ = 0;
     std::vector<Offer> offers_;           // perPoint_ each
     std::vector<std::uint32_t> offered_;  // how many of them, by point
-    Normalisers sums_;                    // Q1, Q2 as this iteration has them, by point
+    std::vector<double> sums_;            // Q1, Q2 as this iteration has them, by point
 };
 
 }  // namespace
@@ -285,6 +283,8 @@ MethodRow twoStageResamplingRow() {
         {"cache_points", Kind::Integer, 3, 1, 16, "cache points that serve an eye vertex, N_c"},
         {"q_points", Kind::Integer, 3, 1, 16,
          "cache points of the last iteration whose Q are averaged, N_q"},
+        {"q_iterations", Kind::Integer, 16, 1, 256,
+         "earlier iterations whose Q are averaged; the paper: 1"},
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"},
         {"defensive", Kind::Real, 0.25, 1e-6, 1,
          "share of the second stage that goes by power alone"},
@@ -312,6 +312,7 @@ MethodRow twoStageResamplingRow() {
         o.cacheDensity = s.real("cache_density");
         o.cachePoints = int(s.integer("cache_points"));
         o.qPoints = int(s.integer("q_points"));
+        o.qSets = int(s.integer("q_iterations"));
         o.clamp = s.real("clamp");
         o.defensive = s.real("defensive");
         o.untested = s.real("untested");

@@ -71,7 +71,7 @@ std::vector<Case> everyRow() {
             for (std::size_t i = 0; i < p.choices.size(); ++i) {
                 if (double(i) != p.defaultValue) add(p.name + "=" + p.choices[i]);
             }
-            if (p.name == "cache_density") add("cache_density=6");
+            if (p.name == "cache_density") add("cache_density=2");
             if (p.name == "cache_points") add("cache_points=1");
             if (p.name == "untested") add("untested=0.3");
             if (p.name == "second_candidates") add("second_candidates=3");
