@@ -43,7 +43,7 @@ class ResampledDensity final : public ConnectionDensity {
         const auto around = points_->around(points_->serving(*c.eye.vertex));
         double sum = virtual_;
         for (const std::uint32_t i : around) {
-            const double target = value * std::min(c.geometry, points_->geometryLimit(i));
+            const double target = value * points_->trustedGeometry(i, *c.light.vertex, c.geometry);
             if (q_[i] > 0.0 && target > 0.0) {
                 sum += 1.0 / (perSubpath_ + rest_ * std::max(options_.clamp, q_[i] / target));
             }

@@ -4,9 +4,11 @@
 //   Y         all connectable vertices of M1 light subpaths, new in every iteration; a light tree
 //   stage 1   at each cache point c a cut of M2 clusters, bounded by power x G; from each cluster
 //             one y_j by P1 = beta(y_j) / B_j, B_j the cluster's sum of beta        [eq 14]
-//   stage 2   j by P2 = (1 - d) T_j / sum T + d B_j / sum B,
+//   stage 2   j by P2 = (1 - d) T_j / sum T + d U_j / sum U,
 //             T_j = q2*(y_j, c) / P1 (target over proposal), q2* = beta rho G V; or, as printed,
 //             T_j = q2* / q1*, q1* = beta G                                         [eq 16]
+//             U_j = B_j / distance^2, positive for all (B_j for vertices at infinity, whose
+//             beta is per area)
 //   pick      c uniform among the N_c cache points around z, j by P2:  h / (M1 P1 P2)
 //             (the printed 1 / (M1 M2) belongs to draws from one P1 over all of Y)
 //   MIS       the mean over the N_c points of                                       [eq 17]
@@ -76,7 +78,7 @@ class TwoStageDensity final : public ConnectionDensity {
         if (!(power > 0.0) || !(flow > 0.0)) return 0.0;  // in no cluster, or nothing to carry
         double sum = 0.0;
         for (const std::uint32_t i : around) {
-            const double g = std::min(c.geometry, points_->geometryLimit(i));
+            const double g = points_->trustedGeometry(i, *c.light.vertex, c.geometry);
             const double q1 = q_[2 * i], q2 = q_[2 * i + 1];
             const double ratio1 = std::max(options_.clamp, q1 / (power * g));
             const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
@@ -186,9 +188,17 @@ class TwoStageResampling final : public Method {
         std::vector<LightTree::CutNode> heap;
         std::vector<LightTree::Cluster> cut;
         std::vector<LightTree::Draw> draws;
-        std::vector<double> flows;  // q2* / P1 without visibility, by draw
+        std::vector<double> flows;     // q2* / P1 without visibility, by draw
+        std::vector<double> reserves;  // U_j
         std::vector<WeightedVertex> weights;
     };
+
+    /// G without cosines, so that nothing that has power is ever zero.
+    static double falloff(const PathVertex& light, const PathVertex& eye, double limit) {
+        if (light.infinite()) return 1.0;
+        const double d2 = lengthSquared(Vec3d(light.position) - Vec3d(eye.position));
+        return d2 * limit > 1.0 ? 1.0 / d2 : limit;
+    }
 
     /// Both stages at cache point `c`.
     void offer(std::uint32_t c, const IterationContext& context, RayTally& tally, Scratch& s) {
@@ -199,15 +209,15 @@ class TwoStageResampling final : public Method {
         Rng rng(context.seed, generation_, StreamKind::CacheDraw, c);
         s.draws.clear();
         s.flows.clear();
+        s.reserves.clear();
         s.weights.clear();
-        double power = 0.0;
         for (const LightTree::Cluster cluster : s.cut) {
             const auto j = std::uint32_t(s.draws.size());
             const LightTree::Draw draw = tree_.draw(cluster, rng.uniformDouble());
             s.draws.push_back(draw);
             const Subpath light = pool_->prefix(candidates_[draw.candidate]);
             const double own = double(mean(light.back().throughput));
-            power += own / draw.pmf;
+            s.reserves.push_back(own / draw.pmf * falloff(light.back(), eye.back(), limit));
             const PathSpace::Arrival a = context.space.arrival(light, eye, false);
             const double g = std::min(a.geometry, limit), flow = double(mean(a.value));
             sums_[2 * c] += own / draw.pmf * g * perSubpath;
@@ -223,21 +233,21 @@ class TwoStageResampling final : public Method {
         for (const WeightedVertex& w : s.weights) {
             sums_[2 * c + 1] += s.flows[w.index] * perSubpath;
         }
-        fill(c, power, perSubpath, s);
+        fill(c, perSubpath, s);
     }
 
     /// P2 over the draws.
-    void fill(std::uint32_t c, double power, double perSubpath, const Scratch& s) {
-        double total = 0.0;
+    void fill(std::uint32_t c, double perSubpath, const Scratch& s) {
+        double total = 0.0, reserve = 0.0;
         for (const WeightedVertex& w : s.weights) total += w.weight;
+        for (const double u : s.reserves) reserve += u;
         const double defensive = total > 0.0 ? options_.defensive : 1.0;
         double cdf = 0.0;
         auto weight = s.weights.begin();
         Offer* out = offers_.data() + c * perPoint_;
         for (std::uint32_t j = 0; j < s.draws.size(); ++j) {
             const LightTree::Draw& draw = s.draws[j];
-            const Subpath light = pool_->prefix(candidates_[draw.candidate]);
-            cdf += defensive * double(mean(light.back().throughput)) / (draw.pmf * power);
+            cdf += defensive * s.reserves[j] / reserve;
             if (weight != s.weights.end() && weight->index == j) {
                 cdf += (1.0 - defensive) * weight->weight / total;
                 ++weight;
@@ -287,7 +297,7 @@ MethodRow twoStageResamplingRow() {
          "earlier iterations whose Q are averaged; the paper: 1"},
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"},
         {"defensive", Kind::Real, 0.25, 1e-6, 1,
-         "share of the second stage that goes by power alone"},
+         "share of the second stage that goes by power and distance alone"},
         {"untested", Kind::Real, 0.0, 0, 1,
          "share of a pmf, its smallest entries, that no visibility rays are spent on"},
         {"target",
