@@ -17,6 +17,8 @@ enum class StreamKind : std::uint32_t {
     Warmup,      ///< light paths of the warm-up iterations that are thrown away
     Features,    ///< albedo, normal and depth layers
     User,        ///< tests and tools
+    CachePath,   ///< eye paths that leave cache points, index = path
+    CacheDraw,   ///< draws at a cache point, index = cache point
 };
 
 /// One stream of uniform numbers: Philox4x32-7 [Salmon et al. 2011], the fewest rounds that pass

@@ -42,12 +42,7 @@ void setSource(FullPath& path, const Lights& lights, const PathVertex& source, c
     path.delta[0] = false;
 }
 
-/// What leaves a connection's end: its BSDF, or the emission profile of y_0.
-struct EndValue {
-    Rgb f;
-    float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
-    float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
-};
+}  // namespace
 
 EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye) {
     if (y.index == 0) {
@@ -57,8 +52,6 @@ EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye) {
     const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
     return {e.f, e.pdfWToEye, e.pdfWToLight};
 }
-
-}  // namespace
 
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
     const PathVertex& z = eye.back();

@@ -17,6 +17,15 @@ struct Closed {
     Vec2 raster;  ///< splats: where the lens sees it
 };
 
+/// What leaves a connection's end towards the other: its BSDF, or the emission profile of y_0.
+struct EndValue {
+    Rgb f;
+    float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
+    float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
+};
+/// That of a light subpath's last vertex; `toEye` is unit.
+EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye);
+
 /// s = 0: the eye path's last vertex lies on a light. Empty where it emits nothing this way. Fills
 /// `path`.
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path);

@@ -1,7 +1,6 @@
 #include "libcore/bidir/integrator.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace lacuna {
@@ -10,36 +9,8 @@ namespace {
 constexpr std::uint64_t kPathsPerChunk = 1024;     // light subpaths per task
 constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
 constexpr int kTile = 16;                          // eye paths: tiles of kTile^2 pixels
-constexpr std::size_t kReplaysKept = 8;
-
-/// Adds the time between construction and destruction to a phase.
-class PhaseTimer {
-  public:
-    PhaseTimer(IterationStatistics& statistics, const char* phase)
-        : seconds_(statistics.phaseSeconds[phase]), start_(Clock::now()) {}
-    ~PhaseTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    double& seconds_;
-    Clock::time_point start_;
-};
+constexpr std::size_t kReplaysKept = IterationStatistics::kReplaysKept;
 }  // namespace
-
-std::uint64_t IterationStatistics::totalRays() const {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t n : rays) sum += n;
-    return sum;
-}
-
-void IterationStatistics::add(const IterationStatistics& other) {
-    for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += other.rays[i];
-    invalidSamples += other.invalidSamples;
-    for (const std::string& r : other.invalidReplays) {
-        if (invalidReplays.size() < kReplaysKept) invalidReplays.push_back(r);
-    }
-    for (const auto& [phase, seconds] : other.phaseSeconds) phaseSeconds[phase] += seconds;
-}
 
 /// A splat's technique and its value without the weight: only where --techniques asks for it.
 struct TechniqueSplat {
@@ -98,15 +69,22 @@ Techniques BidirIntegrator::freeze(std::uint32_t iteration) {
     return t;
 }
 
+IterationContext BidirIntegrator::context(IterationStatistics& statistics) const {
+    const Camera::Film film = camera_.film();
+    return {space_, threads_, settings_.seed,
+            std::uint64_t(film.width) * std::uint64_t(film.height), statistics};
+}
+
 bool BidirIntegrator::warmUp(const std::atomic<bool>& cancel, IterationStatistics& statistics) {
     PhaseTimer timer(statistics, "warm-up");
     for (int i = 0; i < method_.warmupIterations(); ++i) {
-        method_.freeze(std::uint32_t(i));
+        techniques_ = freeze(std::uint32_t(i));
         if (!lightPass(std::uint32_t(i), StreamKind::Warmup, false, cancel, statistics)) {
             return false;
         }
-        method_.prepare(pool_);
-        method_.observe(pool_);
+        IterationContext context = this->context(statistics);
+        method_.prepare(pool_, context);
+        method_.observe(pool_, context);
     }
     return true;
 }
@@ -116,19 +94,23 @@ bool BidirIntegrator::render(std::uint32_t iteration, std::span<Rgb> pixels,
     pixels_ = pixels;
     std::fill(pixels_.begin(), pixels_.end(), Rgb{});
     techniques_ = freeze(iteration);
+    IterationContext context = this->context(statistics);
     {
         PhaseTimer timer(statistics, "light paths");
         if (!lightPass(iteration, StreamKind::LightPath, true, cancel, statistics)) return false;
     }
     {
         PhaseTimer timer(statistics, "prepare");
-        method_.prepare(pool_);
+        method_.prepare(pool_, context);
     }
     if (techniqueSet_.hits || techniqueSet_.connects) {
         PhaseTimer timer(statistics, "eye paths");
         if (!eyePass(iteration, cancel, statistics)) return false;
     }
-    method_.observe(pool_);
+    {
+        PhaseTimer timer(statistics, "observe");
+        method_.observe(pool_, context);
+    }
     if (techniqueFilm_) techniqueFilm_->countIteration();
     return true;
 }
@@ -163,6 +145,7 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
                 Rng rng(settings_.seed, iteration, kind, i);
                 walker_.traceLight(rng, chunk.tally, worker.light);
                 if (i < pooled) {
+                    techniques_.tag(worker.light);
                     chunk.vertices.insert(chunk.vertices.end(), worker.light.begin(),
                                           worker.light.end());
                 }
@@ -223,6 +206,7 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
     if (techniqueSet_.ownLightPath) {
         Rng rng(settings_.seed, iteration, StreamKind::LightPath, filmIndex);
         walker_.traceLight(rng, chunk.tally, worker.light);
+        techniques_.tag(worker.light);
         if (techniqueSet_.splats && filmIndex < lightPaths_) {
             splatLightPath(worker.light, iteration, filmIndex, rng, worker, chunk);
         }
@@ -246,6 +230,7 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
             int(t) > settings_.limits.maxDepth) {
             continue;
         }
+        techniques_.tag({&worker.eye[t - 1], 1});
         worker.proposals.clear();
         method_.select({z, eye, worker.light, filmIndex, iteration, walker_}, selection,
                        worker.proposals);
@@ -262,8 +247,8 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
     }
 }
 
-void BidirIntegrator::splatLightPath(Subpath path, std::uint32_t iteration, std::uint64_t index,
-                                     Rng& rng, Worker& worker, Chunk& chunk) {
+void BidirIntegrator::splatLightPath(std::span<PathVertex> path, std::uint32_t iteration,
+                                     std::uint64_t index, Rng& rng, Worker& worker, Chunk& chunk) {
     const PixelRect& crop = settings_.crop;
     const PathVertex z0 = walker_.sampleLens(rng);
     for (std::size_t s = 1; s <= path.size(); ++s) {
@@ -276,6 +261,7 @@ void BidirIntegrator::splatLightPath(Subpath path, std::uint32_t iteration, std:
         if (!connected(scene_, light.back(), z0, RayKind::Splat, chunk.tally)) continue;
         const auto pixel =
             std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
+        techniques_.tag(path.first(s));  // here, because most light paths are never seen
         deliver(*closed, nullptr, 1.0 / double(lightPaths_), iteration, index, pixel, nullptr,
                 worker, chunk);
     }
@@ -319,7 +305,7 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
 void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& statistics) {
     std::vector<std::vector<Splat>> splats;
     for (Chunk& chunk : chunks) {
-        for (std::size_t i = 0; i < kRayKinds; ++i) statistics.rays[i] += chunk.tally.counts[i];
+        statistics.add(chunk.tally);
         statistics.invalidSamples += chunk.invalidSamples;
         for (std::string& r : chunk.invalidReplays) {
             if (statistics.invalidReplays.size() < kReplaysKept) {
@@ -344,7 +330,8 @@ BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t iteration
     if (method_.pool().subpaths > 0) {
         lightPass(iteration, StreamKind::LightPath, false, never, ignored);
     }
-    method_.prepare(pool_);
+    IterationContext context = this->context(ignored);
+    method_.prepare(pool_, context);
     Chunk chunk;
     Rgb pixel;
     const PathObserver before = std::exchange(observer_, observer);

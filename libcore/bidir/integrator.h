@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "libcore/bidir/connect.h"
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/method.h"
+#include "libcore/bidir/path_space.h"
 #include "libcore/bidir/walk.h"
 
 namespace lacuna {
@@ -38,17 +38,6 @@ struct PathEvent {
 };
 /// Called from many threads at once; for values that are not finite too.
 using PathObserver = std::function<void(const PathEvent&)>;
-
-/// What an iteration counted, merged in an order that does not depend on threads.
-struct IterationStatistics {
-    RayCounts rays{};
-    std::uint64_t invalidSamples = 0;
-    std::vector<std::string> invalidReplays;  ///< --replay arguments of the first few
-    std::map<std::string, double> phaseSeconds;
-
-    std::uint64_t totalRays() const;
-    void add(const IterationStatistics& other);
-};
 
 class BidirIntegrator {
   public:
@@ -96,13 +85,14 @@ class BidirIntegrator {
     bool eyePass(std::uint32_t iteration, const std::atomic<bool>& cancel,
                  IterationStatistics& statistics);
     void eyePath(std::uint32_t iteration, int x, int y, Worker& worker, Chunk& chunk, Rgb& pixel);
-    void splatLightPath(Subpath path, std::uint32_t iteration, std::uint64_t index, Rng& rng,
-                        Worker& worker, Chunk& chunk);
+    void splatLightPath(std::span<PathVertex> path, std::uint32_t iteration, std::uint64_t index,
+                        Rng& rng, Worker& worker, Chunk& chunk);
     void deliver(const Closed& closed, const Proposal* proposal, double scale,
                  std::uint32_t iteration, std::uint64_t sample, std::uint32_t pixelIndex,
                  Rgb* ownPixel, Worker& worker, Chunk& chunk);
     void collect(std::vector<Chunk>& chunks, IterationStatistics& statistics);
     Techniques freeze(std::uint32_t iteration);
+    IterationContext context(IterationStatistics& statistics) const;
 
     const Scene& scene_;
     const Camera& camera_;
@@ -111,6 +101,7 @@ class BidirIntegrator {
     RenderSettings settings_;
     const ThreadPool& threads_;
     Walker walker_;
+    ScenePaths space_{walker_};
     std::uint64_t lightPaths_;
     Techniques techniques_;
     LightPool pool_;

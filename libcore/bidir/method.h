@@ -15,8 +15,11 @@
 #include "libcore/base/rng.h"
 #include "libcore/bidir/mis.h"
 #include "libcore/bidir/path.h"
+#include "libcore/bidir/statistics.h"
 
 namespace lacuna {
+
+class ThreadPool;
 
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
 /// prefix of any vertex is the `count` entries that end with it.
@@ -100,6 +103,34 @@ class LightSampler {
     virtual bool sampleLight(Rng& rng, PathVertex& out) const = 0;
 };
 
+/// The space that paths live in, as far as methods look at it outside of select(). Implemented for
+/// scenes (path_space.h) and by tests on finite spaces.
+class PathSpace {
+  public:
+    virtual ~PathSpace() = default;
+
+    /// Replaces `out` by an eye subpath through a uniform point of the whole film.
+    virtual void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const = 0;
+
+    /// What arrives where a light subpath meets an eye subpath's last vertex, visibility left out.
+    struct Arrival {
+        Rgb value;            ///< beta rho at the light's end; times rho at the eye's if asked for
+        double geometry = 0;  ///< G
+    };
+    /// Zero where the eye's last vertex would scatter nothing of it, asked for or not.
+    virtual Arrival arrival(Subpath light, Subpath eye, bool throughEye) const = 0;
+    virtual bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const = 0;
+};
+
+/// What prepare() and observe() may use and must account for.
+struct IterationContext {
+    const PathSpace& space;
+    const ThreadPool& threads;
+    std::uint64_t seed;
+    std::uint64_t filmPixels;  ///< of the whole film, whatever the crop
+    IterationStatistics& statistics;
+};
+
 /// What a selector may look at.
 struct EyeContext {
     const PathVertex& vertex;  ///< z_{t-1}
@@ -138,11 +169,15 @@ class Method {
     /// Valid until the next call.
     virtual const ConnectionDensity& freeze(std::uint32_t iteration) = 0;
     /// Builds this iteration's pmfs, trees, bins. `pool` stays valid and unchanged until observe().
-    virtual void prepare(const LightPool& pool) { (void)pool; }
+    virtual void prepare(const LightPool& pool, IterationContext& context) {
+        (void)pool, (void)context;
+    }
     /// Appends 0..n proposals. Called from many threads at once.
     virtual void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const = 0;
     /// What later iterations may learn from; after warm-ups as well.
-    virtual void observe(const LightPool& pool) { (void)pool; }
+    virtual void observe(const LightPool& pool, IterationContext& context) {
+        (void)pool, (void)context;
+    }
     /// Whether an iteration depends on earlier ones beyond the warm-up: --replay then runs them
     /// again.
     virtual bool learns() const { return false; }

@@ -6,7 +6,7 @@ void FullPath::fillLightThroughputs(int rouletteDepth) {
     beta[0] = sourceBeta;
     for (int i = 1; i < edges; ++i) {
         // beta_i = beta_{i-1} f G / p(x_i): both steps of the measure in double.
-        const double g = edgeBetween(*vertex[i - 1], *vertex[i]).geometry;
+        const double g = geometry[i - 1] = edgeBetween(*vertex[i - 1], *vertex[i]).geometry;
         const double pdf = double(lightPdfA[i]) * lightRoulette(i, rouletteDepth);
         beta[i] = pdf > 0.0 ? beta[i - 1] * scatter[i - 1] * float(g / pdf) : Rgb{};
     }
@@ -17,9 +17,12 @@ namespace {
 /// The part of effectiveCount that reads more than two flags.
 double samplesByDensity(const FullPath& path, const Techniques& techniques, int t) {
     const int s = path.edges + 1 - t;
-    const ConnectionEnd eye{path.vertex[s], path.vertex[s + 1], t};
-    const ConnectionEnd light{path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s};
-    return techniques.connections->effectiveSamples(eye, light, path.beta[s - 1]);
+    return techniques.connections->effectiveSamples(
+        {.eye = {path.vertex[s], path.vertex[s + 1], t, path.scatter[s]},
+         .light = {path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s,
+                   path.scatter[s - 1]},
+         .beta = path.beta[s - 1],
+         .geometry = path.geometry[s - 1]});
 }
 
 }  // namespace

@@ -27,6 +27,14 @@ struct ConnectionEnd {
     const PathVertex*
         predecessor;  ///< in this role: towards the light, or towards the lens; may be null
     int count;        ///< s for the light's end, t for the eye's
+    Rgb scatter;      ///< f between predecessor and the other end (y_0: emission profile)
+};
+
+/// The edge that a strategy closes a path by.
+struct Connection {
+    ConnectionEnd eye, light;
+    Rgb beta;         ///< throughput that light tracing would have had at the light's end
+    double geometry;  ///< G of the edge
 };
 
 /// What MIS believes about the selector: the effective number of samples n r of methods.md that
@@ -43,9 +51,17 @@ class ConnectionDensity {
     virtual ~ConnectionDensity() = default;
     /// Set: effectiveSamples is never asked.
     virtual std::optional<Constants> constants() const { return std::nullopt; }
-    /// `beta` is the throughput that light tracing would have had at the light's end.
-    virtual double effectiveSamples(const ConnectionEnd& eye, const ConnectionEnd& light,
-                                    const Rgb& beta) const = 0;
+    virtual double effectiveSamples(const Connection& connection) const = 0;
+
+    /// Whether surface vertices are to be tagged, once each, before they are part of a path that
+    /// is weighted or connected.
+    virtual bool tagsVertices() const { return false; }
+    /// The tag: a function of the vertex and of frozen data. effectiveSamples must do with vertices
+    /// that have none.
+    virtual std::uint32_t tagOf(const PathVertex& vertex) const {
+        (void)vertex;
+        return kNone;
+    }
 };
 
 /// How many samples each technique has, as seen from every other one: fixed for an iteration.
@@ -53,13 +69,22 @@ struct Techniques {
     bool hit = false;   ///< s = 0: eye paths that run into a light
     double splats = 0;  ///< t = 1: light paths that splat (L); 0: there is no such technique
     const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
-    /// connections->constants(), looked up once. Set both by connectThrough.
+    /// connections->constants(), looked up once. Set all three by connectThrough.
     std::optional<ConnectionDensity::Constants> constants = std::nullopt;
+    bool tags = false;      ///< connections->tagsVertices(), likewise
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
     void connectThrough(const ConnectionDensity& density) {
         connections = &density;
         constants = density.constants();
+        tags = density.tagsVertices();
+    }
+    /// Tags those of a walk's vertices that have no tag yet, where the density wants it.
+    void tag(std::span<PathVertex> vertices) const {
+        if (!tags) return;
+        for (PathVertex& v : vertices) {
+            if (v.kind == VertexKind::Surface && v.tag == kNone) v.tag = connections->tagOf(v);
+        }
     }
 };
 
@@ -94,6 +119,7 @@ struct FullPath {
     }
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     std::array<Rgb, kMaxEdges + 1> beta;
+    std::array<double, kMaxEdges + 1> geometry;  ///< G of the edge x_i, x_{i+1}; filled likewise
     void fillLightThroughputs(int rouletteDepth);
 };
 

@@ -39,6 +39,9 @@ struct PathVertex {
     float toPreviousFactor = 0;   ///< |cos at the previous| / d^2: solid angle here to its measure
     std::uint32_t light = kNone;  ///< light of this point, if it emits
     Vec2 lightUv;                 ///< barycentric on it
+    /// What the method's density keeps for this vertex (ConnectionDensity::tagOf), so that it is
+    /// looked up once and not once per path; kNone: nothing, or not looked up.
+    std::uint32_t tag = kNone;
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
     std::uint16_t index = 0;                    ///< 0 on the light or the lens

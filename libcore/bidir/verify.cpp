@@ -159,9 +159,12 @@ class Products {
         if (const auto c = techniques_.connections->constants()) {
             return s == 1 ? c->direct : c->indirect;
         }
+        const auto v = std::size_t(s);
         return techniques_.connections->effectiveSamples(
-            {&x(s), &x(s + 1), t}, {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s},
-            beta_[std::size_t(s) - 1]);
+            {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
+             .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
+             .beta = beta_[v - 1],
+             .geometry = geometry_[v - 1]});
     }
 
     /// log(n_t r_t p_t).

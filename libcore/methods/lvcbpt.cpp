@@ -26,7 +26,7 @@ class LightVertexCache final : public Method {
         return density_;
     }
 
-    void prepare(const LightPool& pool) override {
+    void prepare(const LightPool& pool, IterationContext&) override {
         pool_ = &pool;
         candidates_.clear();
         for (const LightPool::Entry& e : pool.connectable()) {
@@ -44,7 +44,7 @@ class LightVertexCache final : public Method {
         }
     }
 
-    void observe(const LightPool&) override {
+    void observe(const LightPool&, IterationContext&) override {
         if (warm_) return;
         expectedVertices_ = double(candidates_.size());
         warm_ = true;

@@ -5,10 +5,13 @@
 
 namespace lacuna {
 
-MethodRow pathTracingRow();    // pt.cpp
-MethodRow lightTracingRow();   // lt.cpp
-MethodRow bidirectionalRow();  // bpt.cpp
-MethodRow lvcRow();            // lvcbpt.cpp
+MethodRow pathTracingRow();               // pt.cpp
+MethodRow lightTracingRow();              // lt.cpp
+MethodRow bidirectionalRow();             // bpt.cpp
+MethodRow lvcRow();                       // lvcbpt.cpp
+MethodRow probabilisticConnectionsRow();  // pcbpt.cpp
+MethodRow resamplingAwareRow();           // risbpt.cpp
+MethodRow twoStageResamplingRow();        // tsr.cpp
 
 /// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
 Parameter lightPathsParameter();
@@ -23,9 +26,8 @@ class ConstantDensity final : public ConnectionDensity {
   public:
     ConstantDensity(double direct, double indirect) : constants_{direct, indirect} {}
     std::optional<Constants> constants() const override { return constants_; }
-    double effectiveSamples(const ConnectionEnd&, const ConnectionEnd& light,
-                            const Rgb&) const override {
-        return light.count == 1 ? constants_.direct : constants_.indirect;
+    double effectiveSamples(const Connection& c) const override {
+        return c.light.count == 1 ? constants_.direct : constants_.indirect;
     }
 
   private:

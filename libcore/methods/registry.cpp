@@ -9,8 +9,13 @@
 namespace lacuna {
 
 std::span<const MethodRow> methods() {
-    static const std::vector<MethodRow> rows = {pathTracingRow(), lightTracingRow(),
-                                                bidirectionalRow(), lvcRow()};
+    static const std::vector<MethodRow> rows = {pathTracingRow(),
+                                                lightTracingRow(),
+                                                bidirectionalRow(),
+                                                lvcRow(),
+                                                probabilisticConnectionsRow(),
+                                                resamplingAwareRow(),
+                                                twoStageResamplingRow()};
     return rows;
 }
 

@@ -12,8 +12,8 @@
 namespace lacuna {
 
 const char* name(RayKind kind) {
-    static constexpr const char* kNames[kRayKinds] = {"camera", "eye", "light", "connection",
-                                                      "splat"};
+    static constexpr const char* kNames[kRayKinds] = {"camera",     "eye",   "light",
+                                                      "connection", "splat", "cache"};
     return kNames[std::size_t(kind)];
 }
 
@@ -184,7 +184,8 @@ std::size_t Accel::replay(std::span<const RecordedRay> rays) const {
     for (const RecordedRay& recorded : rays) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        const bool any = recorded.kind == RayKind::Connection || recorded.kind == RayKind::Splat;
+        const bool any = recorded.kind == RayKind::Connection || recorded.kind == RayKind::Splat ||
+                         recorded.kind == RayKind::Cache;
         if (any) {
             RTCRay r;
             fill(r, recorded.ray);

@@ -12,7 +12,7 @@
 namespace lacuna {
 
 /// What a ray is traced for; rays are counted by kind.
-enum class RayKind : std::uint8_t { Camera, EyeWalk, LightWalk, Connection, Splat, Count };
+enum class RayKind : std::uint8_t { Camera, EyeWalk, LightWalk, Connection, Splat, Cache, Count };
 inline constexpr std::size_t kRayKinds = std::size_t(RayKind::Count);
 const char* name(RayKind kind);
 

@@ -55,6 +55,7 @@ double weightByWalks(FullPath& path, const Techniques& techniques, int made) {
                              ? double(edgeBetween(*path.vertex[i - 1], *path.vertex[i]).geometry)
                              : cosine * double(end.toPreviousFactor);
         const double pdf = double(path.lightPdfA[i]) * path.lightRoulette(i, depth);
+        path.geometry[i - 1] = g;
         path.beta[i] = pdf > 0 ? path.beta[i - 1] * path.scatter[i - 1] * float(g / pdf) : Rgb{};
     }
     // Densities of the strategies relative to the one that made the path.
@@ -164,12 +165,14 @@ class Frozen final : public Method {
         if (!density_) density_ = &method_.freeze(iteration);
         return *density_;
     }
-    void prepare(const LightPool& pool) override { method_.prepare(pool); }
+    void prepare(const LightPool& pool, IterationContext& context) override {
+        method_.prepare(pool, context);
+    }
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         method_.select(context, rng, sink);
     }
-    void observe(const LightPool& pool) override {
-        if (!warm_) method_.observe(pool);
+    void observe(const LightPool& pool, IterationContext& context) override {
+        if (!warm_) method_.observe(pool, context);
     }
     void endWarmUp() { warm_ = true; }
 

@@ -44,7 +44,7 @@ TEST(Rng, EveryPartOfTheAddressMakesAStream) {
     std::size_t streams = 0;
     for (const std::uint64_t seed : {0ull, 1ull, 1ull << 32, 0xffffffffffffffffull}) {
         for (const std::uint32_t iteration : {0u, 1u, 0xffffffffu}) {
-            for (int kind = 0; kind <= int(StreamKind::User); ++kind) {
+            for (int kind = 0; kind <= int(StreamKind::CacheDraw); ++kind) {
                 for (const std::uint64_t index : {0ull, 1ull, 255ull, 256ull, 1ull << 31,
                                                   1ull << 32, 1ull << 33, (1ull << 56) - 1}) {
                     seen.insert(draw({seed, iteration, StreamKind(kind), index}, 4));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "libcore/base/parallel.h"
 #include "libcore/material/albedo_tables.h"
 
 namespace lacuna::test {
@@ -226,11 +227,33 @@ Rgb FiniteSpace::splat(Subpath light) const {
     return light.back().throughput * f * float(geometry(here, kLens) * importance_[here]);
 }
 
+/// f at a light subpath's end towards a state.
+Rgb FiniteSpace::towards(Subpath light, int to) const {
+    const int here = stateOf(light.back());
+    return light.size() == 1 ? profile_[here][to]
+                             : scatter_[stateOf(light[light.size() - 2])][here][to];
+}
+
+void FiniteSpace::traceEye(Rng& rng, RayTally&, std::vector<PathVertex>& out) const {
+    traceEye(rng, out);
+}
+
+PathSpace::Arrival FiniteSpace::arrival(Subpath light, Subpath eye, bool throughEye) const {
+    const int y = stateOf(light.back()), z = stateOf(eye.back());
+    if (y == z) return {};
+    Rgb value = light.back().throughput * towards(light, z);
+    if (throughEye) value *= scatter_[y][z][stateOf(eye[eye.size() - 2])];
+    return {value, geometry(y, z)};
+}
+
+bool FiniteSpace::visible(const PathVertex& light, const PathVertex& eye, RayTally&) const {
+    return visible_[stateOf(light)][stateOf(eye)];
+}
+
 Rgb FiniteSpace::connect(Subpath light, Subpath eye) const {
     const int y = stateOf(light.back()), z = stateOf(eye.back());
     if (y == z || !visible_[y][z]) return {};
-    const Rgb fy =
-        light.size() == 1 ? profile_[y][z] : scatter_[stateOf(light[light.size() - 2])][y][z];
+    const Rgb fy = towards(light, z);
     const Rgb fz = scatter_[y][z][stateOf(eye[eye.size() - 2])];
     return light.back().throughput * fy * fz * eye.back().throughput * float(geometry(y, z));
 }
@@ -246,6 +269,9 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
         row.techniques.ownLightPath
             ? kPixels
             : (settings.values().contains("light_paths") ? settings.integer("light_paths") : 1);
+    const ThreadPool threads(1);
+    IterationStatistics statistics;
+    IterationContext context{space, threads, seed, kPixels, statistics};
     FullPath path;
     std::vector<PathVertex> lightPath, eyePath;
     ProposalSink sink;
@@ -260,6 +286,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
         for (std::uint64_t i = 0; i < total; ++i) {
             Rng rng(seed, iteration, kind, i);
             space.traceLight(rng, lightPath);
+            techniques.tag(lightPath);
             if (i < pooled) pool.add(lightPath, FiniteSpace::kMaxEdges);
             if (!splat || !set.splats || i >= splatPaths) continue;
             for (std::size_t s = 1; s <= lightPath.size(); ++s) {
@@ -287,8 +314,8 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
     for (int i = 0; i < method->warmupIterations(); ++i) {
         const Techniques t = techniquesOf(std::uint32_t(i));
         trace(std::uint32_t(i), StreamKind::Warmup, false, t);
-        method->prepare(pool);
-        method->observe(pool);
+        method->prepare(pool, context);
+        method->observe(pool, context);
     }
 
     const double truth = mean(space.exact(techniquesOf(0)));
@@ -297,7 +324,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
         const auto iteration = std::uint32_t(n - 1);
         const Techniques techniques = techniquesOf(iteration);
         double value = trace(iteration, StreamKind::LightPath, true, techniques);
-        method->prepare(pool);
+        method->prepare(pool, context);
         for (std::uint32_t pixel = 0; pixel < kPixels && (set.hits || set.connects); ++pixel) {
             double pixelValue = 0;
             lightPath.clear();
@@ -317,6 +344,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
             }
             Rng rng(seed, iteration, StreamKind::EyePath, pixel);
             space.traceEye(rng, eyePath);
+            techniques.tag(eyePath);
             Rng selection(seed, iteration, StreamKind::Connection, pixel);
             for (std::size_t t = 2; t <= eyePath.size(); ++t) {
                 const Subpath eye(eyePath.data(), t);
@@ -341,7 +369,7 @@ FiniteEstimate estimate(const FiniteSpace& space, const MethodRow& row,
             }
             value += pixelValue / kPixels;
         }
-        method->observe(pool);
+        method->observe(pool, context);
         sum += value;
         squares += value * value;
         if (n % 1024 == 0) {

@@ -16,7 +16,7 @@
 
 namespace lacuna::test {
 
-class FiniteSpace final : public LightSampler {
+class FiniteSpace final : public LightSampler, public PathSpace {
   public:
     static constexpr int kStates = 9, kLens = 8, kEmitters = 2, kMaxEdges = 6;
     static constexpr int kRouletteDepth = 2;
@@ -30,6 +30,10 @@ class FiniteSpace final : public LightSampler {
     void traceLight(Rng& rng, std::vector<PathVertex>& out) const;
     void traceEye(Rng& rng, std::vector<PathVertex>& out) const;
     bool sampleLight(Rng& rng, PathVertex& out) const override;
+
+    void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const override;
+    Arrival arrival(Subpath light, Subpath eye, bool throughEye) const override;
+    bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const override;
 
     static int stateOf(const PathVertex& v) { return int(v.position.x * 100.0f); }
     bool visible(int a, int b) const { return visible_[a][b]; }
@@ -50,6 +54,7 @@ class FiniteSpace final : public LightSampler {
     using Table3 = std::array<Table2<T>, kStates>;
 
     double geometry(int a, int b) const;
+    Rgb towards(Subpath light, int to) const;
     PathVertex vertexAt(int state) const;
     void goOn(Side side, Rng& rng, std::vector<PathVertex>& out) const;
     Rgb value(const std::vector<int>& states) const;

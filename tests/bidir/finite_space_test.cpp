@@ -54,16 +54,27 @@ TEST_P(FiniteSpacePoolsSlow, meetsTheEnumeratedTruth) {
     expectTruth(GetParam().row, GetParam().settings, 1e-3);
 }
 
-/// Every row as it is, and with next event switched where it can be.
+/// Every row as it is, with next event switched where it can be, with every other choice that a
+/// parameter offers, and where it has cache points with more of them than the space has states.
 std::vector<Case> everyRow() {
     std::vector<Case> cases;
     for (const MethodRow& row : allRows()) {
         cases.push_back({row, settingsOf(row, 4)});
+        const auto add = [&](const std::string& setting) {
+            cases.push_back({row, settingsOf(row, 4)});
+            cases.back().settings.push_back(setting);
+        };
         for (const Parameter& p : row.parameters) {
-            if (p.name != "next_event") continue;
-            cases.push_back(cases.back());
-            cases.back().settings.push_back(p.defaultValue != 0.0 ? "next_event=off"
-                                                                  : "next_event=on");
+            if (p.name == "next_event") {
+                add(p.defaultValue != 0.0 ? "next_event=off" : "next_event=on");
+            }
+            for (std::size_t i = 0; i < p.choices.size(); ++i) {
+                if (double(i) != p.defaultValue) add(p.name + "=" + p.choices[i]);
+            }
+            if (p.name == "cache_density") add("cache_density=2");
+            if (p.name == "cache_points") add("cache_points=1");
+            if (p.name == "untested") add("untested=0.3");
+            if (p.name == "second_candidates") add("second_candidates=3");
         }
     }
     return cases;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libcore/base/parallel.h"
 #include "tests/bidir/finite_space.h"
 #include "tests/bidir/test_rows.h"
 
@@ -12,6 +13,9 @@ namespace {
 
 TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
     const FiniteSpace space(3);
+    const ThreadPool threads(1);
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 20, 1000, statistics};
     constexpr int kSubpaths = 5, kDraws = 400000;
     // 4.5 standard errors: 7e-6 false alarms per comparison, about 10 comparisons.
     for (const MethodRow& row : allRows()) {
@@ -30,9 +34,9 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         ASSERT_GE(pool.connectable().size(), 5u);
         ASSERT_LE(pool.connectable().size(), 25u);
         // Retaining rows see the same pool as the one they kept.
-        method->prepare(pool);
-        method->observe(pool);
-        method->prepare(pool);
+        method->prepare(pool, context);
+        method->observe(pool, context);
+        method->prepare(pool, context);
 
         std::vector<PathVertex> eye;
         Rng eyeRng(22, 0, StreamKind::EyePath, 0);

@@ -16,7 +16,7 @@ class Potpourri final : public Method {
     PoolRequest pool() const override { return {subpaths_}; }
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
 
-    void prepare(const LightPool& pool) override {
+    void prepare(const LightPool& pool, IterationContext&) override {
         pool_ = &pool;
         current_ = byLength(pool);
     }
@@ -40,7 +40,7 @@ class Potpourri final : public Method {
         }
     }
 
-    void observe(const LightPool& pool) override {
+    void observe(const LightPool& pool, IterationContext&) override {
         keptPool_ = pool;
         kept_ = byLength(keptPool_);
     }
@@ -68,12 +68,10 @@ class Potpourri final : public Method {
 
 class HashedDensity final : public ConnectionDensity {
   public:
-    double effectiveSamples(const ConnectionEnd& eye, const ConnectionEnd& light,
-                            const Rgb& beta) const override {
-        const double h =
-            double((cell(*eye.vertex) * 73856093u ^ cell(*light.vertex) * 19349663u) % 1000u + 1u) /
-            1000.0;
-        return h * std::pow(double(mean(beta)), 0.7);
+    double effectiveSamples(const Connection& c) const override {
+        const std::uint32_t hash =
+            cell(*c.eye.vertex) * 73856093u ^ cell(*c.light.vertex) * 19349663u;
+        return double(hash % 1000u + 1u) / 1000.0 * std::pow(double(mean(c.beta)), 0.7);
     }
 
   private:
@@ -88,7 +86,7 @@ class UniformUnderHash final : public Method {
     explicit UniformUnderHash(std::uint64_t subpaths) : subpaths_(subpaths) {}
     PoolRequest pool() const override { return {subpaths_}; }
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
-    void prepare(const LightPool& pool) override { pool_ = &pool; }
+    void prepare(const LightPool& pool, IterationContext&) override { pool_ = &pool; }
     void select(const EyeContext&, Rng& rng, ProposalSink& sink) const override {
         const auto n = std::uint32_t(pool_->connectable().size());
         if (n == 0) return;

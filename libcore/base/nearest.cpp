@@ -1,0 +1,70 @@
+#include "libcore/base/nearest.h"
+
+#include <algorithm>
+#include <array>
+#include <nanoflann.hpp>
+#include <utility>
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::size_t kPointsPerLeaf = 8;
+constexpr std::size_t kStackResults = 16;
+
+struct Points {
+    std::vector<Vec3> points;
+
+    // Names that nanoflann asks for.
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+        const Vec3& p = points[i];
+        return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
+                                                 Points, 3, std::uint32_t>;
+
+}  // namespace
+
+struct NearestPoints::Impl {
+    explicit Impl(std::vector<Vec3> p) : points{std::move(p)}, tree(3, points, {kPointsPerLeaf}) {}
+    Points points;
+    Tree tree;
+};
+
+NearestPoints::NearestPoints() = default;
+NearestPoints::NearestPoints(std::vector<Vec3> points) {
+    if (!points.empty()) impl_ = std::make_unique<Impl>(std::move(points));
+}
+NearestPoints::~NearestPoints() = default;
+NearestPoints::NearestPoints(NearestPoints&&) noexcept = default;
+NearestPoints& NearestPoints::operator=(NearestPoints&&) noexcept = default;
+
+std::size_t NearestPoints::size() const {
+    return impl_ ? impl_->points.points.size() : 0;
+}
+
+Vec3 NearestPoints::point(std::uint32_t index) const {
+    return impl_->points.points[index];
+}
+
+std::size_t NearestPoints::find(Vec3 p, std::span<std::uint32_t> out) const {
+    if (!impl_ || out.empty()) return 0;
+    const float query[3] = {p.x, p.y, p.z};
+    std::array<float, kStackResults> few;
+    std::vector<float> many;
+    float* distances = few.data();
+    if (out.size() > few.size()) {
+        many.resize(out.size());
+        distances = many.data();
+    }
+    return impl_->tree.knnSearch(query, out.size(), out.data(), distances);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,27 @@
+#include "libcore/bidir/path_space.h"
+
+namespace lacuna {
+
+void ScenePaths::traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
+    const Camera::Film film = walker_.camera().film();
+    const float u1 = rng.uniform(), u2 = rng.uniform();
+    walker_.traceEye({u1 * float(film.width), u2 * float(film.height)}, rng, tally, out);
+}
+
+PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughEye) const {
+    const PathVertex &y = light.back(), &z = eye.back();
+    const Edge edge = edgeBetween(y, z);
+    if (!(edge.geometry > 0.0f)) return {};
+    // Whatever scatters at all reflects: only what comes from behind has to ask the material.
+    const bool reflects = dot(z.ng, edge.direction) * dot(z.ng, z.toPrevious) < 0.0f;
+    Rgb atEye(1.0f);
+    if (throughEye || !reflects) {
+        const Rgb f = z.bsdf.evaluate(z.toPrevious, -edge.direction).f;
+        if (isBlack(f)) return {};
+        if (throughEye) atEye = f;
+    }
+    const Rgb atLight = lightEnd(walker_.scene().lights(), y, edge.direction).f;
+    return {y.throughput * atLight * atEye, double(edge.geometry)};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,25 @@
+// The path space of a scene, as methods see it (method.h).
+#pragma once
+
+#include "libcore/bidir/connect.h"
+#include "libcore/bidir/method.h"
+#include "libcore/bidir/walk.h"
+
+namespace lacuna {
+
+class ScenePaths final : public PathSpace {
+  public:
+    /// The walker must outlive it.
+    explicit ScenePaths(const Walker& walker) : walker_(walker) {}
+
+    void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const override;
+    Arrival arrival(Subpath light, Subpath eye, bool throughEye) const override;
+    bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const override {
+        return connected(walker_.scene(), light, eye, RayKind::Cache, tally);
+    }
+
+  private:
+    const Walker& walker_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,24 @@
+#include "libcore/bidir/statistics.h"
+
+namespace lacuna {
+
+std::uint64_t IterationStatistics::totalRays() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t n : rays) sum += n;
+    return sum;
+}
+
+void IterationStatistics::add(const RayTally& tally) {
+    for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += tally.counts[i];
+}
+
+void IterationStatistics::add(const IterationStatistics& other) {
+    for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += other.rays[i];
+    invalidSamples += other.invalidSamples;
+    for (const std::string& r : other.invalidReplays) {
+        if (invalidReplays.size() < kReplaysKept) invalidReplays.push_back(r);
+    }
+    for (const auto& [phase, seconds] : other.phaseSeconds) phaseSeconds[phase] += seconds;
+}
+
+}  // namespace lacuna

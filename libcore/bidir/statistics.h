@@ -1,0 +1,43 @@
+// What an iteration counted and where its time went.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+/// What an iteration counted, merged in an order that does not depend on threads.
+struct IterationStatistics {
+    static constexpr std::size_t kReplaysKept = 8;
+
+    RayCounts rays{};
+    std::uint64_t invalidSamples = 0;
+    std::vector<std::string> invalidReplays;  ///< --replay arguments of the first few
+    std::map<std::string, double> phaseSeconds;
+
+    std::uint64_t totalRays() const;
+    void add(const IterationStatistics& other);
+    void add(const RayTally& tally);
+};
+
+/// Adds the time between construction and destruction to a phase.
+class PhaseTimer {
+  public:
+    PhaseTimer(IterationStatistics& statistics, const char* phase)
+        : seconds_(statistics.phaseSeconds[phase]), start_(Clock::now()) {}
+    ~PhaseTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    PhaseTimer(const PhaseTimer&) = delete;
+    PhaseTimer& operator=(const PhaseTimer&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,213 @@
+#include "libcore/methods/resampling.h"
+
+#include <algorithm>
+
+#include "libcore/base/parallel.h"
+#include "libcore/methods/cache_points.h"
+#include "libcore/methods/methods.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::size_t kPointsPerChunk = 32;
+
+/// n r of the resampling-aware weights; frozen for an iteration.
+class ResampledDensity final : public ConnectionDensity {
+  public:
+    explicit ResampledDensity(const ResamplingOptions& options) : options_(options) {}
+
+    void freeze(const CachePoints& points, std::span<const double> q, double expectedVertices) {
+        points_ = &points;
+        q_ = q;
+        const auto m = double(options_.subpaths);
+        perSubpath_ = 1.0 / m;
+        rest_ = (1.0 - perSubpath_) / options_.picks;
+        virtual_ = options_.picks * m / expectedVertices;
+    }
+
+    std::optional<Constants> constants() const override {
+        if (options_.aware) return std::nullopt;
+        return Constants{1.0, 1.0};
+    }
+    bool tagsVertices() const override { return options_.aware; }
+    std::uint32_t tagOf(const PathVertex& vertex) const override {
+        return points_->nearest(vertex.position);
+    }
+
+    double effectiveSamples(const Connection& c) const override {
+        if (options_.nextEvent && c.light.count == 1) return 1.0;
+        Rgb flow = c.beta * c.light.scatter;
+        if (options_.target == CacheTarget::FlowThrough) flow *= c.eye.scatter;
+        const double value = double(mean(flow));
+        const auto around = points_->around(points_->serving(*c.eye.vertex));
+        double sum = virtual_;
+        for (const std::uint32_t i : around) {
+            const double target = value * points_->trustedGeometry(i, *c.light.vertex, c.geometry);
+            if (q_[i] > 0.0 && target > 0.0) {
+                sum += 1.0 / (perSubpath_ + rest_ * std::max(options_.clamp, q_[i] / target));
+            }
+        }
+        return sum / double(around.size() + 1);
+    }
+
+  private:
+    ResamplingOptions options_;
+    const CachePoints* points_ = nullptr;
+    std::span<const double> q_;
+    double perSubpath_ = 1.0, rest_ = 0.0, virtual_ = 1.0;
+};
+
+class Resampling final : public Method {
+  public:
+    explicit Resampling(const ResamplingOptions& options)
+        : options_(options), density_(options), earlier_(1, options.qSets, options.qPoints) {}
+
+    // The first finds out how many vertices there are and leaves cache points, the second fills
+    // them.
+    int warmupIterations() const override { return 2; }
+    PoolRequest pool() const override { return {options_.subpaths}; }
+    bool learns() const override { return true; }
+
+    const ConnectionDensity& freeze(std::uint32_t) override {
+        const double expected = pools_ ? double(vertices_) / double(pools_) : 0.0;
+        // Any positive number is unbiased: one vertex stands in where none was seen.
+        density_.freeze(points_, q_, std::max(expected, 1.0));
+        return density_;
+    }
+
+    void prepare(const LightPool& pool, IterationContext& context) override {
+        pool_ = &pool;
+        candidates_.clear();
+        for (const LightPool::Entry& e : pool.connectable()) {
+            if (!options_.nextEvent || e.count > 1) candidates_.push_back(e);
+        }
+        flow_.assign(points_.size(), 0.0);
+        std::vector<CachePmfs::Builder> rows((points_.size() + kPointsPerChunk - 1) /
+                                             kPointsPerChunk);
+        std::vector<RayTally> tallies(rows.size());
+        context.threads.forEach(rows.size(), [&](std::size_t chunk) {
+            std::vector<WeightedVertex> weights;
+            const std::size_t begin = chunk * kPointsPerChunk;
+            for (std::size_t c = begin; c < std::min(points_.size(), begin + kPointsPerChunk);
+                 ++c) {
+                weigh(std::uint32_t(c), context.space, tallies[chunk], weights);
+                for (const WeightedVertex& w : weights) flow_[c] += w.weight;
+                flow_[c] /= double(options_.subpaths);
+                rows[chunk].add(weights);
+            }
+        });
+        for (const RayTally& t : tallies) context.statistics.add(t);
+        pmfs_ = CachePmfs(rows);
+    }
+
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (candidates_.empty()) return;
+        const double uniform = 1.0 / double(candidates_.size());
+        const auto around = points_.around(points_.serving(context.vertex));
+        const auto filled = std::size_t(std::count_if(
+            around.begin(), around.end(), [&](std::uint32_t c) { return !pmfs_.empty(c); }));
+        for (int n = 0; n < options_.picks; ++n) {
+            const std::uint32_t choice = rng.below(std::uint32_t(filled) + 1);
+            const double u = rng.uniformDouble();
+            std::uint32_t index = 0;
+            if (choice == filled) {
+                index = std::uint32_t(u * double(candidates_.size()));
+            } else {
+                std::uint32_t skipped = 0;
+                for (const std::uint32_t c : around) {
+                    if (pmfs_.empty(c) || skipped++ != choice) continue;
+                    index = pmfs_.pick(c, u).index;
+                    break;
+                }
+            }
+            double sum = uniform;
+            for (const std::uint32_t c : around) sum += pmfs_.pmf(c, index);
+            sink.add({pool_->prefix(candidates_[index]),
+                      double(filled + 1) / (sum * double(options_.subpaths) * options_.picks), 0});
+        }
+    }
+
+    void observe(const LightPool&, IterationContext& context) override {
+        vertices_ += candidates_.size();
+        ++pools_;
+        PhaseTimer timer(context.statistics, "cache points");
+        CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
+        if (options_.aware) {
+            earlier_.add(std::move(points_), std::move(flow_));
+            q_ = earlier_.at(next, context.threads);
+        }
+        points_ = std::move(next);
+        pmfs_ = {};
+    }
+
+  private:
+    /// The target of every light vertex at cache point `c`, zeros left out.
+    void weigh(std::uint32_t c, const PathSpace& space, RayTally& tally,
+               std::vector<WeightedVertex>& weights) const {
+        const Subpath eye = points_.eye(c);
+        const double limit = points_.geometryLimit(c);
+        weights.clear();
+        for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
+            const PathSpace::Arrival a = space.arrival(pool_->prefix(candidates_[i]), eye,
+                                                       options_.target == CacheTarget::FlowThrough);
+            const double weight = double(mean(a.value)) * std::min(a.geometry, limit);
+            if (weight > 0.0) weights.push_back({i, weight});
+        }
+        removeHidden(weights, options_.untested, [&](std::uint32_t i) {
+            return space.visible(pool_->prefix(candidates_[i]).back(), eye.back(), tally);
+        });
+    }
+
+    ResamplingOptions options_;
+    ResampledDensity density_;
+    CachePoints points_;     // of this iteration
+    std::vector<double> q_;  // by point, from earlier iterations
+    EarlierValues earlier_;
+    std::uint64_t vertices_ = 0, pools_ = 0;
+    std::uint32_t generation_ = 0;
+    const LightPool* pool_ = nullptr;
+    std::vector<LightPool::Entry> candidates_;
+    CachePmfs pmfs_;
+    std::vector<double> flow_;  // (1/M) sum of the target, by point
+};
+
+}  // namespace
+
+std::unique_ptr<Method> makeResampling(const ResamplingOptions& options) {
+    return std::make_unique<Resampling>(options);
+}
+
+std::vector<Parameter> resamplingParameters(double candidates, CacheTarget target) {
+    using Kind = Parameter::Kind;
+    return {lightPathsParameter(),
+            {"candidates", Kind::Integer, candidates, 1, 1e6, "light subpaths in the pool, M"},
+            {"cache_density", Kind::Real, 0.004, 0, 16,
+             "eye subpaths that leave cache points, per pixel"},
+            {"cache_points", Kind::Integer, 3, 1, 16, "cache points that serve an eye vertex, N_c"},
+            {"target",
+             Kind::Choice,
+             target == CacheTarget::Flow ? 0.0 : 1.0,
+             0,
+             1,
+             "what pmfs are proportional to: light that arrives at the cache point, or what its "
+             "BSDF scatters of that towards the eye",
+             {"flow", "flow-bsdf"}},
+            {"untested", Kind::Real, 0.0, 0, 1,
+             "share of a pmf, its smallest entries, that no visibility rays are spent on"},
+            nextEventParameter(false)};
+}
+
+ResamplingOptions resamplingOptions(const Settings& s) {
+    ResamplingOptions o;
+    o.subpaths = s.integer("candidates");
+    o.cacheDensity = s.real("cache_density");
+    o.cachePoints = int(s.integer("cache_points"));
+    o.target = s.integer("target") == 0 ? CacheTarget::Flow : CacheTarget::FlowThrough;
+    o.untested = s.real("untested");
+    o.nextEvent = s.on("next_event");
+    return o;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,42 @@
+// Resampling-aware weights [Nabata20a]: light vertices resampled at cache points, under weights
+// that know how much better a resampled vertex is than a random one. See resampling.h.
+#include "libcore/methods/methods.h"
+#include "libcore/methods/resampling.h"
+
+namespace lacuna {
+
+MethodRow resamplingAwareRow() {
+    using Kind = Parameter::Kind;
+    MethodRow row;
+    row.name = "risbpt";
+    row.reference = "Nabata20a";
+    row.summary = "light vertices resampled at cache points, weights aware of the resampling";
+    row.techniques = {.hits = true, .connects = true, .splats = true};
+    row.parameters = resamplingParameters(200, CacheTarget::Flow);
+    row.parameters.push_back({"connections", Kind::Integer, 1, 1, 64, "picks per eye vertex, N"});
+    row.parameters.push_back({"q_points", Kind::Integer, 3, 1, 16,
+                              "cache points of the last iteration whose Q are averaged, N_q"});
+    row.parameters.push_back({"q_iterations", Kind::Integer, 16, 1, 256,
+                              "earlier iterations whose Q are averaged; the paper: 1"});
+    row.parameters.push_back(
+        {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
+    row.parameters.push_back({"weights",
+                              Kind::Choice,
+                              0,
+                              0,
+                              1,
+                              "density that the weights see: resampling-aware, or r = 1",
+                              {"ris", "plain"}});
+    row.create = [](const Settings& s) {
+        ResamplingOptions o = resamplingOptions(s);
+        o.picks = int(s.integer("connections"));
+        o.qPoints = int(s.integer("q_points"));
+        o.qSets = int(s.integer("q_iterations"));
+        o.clamp = s.real("clamp");
+        o.aware = s.integer("weights") == 0;
+        return makeResampling(o);
+    };
+    return row;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,57 @@
+// The k-d tree against brute force.
+#include "libcore/base/nearest.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libcore/base/rng.h"
+
+namespace lacuna::test {
+namespace {
+
+double distance2(Vec3 a, Vec3 b) {
+    return lengthSquared(Vec3d(a) - Vec3d(b));
+}
+
+TEST(NearestPoints, areThoseOfBruteForce) {
+    Rng rng(1, 0, StreamKind::User, 0);
+    const auto draw = [&](float scale) {
+        const float x = rng.uniform(), y = rng.uniform(), z = rng.uniform();
+        return Vec3{x * scale, y * scale, z * scale};
+    };
+    for (const std::size_t n : {1u, 2u, 7u, 300u}) {
+        std::vector<Vec3> points;
+        for (std::size_t i = 0; i < n; ++i) {
+            // Every fifth is a copy of an earlier one.
+            points.push_back(i % 5 == 4 ? points[i / 2] : draw(1.0f));
+        }
+        const NearestPoints tree(points);
+        ASSERT_EQ(tree.size(), n);
+        for (int query = 0; query < 200; ++query) {
+            const Vec3 p = query % 4 == 0 ? points[rng.below(std::uint32_t(n))] : draw(1.5f);
+            std::vector<std::uint32_t> found(1 + rng.below(20));
+            const std::size_t k = tree.find(p, found);
+            ASSERT_EQ(k, std::min(n, found.size()));
+            std::vector<double> all;
+            for (const Vec3& q : points) all.push_back(distance2(p, q));
+            std::sort(all.begin(), all.end());
+            std::vector<bool> seen(n);
+            for (std::size_t i = 0; i < k; ++i) {
+                // Which of equally far ones comes first is open, how far they are is not.
+                EXPECT_NEAR(distance2(p, points[found[i]]), all[i], 1e-6);
+                EXPECT_FALSE(seen[found[i]]);
+                seen[found[i]] = true;
+            }
+        }
+    }
+}
+
+TEST(NearestPoints, ofNoneAreNone) {
+    std::uint32_t found = 0;
+    EXPECT_EQ(NearestPoints().find({}, {&found, 1}), 0u);
+    EXPECT_EQ(NearestPoints(std::vector<Vec3>{}).find({}, {&found, 1}), 0u);
+}
+
+}  // namespace
+}  // namespace lacuna::test

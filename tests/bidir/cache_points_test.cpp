@@ -1,0 +1,135 @@
+// Cache points on the finite space: who serves whom, and what is carried over from set to set.
+#include "libcore/methods/cache_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "tests/bidir/finite_space.h"
+
+namespace lacuna::test {
+namespace {
+
+struct Space {
+    FiniteSpace space{3};
+    ThreadPool threads{2};
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 5, 10, statistics};
+};
+
+double distance2(Vec3 a, Vec3 b) {
+    return lengthSquared(Vec3d(a) - Vec3d(b));
+}
+
+double nearestDistance2(const CachePoints& points, Vec3 p) {
+    double least = 1e300;
+    for (std::uint32_t j = 0; j < points.size(); ++j) {
+        least = std::min(least, distance2(points.position(j), p));
+    }
+    return least;
+}
+
+TEST(CachePoints, areConnectableVerticesOfEyePaths) {
+    Space s;
+    const CachePoints points(s.context, 4.0, 3, 0);
+    ASSERT_GT(points.size(), 40u);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const Subpath eye = points.eye(i);
+        EXPECT_TRUE(eye[1].connectable());
+        EXPECT_EQ(eye[0].index + 1, eye[1].index);
+        EXPECT_GE(eye[1].index, 1);
+    }
+    // Other numbers make another set; the same ones the same.
+    const CachePoints other(s.context, 4.0, 3, 1), again(s.context, 4.0, 3, 0);
+    ASSERT_EQ(again.size(), points.size());
+    bool different = other.size() != points.size();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(again.position(i), points.position(i));
+        different |= i < other.size() && !(other.position(i) == points.position(i));
+    }
+    EXPECT_TRUE(different);
+}
+
+TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
+    Space s;
+    for (const double density : {0.01, 4.0}) {  // one path: fewer points than neighbours
+        const CachePoints points(s.context, density, 12, 0);
+        ASSERT_FALSE(points.empty());
+        PathVertex z;
+        z.position = points.position(0) + Vec3{0.1f, -0.2f, 0.3f};
+        const std::uint32_t serving = points.serving(z);
+        EXPECT_NEAR(distance2(points.position(serving), z.position),
+                    nearestDistance2(points, z.position), 1e-6);
+        z.tag = std::uint32_t(points.size() - 1);
+        EXPECT_EQ(points.serving(z), z.tag) << "a tag is believed";
+
+        for (std::uint32_t i = 0; i < points.size(); ++i) {
+            const auto around = points.around(i);
+            ASSERT_EQ(around.size(), std::min<std::size_t>(12, points.size()));
+            EXPECT_EQ(around[0], i);
+            std::vector<double> found, all;
+            for (const std::uint32_t j : around) {
+                found.push_back(distance2(points.position(i), points.position(j)));
+            }
+            for (std::uint32_t j = 0; j < points.size(); ++j) {
+                all.push_back(distance2(points.position(i), points.position(j)));
+            }
+            std::sort(all.begin(), all.end());
+            for (std::size_t j = 0; j < found.size(); ++j) EXPECT_NEAR(found[j], all[j], 1e-6);
+            EXPECT_GT(points.geometryLimit(i), 0.0);
+            EXPECT_TRUE(std::isfinite(points.geometryLimit(i)));
+        }
+    }
+    const CachePoints none;
+    EXPECT_EQ(none.serving(PathVertex{}), kNone);
+    EXPECT_TRUE(none.around(kNone).empty());
+}
+
+TEST(EarlierValues, areMeansOverSetsOfMeansOverNeighbours) {
+    Space s;
+    EarlierValues earlier(2, 2, 1);
+    const CachePoints now(s.context, 1.0, 3, 9);
+    for (const double v : earlier.at(now, s.threads)) EXPECT_EQ(v, 0.0);
+    earlier.add(CachePoints(), {});
+
+    // The value of a point is a function of its place, so that ties do not matter.
+    const auto value = [](Vec3 p, int set) {
+        return double(set) + double(p.x) + 2.0 * double(p.y);
+    };
+    const auto add = [&](int set) {
+        CachePoints points(s.context, 4.0, 3, std::uint32_t(set));
+        std::vector<double> values;
+        for (std::uint32_t i = 0; i < points.size(); ++i) {
+            values.push_back(value(points.position(i), set));
+            values.push_back(7.0);
+        }
+        earlier.add(std::move(points), std::move(values));
+    };
+    const auto expected = [&](Vec3 p, int set) {
+        const CachePoints points(s.context, 4.0, 3, std::uint32_t(set));
+        for (std::uint32_t j = 0; j < points.size(); ++j) {
+            if (distance2(points.position(j), p) == nearestDistance2(points, p)) {
+                return value(points.position(j), set);
+            }
+        }
+        return 0.0;
+    };
+    for (const int set : {0, 1, 2}) {
+        add(set);
+        const std::vector<double> q = earlier.at(now, s.threads);
+        ASSERT_EQ(q.size(), 2 * now.size());
+        for (std::uint32_t i = 0; i < now.size(); ++i) {
+            const Vec3 p = now.position(i);
+            // Two sets are kept.
+            const double truth =
+                set == 0 ? expected(p, 0) : 0.5 * (expected(p, set - 1) + expected(p, set));
+            EXPECT_NEAR(q[2 * i], truth, 1e-9);
+            EXPECT_NEAR(q[2 * i + 1], 7.0, 1e-12);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
