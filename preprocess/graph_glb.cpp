@@ -36,8 +36,7 @@ class Buffer {
         return int(accessors.size()) - 1;
     }
     int addIndices(const std::vector<std::uint32_t>& indices) {
-        const int view =
-            addView(indices.data(), indices.size() * sizeof(std::uint32_t), kIndices);
+        const int view = addView(indices.data(), indices.size() * sizeof(std::uint32_t), kIndices);
         accessors.push_back({{"bufferView", view},
                              {"componentType", kUnsigned},
                              {"count", indices.size()},
@@ -107,7 +106,8 @@ void writeGraphGlb(const std::string& path, const Skeletonized& result, const Ve
     const auto addLines = [&](const char* name, int material) {
         if (indices.empty()) return;
         children.push_back(nodes.size());
-        nodes.push_back({{"name", name}, {"mesh", addMesh(name, kLines, points, indices, material)}});
+        nodes.push_back(
+            {{"name", name}, {"mesh", addMesh(name, kLines, points, indices, material)}});
     };
     for (const SkeletonNode& n : result.raw.nodes) points.push_back(Vec3(n.position));
     for (const auto& e : result.raw.edges) indices.insert(indices.end(), e.begin(), e.end());
@@ -120,7 +120,8 @@ void writeGraphGlb(const std::string& path, const Skeletonized& result, const Ve
                                result.file.skeleton.nodes[e.nodes[1]].position}) {
             points.push_back(Vec3(p));
         }
-        indices.insert(indices.end(), {first, first + 1, first + 1, first + 2, first + 2, first + 3});
+        indices.insert(indices.end(),
+                       {first, first + 1, first + 1, first + 2, first + 2, first + 3});
     }
     addLines("filtered", 1);
     points.clear();

@@ -54,9 +54,7 @@ int skeletonizeTool(int argc, const char* const* argv) {
         VoxelFile voxels;
         phases.run("read", [&] {
             const std::string remedy = "run lacuna-voxelize " + options.scene;
-            pool.run([&] {
-                voxels = readVoxelFile(voxelPath, hash, scene->centre(), remedy);
-            });
+            pool.run([&] { voxels = readVoxelFile(voxelPath, hash, scene->centre(), remedy); });
         });
         path = resultFile(options, voxels.stamp, "skeleton.vdb");
         result = skeletonize(*scene, voxels, pool, interrupt.requested(), phases);
@@ -77,7 +75,8 @@ int skeletonizeTool(int argc, const char* const* argv) {
         skeleton.edges.size(), (long long)result.filtered.b0, (long long)result.filtered.b1,
         seconds);
     if (result.skeleton.b0 != result.empty.b0 || result.skeleton.b1 != result.empty.b1) {
-        progress.warning("warning: " + path + ": the skeleton has other loops than the empty space (" +
+        progress.warning("warning: " + path +
+                         ": the skeleton has other loops than the empty space (" +
                          std::to_string(result.squares) + " squares could not be collapsed)");
     }
     writeReport(

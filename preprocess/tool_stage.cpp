@@ -31,10 +31,9 @@ void addVoxelOptions(CLI::App& app, BuildOptions& options) {
 
 VoxelizeSettings checkedSettings(const BuildOptions& options) {
     if (options.resolution < kLowestResolution || options.resolution > kHighestResolution) {
-        throw UsageError("--resolution: expected an integer from " +
-                         std::to_string(kLowestResolution) + " to " +
-                         std::to_string(kHighestResolution) + ", found " +
-                         std::to_string(options.resolution));
+        throw UsageError(
+            "--resolution: expected an integer from " + std::to_string(kLowestResolution) + " to " +
+            std::to_string(kHighestResolution) + ", found " + std::to_string(options.resolution));
     }
     if (!options.domain.empty()) parseDomain(options.domain);
     const std::string& json = options.common.json;

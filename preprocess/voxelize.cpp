@@ -53,13 +53,13 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
     });
 
     Voxelized result;
-    result.file.stamp = voxelStamp(scene.description().contentHash, settings.resolution,
-                                   settings.domainText);
+    result.file.stamp =
+        voxelStamp(scene.description().contentHash, settings.resolution, settings.domainText);
     VoxelSpace& space = result.file.space;
     phases.run("voxelize", [&] {
         if (settings.domainText.empty()) {
-            space.shape = latticeOver(defaultDomain(reach, boundsOf(triangles)),
-                                      settings.resolution);
+            space.shape =
+                latticeOver(defaultDomain(reach, boundsOf(triangles)), settings.resolution);
         } else {
             VoxelBox domain = parseDomain(settings.domainText);
             domain.low -= scene.centre();
@@ -73,8 +73,7 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
         space.state.assign(space.shape.count(), VoxelState::Empty);
         voxelize(triangles, space.shape, space.state, pool, cancel);
     });
-    phases.run("parts",
-               [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
+    phases.run("parts", [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
     if (result.parts.reached == 0) {
         throw UsageError(
             settings.domainText.empty()

@@ -15,7 +15,8 @@ int voxelizeTool(int argc, const char* const* argv) {
     addBuildOptions(app, options);
     addVoxelOptions(app, options);
     app.footer(
-        "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the scene's\n"
+        "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the "
+        "scene's\n"
         "coordinates. Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be\n"
         "used, 130 interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
@@ -31,13 +32,12 @@ int voxelizeTool(int argc, const char* const* argv) {
     std::string path;
     total.run("all", [&] {
         phases.run("load", [&] { scene = loadScene(options.scene, pool); });
-        const CacheStamp stamp = voxelStamp(scene->description().contentHash, settings.resolution,
-                                            settings.domainText);
+        const CacheStamp stamp =
+            voxelStamp(scene->description().contentHash, settings.resolution, settings.domainText);
         path = resultFile(options, stamp, "voxels.vdb");
         result = voxelizeScene(*scene, settings, pool, interrupt.requested(), phases);
-        phases.run("write", [&] {
-            pool.run([&] { writeVoxelFile(path, result.file, scene->centre()); });
-        });
+        phases.run("write",
+                   [&] { pool.run([&] { writeVoxelFile(path, result.file, scene->centre()); }); });
     });
 
     const VoxelSpace& space = result.file.space;
@@ -46,9 +46,10 @@ int voxelizeTool(int argc, const char* const* argv) {
     const std::size_t solid = counts[std::size_t(VoxelState::Solid)];
     const std::size_t empty = counts[std::size_t(VoxelState::Empty)];
     const double seconds = total.seconds().at("all");
-    std::printf("%s: %d x %d x %d voxels of %.4g, %zu solid, %zu empty in %zu of %zu parts, %.3g s\n",
-                path.c_str(), space.shape.size[0], space.shape.size[1], space.shape.size[2],
-                space.shape.voxel, solid, empty, result.parts.reached, result.parts.total, seconds);
+    std::printf(
+        "%s: %d x %d x %d voxels of %.4g, %zu solid, %zu empty in %zu of %zu parts, %.3g s\n",
+        path.c_str(), space.shape.size[0], space.shape.size[1], space.shape.size[2],
+        space.shape.voxel, solid, empty, result.parts.reached, result.parts.total, seconds);
     const Vec3d low = space.shape.box().low + scene->centre();
     const Vec3d high = space.shape.box().high + scene->centre();
     writeReport(options.common, {{"file", path},

@@ -21,8 +21,7 @@ class Progress {
     /// `quiet`: prints nothing but warnings. A thread of its own watches the clock and
     /// `interrupted`, which must outlive the object. `onInterrupt` is said then; null: what a
     /// render does.
-    Progress(bool quiet, const std::atomic<bool>& interrupted,
-             const char* onInterrupt = nullptr);
+    Progress(bool quiet, const std::atomic<bool>& interrupted, const char* onInterrupt = nullptr);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;

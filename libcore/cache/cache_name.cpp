@@ -36,8 +36,9 @@ void makeCacheDirectory(const std::string& file) {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
     if (error) {
-        throw RunError(directory.string() + ": expected to make this directory for caches, found: " +
-                       error.message() + "; name a place with --cache DIR");
+        throw RunError(directory.string() +
+                       ": expected to make this directory for caches, found: " + error.message() +
+                       "; name a place with --cache DIR");
     }
 }
 

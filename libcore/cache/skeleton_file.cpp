@@ -53,9 +53,8 @@ void writeSkeletonFile(const std::string& path, const SkeletonFile& file, const 
     std::vector<std::int32_t> values;
     values.reserve(s.map.entries().size());
     for (const std::uint16_t e : s.map.entries()) values.push_back(toFile(e));
-    const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(shape.size[0] - 1,
-                                                                   shape.size[1] - 1,
-                                                                   shape.size[2] - 1));
+    const openvdb::CoordBBox box(
+        openvdb::Coord(0), openvdb::Coord(shape.size[0] - 1, shape.size[1] - 1, shape.size[2] - 1));
     const openvdb::tools::Dense<std::int32_t, openvdb::tools::LayoutXYZ> dense(box, values.data());
     openvdb::tools::copyFromDense(dense, *grid, 0);
 
@@ -97,18 +96,17 @@ SkeletonFile readSkeletonFile(const std::string& path, const std::string& sceneH
               edges[i + 1] < double(count))) {
             vdb::refuse(path, "edges between its nodes", "others", remedy);
         }
-        file.skeleton.edges.push_back(
-            {{std::uint32_t(edges[i]), std::uint32_t(edges[i + 1])},
-             Vec3d{edges[i + 2], edges[i + 3], edges[i + 4]} - centre,
-             Vec3d{edges[i + 5], edges[i + 6], edges[i + 7]} - centre});
+        file.skeleton.edges.push_back({{std::uint32_t(edges[i]), std::uint32_t(edges[i + 1])},
+                                       Vec3d{edges[i + 2], edges[i + 3], edges[i + 4]} - centre,
+                                       Vec3d{edges[i + 5], edges[i + 6], edges[i + 7]} - centre});
     }
 
     const auto grid = vdb::gridOf<openvdb::Int32Grid>(content, "node", path, remedy);
     const VoxelShape& shape = content.shape;
     std::vector<std::int32_t> values(shape.count());
     openvdb::tools::Dense<std::int32_t, openvdb::tools::LayoutXYZ> dense(
-        openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(shape.size[0] - 1, shape.size[1] - 1,
-                                                             shape.size[2] - 1)),
+        openvdb::CoordBBox(openvdb::Coord(0),
+                           openvdb::Coord(shape.size[0] - 1, shape.size[1] - 1, shape.size[2] - 1)),
         values.data());
     openvdb::tools::copyToDense(*grid, dense);
     std::vector<std::uint16_t> entries;

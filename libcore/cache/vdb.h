@@ -20,8 +20,7 @@ void putHeader(openvdb::MetaMap& meta, const std::string& kind, const CacheStamp
 openvdb::math::Transform::Ptr transformOf(const VoxelShape& shape, const Vec3d& centre);
 
 /// Guarded (guarded_file.h). Throws RunError.
-void write(const std::string& path, const openvdb::GridPtrVec& grids,
-           const openvdb::MetaMap& meta);
+void write(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& meta);
 
 struct Content {
     openvdb::GridPtrVecPtr grids;

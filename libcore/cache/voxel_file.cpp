@@ -14,8 +14,8 @@ template <class T>
 using DenseView = openvdb::tools::Dense<T, openvdb::tools::LayoutXYZ>;
 
 openvdb::CoordBBox boxOf(const VoxelShape& shape) {
-    return {openvdb::Coord(0), openvdb::Coord(shape.size[0] - 1, shape.size[1] - 1,
-                                              shape.size[2] - 1)};
+    return {openvdb::Coord(0),
+            openvdb::Coord(shape.size[0] - 1, shape.size[1] - 1, shape.size[2] - 1)};
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
     DenseView<float> dense(boxOf(shape), const_cast<float*>(space.distance.data()));
     openvdb::tools::copyFromDense(dense, *distance, 0.0f);
 
-    for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(solid),
-                                               openvdb::GridBase::Ptr(distance)}) {
+    for (const openvdb::GridBase::Ptr& grid :
+         {openvdb::GridBase::Ptr(solid), openvdb::GridBase::Ptr(distance)}) {
         grid->setTransform(vdb::transformOf(shape, centre));
     }
     openvdb::MetaMap meta;
@@ -48,8 +48,8 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
     vdb::write(path, {solid, distance}, meta);
 }
 
-VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash,
-                        const Vec3d& centre, const std::string& remedy) {
+VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash, const Vec3d& centre,
+                        const std::string& remedy) {
     const vdb::Content content = vdb::read(path, kKind, sceneHash, centre, remedy);
     VoxelFile file;
     file.stamp = content.stamp;

@@ -17,7 +17,7 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
 
 /// Throws InputError if the file is missing, damaged, of another kind, version or scene; `remedy`
 /// says what to do.
-VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash,
-                        const Vec3d& centre, const std::string& remedy);
+VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash, const Vec3d& centre,
+                        const std::string& remedy);
 
 }  // namespace lacuna

@@ -59,8 +59,7 @@ SkeletonGraph extractGraph(const CubicalComplex& complex, const VoxelShape& shap
         if (complex.has(c, 0)) corners.push_back(c);
     }
     const auto numberOf = [&](CubicalComplex::Corner c) {
-        return std::uint32_t(std::lower_bound(corners.begin(), corners.end(), c) -
-                             corners.begin());
+        return std::uint32_t(std::lower_bound(corners.begin(), corners.end(), c) - corners.begin());
     };
     graph.nodes.resize(corners.size());
     pool.forEach(corners.size(), [&](std::size_t i) {
@@ -118,9 +117,8 @@ FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph) {
     UnionFind tree(n);
     for (const auto& e : graph.edges) {
         if (keeper[e[0]] == keeper[e[1]] && tree.join(e[0], e[1])) continue;
-        filtered.edges.push_back({{keeper[e[0]], keeper[e[1]]},
-                                  graph.nodes[e[0]].position,
-                                  graph.nodes[e[1]].position});
+        filtered.edges.push_back(
+            {{keeper[e[0]], keeper[e[1]]}, graph.nodes[e[0]].position, graph.nodes[e[1]].position});
     }
     return filtered;
 }

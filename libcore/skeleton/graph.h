@@ -12,8 +12,8 @@
 namespace lacuna {
 
 struct SkeletonNode {
-    Vec3d position;      ///< recentred coordinates
-    double radius = 0;   ///< of the largest ball about it that no surface enters
+    Vec3d position;     ///< recentred coordinates
+    double radius = 0;  ///< of the largest ball about it that no surface enters
 };
 
 /// Everything that thinning left: a node per point, an edge per edge.
@@ -22,7 +22,9 @@ struct SkeletonGraph {
     std::vector<std::array<std::uint32_t, 2>> edges;
 
     std::int64_t b0() const;
-    std::int64_t b1() const { return std::int64_t(edges.size()) - std::int64_t(nodes.size()) + b0(); }
+    std::int64_t b1() const {
+        return std::int64_t(edges.size()) - std::int64_t(nodes.size()) + b0();
+    }
 };
 
 /// `radiusAt` gives the exact distance to the surface; called from many threads.
@@ -43,13 +45,16 @@ struct FilteredGraph {
     std::vector<SkeletonNode> nodes;
     std::vector<FilteredEdge> edges;
     std::int64_t b0() const;
-    std::int64_t b1() const { return std::int64_t(edges.size()) - std::int64_t(nodes.size()) + b0(); }
+    std::int64_t b1() const {
+        return std::int64_t(edges.size()) - std::int64_t(nodes.size()) + b0();
+    }
 };
 
-/// The maximal-ball filter [Noel15 4.4]: by falling radius (ties: lower index first) a node swallows
-/// the nodes inside its ball that are connected to it there. Unlike in the paper, connected is asked
-/// for (a ball that reaches through a thin wall must not swallow the other side), and edges are kept:
-/// every swallowed set is contracted along a spanning tree, so b0 and b1 are those of `graph`.
+/// The maximal-ball filter [Noel15 4.4]: by falling radius (ties: lower index first) a node
+/// swallows the nodes inside its ball that are connected to it there. Unlike in the paper,
+/// connected is asked for (a ball that reaches through a thin wall must not swallow the other
+/// side), and edges are kept: every swallowed set is contracted along a spanning tree, so b0 and b1
+/// are those of `graph`.
 FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph);
 
 }  // namespace lacuna

@@ -70,7 +70,8 @@ class Waves {
         pool_.forEach(found.size(), [&](std::size_t task) {
             const std::size_t end = std::min(wave.size(), (task + 1) * kPerTask);
             for (std::size_t i = task * kPerTask; i < end; ++i) {
-                if (std::atomic_ref(done_[wave[i]]).exchange(1, std::memory_order_relaxed)) continue;
+                if (std::atomic_ref(done_[wave[i]]).exchange(1, std::memory_order_relaxed))
+                    continue;
                 const std::uint64_t own = key_[wave[i]];
                 forNeighbours(space_.shape, space_.shape.indexOf(wave[i]),
                               [&](std::size_t u, std::uint64_t move) {

@@ -2,9 +2,9 @@
 //
 // An elementary collapse removes a cell together with a face that belongs to no other cell; it
 // never changes the homotopy type. As in [Chaussard13] a round goes through the directions -x, +x,
-// .. +z and removes, in each, all free pairs (cube, square), then (square, edge), then (edge, point)
-// at once: the free pairs of one direction and dimension do not touch each other, so a round is
-// parallel and its result does not depend on the order. Differently from there
+// .. +z and removes, in each, all free pairs (cube, square), then (square, edge), then (edge,
+// point) at once: the free pairs of one direction and dimension do not touch each other, so a round
+// is parallel and its result does not depend on the order. Differently from there
 //
 //   * a round takes layers by Euclidean distance: in round r only cells within r voxels of the
 //     surface may go, so that what is left is centred for walls of any direction;
@@ -29,9 +29,9 @@ namespace lacuna {
 class ThreadPool;
 
 struct Thinned {
-    CubicalComplex complex;      ///< points and edges alone, but for `squares`
+    CubicalComplex complex;  ///< points and edges alone, but for `squares`
     std::size_t rounds = 0;
-    std::size_t punctures = 0;   ///< squares taken out of sheets: the cavities
+    std::size_t punctures = 0;  ///< squares taken out of sheets: the cavities
     /// Squares that could not be collapsed and part no two regions. Each adds at most one loop to
     /// the graph that is not in the empty space; none has been seen.
     std::size_t squares = 0;

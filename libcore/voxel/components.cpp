@@ -12,8 +12,8 @@ Components::Components(const VoxelShape& shape, std::span<const VoxelState> stat
         const VoxelIndex v{x - pad_, y - pad_, z - pad_};
         if (!shape.contains(v)) return which.outside;
         const VoxelState s = state[shape.at(v)];
-        const bool solid = s == VoxelState::Solid ||
-                           (which.unreachedIsSolid && s == VoxelState::Unreached);
+        const bool solid =
+            s == VoxelState::Solid || (which.unreachedIsSolid && s == VoxelState::Unreached);
         return solid == which.solid;
     };
     for (int z = 0; z < size_[2]; ++z) {

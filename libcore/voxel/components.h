@@ -40,7 +40,7 @@ class Components {
     int pad_;
     VoxelIndex size_;  // padded
     std::vector<Run> runs_;
-    std::vector<std::uint32_t> row_;  // first run of each row, and the end
+    std::vector<std::uint32_t> row_;     // first run of each row, and the end
     std::vector<std::uint32_t> number_;  // by run: of its component
     std::size_t count_ = 0;
 };

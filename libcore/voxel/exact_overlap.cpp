@@ -28,7 +28,8 @@ Answer bySeparatingAxes(const TriangleD& t, const Vec3d& low, const Vec3d& high)
         const double p0 = dot(axis, v[0]), p1 = dot(axis, v[1]), p2 = dot(axis, v[2]);
         const Vec3d magnitude{std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)};
         const double reach = dot(magnitude, half);
-        const double gap = std::max(std::min({p0, p1, p2}) - reach, -std::max({p0, p1, p2}) - reach);
+        const double gap =
+            std::max(std::min({p0, p1, p2}) - reach, -std::max({p0, p1, p2}) - reach);
         const double error =
             1e-14 * size * (magnitude.x + magnitude.y + magnitude.z) + 8.0 * axisError * size;
         if (gap > error) return true;

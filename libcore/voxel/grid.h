@@ -25,8 +25,8 @@ struct VoxelBox {
 /// j + 1, k + 1).
 struct VoxelShape {
     VoxelIndex size{0, 0, 0};
-    Vec3d origin;         ///< low corner of voxel (0, 0, 0)
-    double voxel = 1.0;   ///< edge length, scene units
+    Vec3d origin;        ///< low corner of voxel (0, 0, 0)
+    double voxel = 1.0;  ///< edge length, scene units
 
     std::size_t count() const {
         return std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);

@@ -53,19 +53,19 @@ Reach traceReach(const Scene& scene, const ThreadPool& pool) {
         const Camera camera(description, scene.centre(),
                             {int(std::clamp(kFilmSide * aspect, 1.0, 1024.0)), kFilmSide}, {});
         const Walker walker(scene, camera, {});
-        const auto fromCamera = trace(pool, [&](std::size_t, Rng& rng, RayTally& tally,
-                                                std::vector<PathVertex>& path) {
-            const Vec2 raster{rng.uniform() * float(camera.film().width),
-                              rng.uniform() * float(camera.film().height)};
-            walker.traceEye(raster, rng, tally, path);
-        });
+        const auto fromCamera =
+            trace(pool, [&](std::size_t, Rng& rng, RayTally& tally, std::vector<PathVertex>& path) {
+                const Vec2 raster{rng.uniform() * float(camera.film().width),
+                                  rng.uniform() * float(camera.film().height)};
+                walker.traceEye(raster, rng, tally, path);
+            });
         reach.camera.insert(reach.camera.end(), fromCamera.begin(), fromCamera.end());
         if (&description != &cameras.front()) continue;
-        reach.lamps = trace(pool, [&](std::size_t, Rng& rng, RayTally& tally,
-                                      std::vector<PathVertex>& path) {
-            walker.traceLight(rng, tally, path);
-            if (!path.empty() && path.front().infinite()) path.clear();
-        });
+        reach.lamps =
+            trace(pool, [&](std::size_t, Rng& rng, RayTally& tally, std::vector<PathVertex>& path) {
+                walker.traceLight(rng, tally, path);
+                if (!path.empty() && path.front().infinite()) path.clear();
+            });
     }
     return reach;
 }

@@ -92,9 +92,8 @@ SurfaceDistance::SurfaceDistance(std::span<const Triangle> triangles, const Thre
         RTCGeometry g = rtcNewGeometry(a.device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    a.positions.data(), 0, sizeof(Vec3), a.positions.size() - 1);
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   a.indices.data(), 0, 3 * sizeof(std::uint32_t),
-                                   a.indices.size());
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, a.indices.data(),
+                                   0, 3 * sizeof(std::uint32_t), a.indices.size());
         rtcSetGeometryPointQueryFunction(g, &visitTriangle);
         rtcCommitGeometry(g);
         rtcAttachGeometry(a.scene, g);

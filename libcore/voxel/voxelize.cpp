@@ -9,7 +9,8 @@
 namespace lacuna {
 
 void throwIfCancelled(const std::atomic<bool>& cancel) {
-    if (cancel) throw Error(130, "interrupted: expected to finish, found a signal; nothing was written");
+    if (cancel)
+        throw Error(130, "interrupted: expected to finish, found a signal; nothing was written");
 }
 
 VoxelShape latticeOver(const VoxelBox& domain, int resolution) {
@@ -30,8 +31,7 @@ VoxelShape latticeExactlyOver(const VoxelBox& domain, int resolution) {
     shape.voxel = std::max({extent.x, extent.y, extent.z}) / resolution;
     shape.origin = domain.low;
     for (std::size_t a = 0; a < 3; ++a) {
-        shape.size[a] =
-            std::clamp(int(std::ceil(extent[a] / shape.voxel - 1e-9)), 1, resolution);
+        shape.size[a] = std::clamp(int(std::ceil(extent[a] / shape.voxel - 1e-9)), 1, resolution);
     }
     return shape;
 }

@@ -26,7 +26,6 @@ VoxelShape latticeExactlyOver(const VoxelBox& domain, int resolution);
 /// exact test: two empty voxels that share as much as a corner have no triangle between them, so
 /// the empty space is the 26-connected one and nothing leaks through a wall, however thin.
 void voxelize(std::span<const Triangle> triangles, const VoxelShape& shape,
-              std::span<VoxelState> state, const ThreadPool& pool,
-              const std::atomic<bool>& cancel);
+              std::span<VoxelState> state, const ThreadPool& pool, const std::atomic<bool>& cancel);
 
 }  // namespace lacuna
