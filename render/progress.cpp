@@ -34,10 +34,11 @@ std::string durationText(double seconds) {
     return text;
 }
 
-Progress::Progress(bool quiet, const std::atomic<bool>& interrupted)
+Progress::Progress(bool quiet, const std::atomic<bool>& interrupted, const char* onInterrupt)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       interrupted_(interrupted),
+      onInterrupt_(onInterrupt),
       phaseStart_(Clock::now()),
       iterationEnd_(phaseStart_) {
     if (!quiet_) thread_ = std::thread([this] { run(); });
@@ -117,7 +118,8 @@ std::string Progress::line() const {
 void Progress::sayInterrupt() {
     if (quiet_ || interruptSaid_ || !interrupted_) return;
     interruptSaid_ = true;
-    print(iterations_.done > 0
+    print(onInterrupt_ ? onInterrupt_
+          : iterations_.done > 0
               ? "interrupted: saving what there is (again: exit at once)"
               : "interrupted: no iteration is complete yet, the first one will be finished "
                 "and saved (again: exit at once)");

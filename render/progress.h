@@ -12,11 +12,16 @@
 
 namespace lacuna {
 
+/// What tools say at an interrupt that leave nothing behind then.
+inline constexpr const char* kNothingWritten =
+    "interrupted: ending, nothing will be written (again: exit at once)";
+
 class Progress {
   public:
     /// `quiet`: prints nothing but warnings. A thread of its own watches the clock and
-    /// `interrupted`, which must outlive the object.
-    Progress(bool quiet, const std::atomic<bool>& interrupted);
+    /// `interrupted`, which must outlive the object. `onInterrupt` is said then; null: what a
+    /// render does.
+    Progress(bool quiet, const std::atomic<bool>& interrupted, const char* onInterrupt = nullptr);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -51,6 +56,7 @@ class Progress {
     const bool quiet_;
     const bool terminal_;
     const std::atomic<bool>& interrupted_;
+    const char* const onInterrupt_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     bool stop_ = false;

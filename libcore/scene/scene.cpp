@@ -321,6 +321,44 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
 }
 
+bool Scene::mostlyHoles(std::uint32_t object, std::uint32_t primitive) const {
+    // Points in the middle of an even division of the triangle into 64.
+    constexpr int kRows = 8;
+    int there = 0;
+    for (int i = 0; i < kRows; ++i) {
+        for (int j = 0; j < 2 * (kRows - i) - 1; ++j) {
+            const float third = j % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+            const float u = (float(i) + third) / kRows, v = (float(j / 2) + third) / kRows;
+            there += alphaTest({object, primitive, u, v}) ? 1 : 0;
+        }
+    }
+    return 2 * there < kRows * kRows;
+}
+
+std::vector<std::array<Vec3, 3>> Scene::blockingTriangles(const ThreadPool& pool) const {
+    std::vector<std::vector<std::array<Vec3, 3>>> parts(objects_.size());
+    pool.forEach(objects_.size(), [&](std::size_t o) {
+        const Object& object = objects_[o];
+        const WorldMesh& mesh = meshes_[object.mesh];
+        const bool masked =
+            description_.materials[mesh.material].alphaMode == Material::Alpha::Mask;
+        parts[o].reserve(mesh.triangles.size());
+        for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+            if (masked && mostlyHoles(std::uint32_t(o), k)) continue;
+            std::array<Vec3, 3> t;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Vec3 p = mesh.positions[mesh.triangles[k][c]];
+                t[c] = object.instanced ? object.point(p) : p;
+            }
+            parts[o].push_back(t);
+        }
+    });
+    std::vector<std::array<Vec3, 3>> all;
+    all.reserve(triangleCount_);
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
 std::optional<SurfacePoint> Scene::intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
                                              RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];

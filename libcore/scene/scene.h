@@ -2,6 +2,7 @@
 // const after construction.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,10 @@ class Scene {
     /// Radius of the bounding sphere about the origin; 0 without geometry.
     float radius() const { return radius_; }
     std::size_t triangleCount() const { return triangleCount_; }
+    /// The triangles that stop light, in our coordinates, instances each time, in a fixed order.
+    /// That is all of them, glass too: a connection does not pass through glass either. Left out
+    /// are masked triangles of which the alpha test lets more than half through (leaves, chains).
+    std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const;
 
     /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no
     /// surface).
@@ -75,6 +80,7 @@ class Scene {
     void surfaceAt(const Hit& hit, SurfacePoint& out) const;
     bool alphaTest(const Hit& hit) const;
     Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv) const;
+    bool mostlyHoles(std::uint32_t object, std::uint32_t primitive) const;
     Vec2 uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& triangle, float u,
               float v) const;
 

@@ -1,0 +1,55 @@
+// Grids to and from the bytes of a .vdb file. For the files of this folder that include OpenVDB.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+
+#include "libcore/cache/cache_name.h"
+#include "libcore/voxel/grid.h"
+
+namespace lacuna::vdb {
+
+inline constexpr int kVersion = 1;
+
+/// Writes the stamp, `kind`, the version and the lattice into a file's metadata.
+void putHeader(openvdb::MetaMap& meta, const std::string& kind, const CacheStamp& stamp,
+               const VoxelShape& shape, const Vec3d& centre, const std::string& contentHash);
+
+/// Index space -> the scene file's coordinates; OpenVDB's voxels are centred at their index.
+openvdb::math::Transform::Ptr transformOf(const VoxelShape& shape, const Vec3d& centre);
+
+/// Guarded (guarded_file.h). Throws RunError.
+void write(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& meta);
+
+struct Content {
+    openvdb::GridPtrVecPtr grids;
+    openvdb::MetaMap::Ptr meta;
+    VoxelShape shape;  ///< in recentred coordinates
+    CacheStamp stamp;
+    std::string contentHash;
+};
+/// Throws InputError naming what does not fit: kind, version, scene; `remedy` says what to do.
+Content read(const std::string& path, const std::string& kind, const std::string& sceneHash,
+             const Vec3d& centre, const std::string& remedy);
+
+/// The grid of that name and type. Throws InputError.
+template <class GridType>
+typename GridType::Ptr gridOf(const Content& content, const std::string& name,
+                              const std::string& path, const std::string& remedy);
+
+/// Throws InputError: `path`: expected ..., found ...; remedy.
+[[noreturn]] void refuse(const std::string& path, const std::string& expected,
+                         const std::string& found, const std::string& remedy);
+
+template <class GridType>
+typename GridType::Ptr gridOf(const Content& content, const std::string& name,
+                              const std::string& path, const std::string& remedy) {
+    for (const auto& grid : *content.grids) {
+        if (grid->getName() != name) continue;
+        if (auto typed = openvdb::gridPtrCast<GridType>(grid)) return typed;
+    }
+    refuse(path, "a grid '" + name + "'", "none of its kind", remedy);
+}
+
+}  // namespace lacuna::vdb

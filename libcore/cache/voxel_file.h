@@ -1,0 +1,23 @@
+// KEY.voxels.vdb: what lacuna-voxelize writes. Two grids in the scene file's coordinates that any
+// OpenVDB viewer shows: "solid" (topology) and "distance" (active where empty and reached).
+#pragma once
+
+#include "libcore/cache/cache_name.h"
+#include "libcore/voxel/grid.h"
+
+namespace lacuna {
+
+struct VoxelFile {
+    VoxelSpace space;
+    CacheStamp stamp;
+};
+
+/// `centre` as of Scene::centre(). Throws RunError.
+void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d& centre);
+
+/// Throws InputError if the file is missing, damaged, of another kind, version or scene; `remedy`
+/// says what to do.
+VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash, const Vec3d& centre,
+                        const std::string& remedy);
+
+}  // namespace lacuna

@@ -1,0 +1,126 @@
+#include "libcore/skeleton/graph.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "libcore/base/parallel.h"
+
+namespace lacuna {
+
+namespace {
+
+class UnionFind {
+  public:
+    explicit UnionFind(std::size_t n) : parent_(n), sets_(n) {
+        std::iota(parent_.begin(), parent_.end(), std::uint32_t(0));
+    }
+    std::uint32_t find(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    /// False if they were in one set already.
+    bool join(std::uint32_t a, std::uint32_t b) {
+        a = find(a);
+        b = find(b);
+        if (a == b) return false;
+        parent_[std::max(a, b)] = std::min(a, b);
+        --sets_;
+        return true;
+    }
+    std::size_t sets() const { return sets_; }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+    std::size_t sets_;
+};
+
+constexpr std::uint32_t kNobody = 0xffffffffu;
+
+}  // namespace
+
+std::int64_t SkeletonGraph::b0() const {
+    UnionFind sets(nodes.size());
+    for (const auto& e : edges) sets.join(e[0], e[1]);
+    return std::int64_t(sets.sets());
+}
+
+std::int64_t FilteredGraph::b0() const {
+    UnionFind sets(nodes.size());
+    for (const FilteredEdge& e : edges) sets.join(e.nodes[0], e.nodes[1]);
+    return std::int64_t(sets.sets());
+}
+
+SkeletonGraph extractGraph(const CubicalComplex& complex, const VoxelShape& shape,
+                           const std::function<double(const Vec3d&)>& radiusAt,
+                           const ThreadPool& pool) {
+    SkeletonGraph graph;
+    std::vector<CubicalComplex::Corner> corners;
+    for (CubicalComplex::Corner c = 0; c < complex.corners(); ++c) {
+        if (complex.has(c, 0)) corners.push_back(c);
+    }
+    const auto numberOf = [&](CubicalComplex::Corner c) {
+        return std::uint32_t(std::lower_bound(corners.begin(), corners.end(), c) - corners.begin());
+    };
+    graph.nodes.resize(corners.size());
+    pool.forEach(corners.size(), [&](std::size_t i) {
+        const Vec3d p = shape.corner(complex.indexOf(corners[i]));
+        graph.nodes[i] = {p, radiusAt(p)};
+    });
+    for (std::uint32_t i = 0; i < corners.size(); ++i) {
+        for (int a = 0; a < 3; ++a) {
+            if (complex.has(corners[i], 1u << a)) {
+                graph.edges.push_back({i, numberOf(corners[i] + complex.step(a))});
+            }
+        }
+    }
+    return graph;
+}
+
+FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph) {
+    const std::size_t n = graph.nodes.size();
+    std::vector<std::vector<std::uint32_t>> neighbours(n);
+    for (const auto& e : graph.edges) {
+        neighbours[e[0]].push_back(e[1]);
+        neighbours[e[1]].push_back(e[0]);
+    }
+    std::vector<std::uint32_t> order(n);
+    std::iota(order.begin(), order.end(), std::uint32_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return graph.nodes[a].radius > graph.nodes[b].radius;
+    });
+
+    FilteredGraph filtered;
+    std::vector<std::uint32_t> keeper(n, kNobody);  // index in filtered.nodes
+    std::vector<std::uint32_t> stack;
+    for (const std::uint32_t k : order) {
+        if (keeper[k] != kNobody) continue;
+        const SkeletonNode& ball = graph.nodes[k];
+        const auto number = std::uint32_t(filtered.nodes.size());
+        filtered.nodes.push_back(ball);
+        keeper[k] = number;
+        stack.push_back(k);
+        while (!stack.empty()) {
+            const std::uint32_t here = stack.back();
+            stack.pop_back();
+            for (const std::uint32_t next : neighbours[here]) {
+                if (keeper[next] != kNobody ||
+                    !(length(graph.nodes[next].position - ball.position) < ball.radius)) {
+                    continue;
+                }
+                keeper[next] = number;
+                stack.push_back(next);
+            }
+        }
+    }
+
+    // Inside a swallowed set the first edges make a spanning tree; one more is a loop.
+    UnionFind tree(n);
+    for (const auto& e : graph.edges) {
+        if (keeper[e[0]] == keeper[e[1]] && tree.join(e[0], e[1])) continue;
+        filtered.edges.push_back(
+            {{keeper[e[0]], keeper[e[1]]}, graph.nodes[e[0]].position, graph.nodes[e[1]].position});
+    }
+    return filtered;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,195 @@
+#include "libcore/skeleton/node_map.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/voxel/voxelize.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Length of a move along one, two, three axes, in units of 2^-18 voxels.
+constexpr std::uint64_t kMove[4] = {0, 262144, 370728, 454047};
+constexpr std::uint64_t kUnit = kMove[1];
+constexpr std::uint64_t kFar = std::numeric_limits<std::uint64_t>::max();
+constexpr std::size_t kPerTask = 4096;
+
+/// Distance and node in one number, so that the smaller one is the nearer, then the lower.
+constexpr std::uint64_t keyOf(std::uint64_t distance, std::uint64_t node) {
+    return distance << 16 | node;
+}
+
+template <class Body>
+void forNeighbours(const VoxelShape& shape, const VoxelIndex& v, const Body& body) {
+    for (int n = 0; n < 27; ++n) {
+        if (n == 13) continue;
+        const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;
+        const VoxelIndex u{v[0] + dx, v[1] + dy, v[2] + dz};
+        if (shape.contains(u)) {
+            body(shape.at(u), keyOf(kMove[std::abs(dx) + std::abs(dy) + std::abs(dz)], 0));
+        }
+    }
+}
+
+/// Spreads in waves as wide as the shortest move: a wave never changes itself, so that its voxels
+/// can be visited in any order and at once.
+class Waves {
+  public:
+    Waves(const VoxelSpace& space, const ThreadPool& pool)
+        : space_(space), pool_(pool), key_(space.state.size(), kFar), done_(key_.size(), 0) {}
+
+    void seed(std::size_t voxel, std::size_t node) {
+        if (keyOf(0, node) < key_[voxel]) {
+            key_[voxel] = keyOf(0, node);
+            wave_[0].push_back(voxel);
+        }
+    }
+
+    std::vector<std::uint64_t> run(const std::atomic<bool>& cancel) {
+        for (std::size_t n = 0; !wave_[0].empty() || !wave_[1].empty() || !wave_[2].empty(); ++n) {
+            throwIfCancelled(cancel);
+            spread(n);
+        }
+        return std::move(key_);
+    }
+
+  private:
+    void spread(std::size_t number) {
+        const std::vector<std::size_t> wave = std::exchange(wave_[number % 3], {});
+        struct Found {
+            std::vector<std::size_t> next[3];
+        };
+        std::vector<Found> found((wave.size() + kPerTask - 1) / kPerTask);
+        pool_.forEach(found.size(), [&](std::size_t task) {
+            const std::size_t end = std::min(wave.size(), (task + 1) * kPerTask);
+            for (std::size_t i = task * kPerTask; i < end; ++i) {
+                if (std::atomic_ref(done_[wave[i]]).exchange(1, std::memory_order_relaxed))
+                    continue;
+                const std::uint64_t own = key_[wave[i]];
+                forNeighbours(space_.shape, space_.shape.indexOf(wave[i]),
+                              [&](std::size_t u, std::uint64_t move) {
+                                  if (space_.state[u] != VoxelState::Empty) return;
+                                  if (!lower(u, own + move)) return;
+                                  const std::uint64_t distance = (own + move) >> 16;
+                                  found[task].next[distance / kUnit % 3].push_back(u);
+                              });
+            }
+        });
+        for (const Found& f : found) {
+            for (std::size_t w = 0; w < 3; ++w) {
+                wave_[w].insert(wave_[w].end(), f.next[w].begin(), f.next[w].end());
+            }
+        }
+    }
+
+    bool lower(std::size_t voxel, std::uint64_t key) {
+        const std::atomic_ref<std::uint64_t> at(key_[voxel]);
+        std::uint64_t old = at.load(std::memory_order_relaxed);
+        while (key < old) {
+            if (at.compare_exchange_weak(old, key, std::memory_order_relaxed)) return true;
+        }
+        return false;
+    }
+
+    const VoxelSpace& space_;
+    const ThreadPool& pool_;
+    std::vector<std::uint64_t> key_;
+    std::vector<std::uint8_t> done_;
+    std::vector<std::size_t> wave_[3];  // by distance / kUnit modulo 3
+};
+
+}  // namespace
+
+std::uint16_t NodeMap::entry(const Vec3d& point) const {
+    const VoxelIndex v = shape_.voxelOf(point);
+    return shape_.contains(v) ? entries_[shape_.at(v)] : kNone;
+}
+
+std::uint16_t NodeMap::at(const Vec3d& point, const Vec3d& side) const {
+    if (entries_.empty()) return kNone;
+    for (const double step : {0.0, 0.5, 1.0, 1.5, 2.0}) {
+        const std::uint16_t e = entry(point + side * (step * shape_.voxel));
+        if (!(e & kSolid) && e != kNone) return e;
+    }
+    return std::uint16_t(entry(point) & ~kSolid);
+}
+
+NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
+                 const ThreadPool& pool, const std::atomic<bool>& cancel) {
+    if (nodes.size() >= NodeMap::kNone) {
+        throw RunError("node map: expected fewer than " + std::to_string(NodeMap::kNone) +
+                       " nodes, found " + std::to_string(nodes.size()) +
+                       "; use a lower --resolution");
+    }
+    const VoxelShape& shape = space.shape;
+    Waves waves(space, pool);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const Vec3d place = (nodes[n].position - shape.origin) / shape.voxel;
+        const VoxelIndex corner{int(std::lround(place.x)), int(std::lround(place.y)),
+                                int(std::lround(place.z))};
+        for (int i = 0; i < 8; ++i) {
+            const VoxelIndex v{corner[0] - (i & 1), corner[1] - (i >> 1 & 1), corner[2] - (i >> 2)};
+            if (space.empty(v)) waves.seed(shape.at(v), n);
+        }
+    }
+    const std::vector<std::uint64_t> key = waves.run(cancel);
+
+    std::vector<std::uint16_t> entries(shape.count(), NodeMap::kNone);
+    const auto layer = std::size_t(shape.size[0]) * std::size_t(shape.size[1]);
+    pool.forEach(std::size_t(shape.size[2]), [&](std::size_t z) {
+        for (std::size_t i = z * layer; i < (z + 1) * layer; ++i) {
+            if (space.state[i] == VoxelState::Empty) {
+                if (key[i] != kFar) entries[i] = std::uint16_t(key[i] & 0xffff);
+                continue;
+            }
+            std::uint64_t best = kFar;
+            forNeighbours(shape, shape.indexOf(i), [&](std::size_t u, std::uint64_t move) {
+                if (space.state[u] == VoxelState::Empty && key[u] != kFar) {
+                    best = std::min(best, key[u] + move);
+                }
+            });
+            entries[i] = std::uint16_t(
+                NodeMap::kSolid | (best == kFar ? NodeMap::kNone : std::uint16_t(best & 0xffff)));
+        }
+    });
+    return {shape, std::move(entries)};
+}
+
+std::string Skeleton::contentHash() const {
+    XXH3_state_t* hash = XXH3_createState();
+    XXH3_128bits_reset(hash);
+    const auto add = [&](const auto& value) { XXH3_128bits_update(hash, &value, sizeof(value)); };
+    const auto addPoint = [&](const Vec3d& p) {
+        add(p.x);
+        add(p.y);
+        add(p.z);
+    };
+    for (const SkeletonNode& n : nodes) {
+        addPoint(n.position);
+        add(n.radius);
+    }
+    for (const FilteredEdge& e : edges) {
+        add(e.nodes);
+        addPoint(e.leave);
+        addPoint(e.enter);
+    }
+    add(map.shape().size);
+    addPoint(map.shape().origin);
+    add(map.shape().voxel);
+    XXH3_128bits_update(hash, map.entries().data(), map.entries().size_bytes());
+    const XXH128_hash_t digest = XXH3_128bits_digest(hash);
+    XXH3_freeState(hash);
+    char text[33];
+    std::snprintf(text, sizeof(text), "%016llx%016llx", (unsigned long long)(digest.high64),
+                  (unsigned long long)(digest.low64));
+    return text;
+}
+
+}  // namespace lacuna

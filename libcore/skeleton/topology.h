@@ -1,0 +1,20 @@
+// What homotopy leaves alone: components, independent loops, enclosed cavities.
+#pragma once
+
+#include "libcore/skeleton/cubical_complex.h"
+
+namespace lacuna {
+
+struct Betti {
+    std::int64_t b0 = 0;  ///< connected components
+    std::int64_t b1 = 0;  ///< independent loops
+    std::int64_t b2 = 0;  ///< enclosed cavities
+    std::int64_t euler() const { return b0 - b1 + b2; }
+    friend bool operator==(const Betti&, const Betti&) = default;
+};
+
+/// Of the Empty voxels (26-connected; everything else is solid and 6-connected): components and
+/// cavities by counting both, loops by the Euler characteristic of the complex.
+Betti emptySpaceBetti(const VoxelSpace& space);
+
+}  // namespace lacuna

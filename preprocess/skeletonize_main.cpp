@@ -1,0 +1,108 @@
+// lacuna-skeletonize: the curve skeleton of a scene's empty space and the map of its nodes.
+#include <cstdio>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "preprocess/skeletonize.h"
+#include "preprocess/tool_stage.h"
+#include "render/interrupt.h"
+#include "render/progress.h"
+
+namespace lacuna {
+namespace {
+
+nlohmann::json graphJson(std::size_t nodes, std::size_t edges, const Betti& b) {
+    return {{"nodes", nodes}, {"edges", edges}, {"b0", b.b0}, {"b1", b.b1}};
+}
+
+int skeletonizeTool(int argc, const char* const* argv) {
+    CLI::App app("Finds the curve skeleton of a scene's empty space", "lacuna-skeletonize");
+    BuildOptions options;
+    std::string voxelPath, graphPath;
+    addBuildOptions(app, options);
+    addVoxelOptions(app, options);
+    app.add_option("--voxels", voxelPath, "Voxels to start from (default: those in the cache)")
+        ->type_name("FILE");
+    app.add_option("--graph", graphPath, "Skeleton and balls for viewers, .glb")
+        ->type_name("FILE.glb");
+    app.footer(
+        "Reads KEY.voxels.vdb of lacuna-voxelize, which must have been run with the same\n"
+        "--resolution and --domain, and writes KEY.skeleton.vdb beside it. Exit codes: 0 done,\n"
+        "1 failed while running, 2 usage, 3 scene or voxels cannot be used, 130 interrupted\n"
+        "(nothing is written then).");
+    if (const auto done = parseCommandLine(app, argc, argv)) return *done;
+    const VoxelizeSettings settings = checkedSettings(options);
+    if (!graphPath.empty()) const AtomicFile probe(graphPath);
+
+    const ThreadPool pool(options.common.threads);
+    const InterruptGuard interrupt;
+    Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
+    Phases phases([&](const std::string& name) { progress.phase(name); });
+    Phases total;
+    std::unique_ptr<Scene> scene;
+    Skeletonized result;
+    std::string path;
+    total.run("all", [&] {
+        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
+        const std::string hash = scene->description().contentHash;
+        CacheStamp stamp = voxelStamp(hash, settings.resolution, settings.domainText);
+        if (voxelPath.empty()) {
+            voxelPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
+                                  stamp, "voxels.vdb");
+        }
+        VoxelFile voxels;
+        phases.run("read", [&] {
+            const std::string remedy = "run lacuna-voxelize " + options.scene;
+            pool.run([&] { voxels = readVoxelFile(voxelPath, hash, scene->centre(), remedy); });
+        });
+        path = resultFile(options, voxels.stamp, "skeleton.vdb");
+        result = skeletonize(*scene, voxels, pool, interrupt.requested(), phases);
+        phases.run("write", [&] {
+            pool.run([&] { writeSkeletonFile(path, result.file, scene->centre()); });
+            if (!graphPath.empty()) writeGraphGlb(graphPath, result, scene->centre());
+        });
+    });
+
+    const Skeleton& skeleton = result.file.skeleton;
+    const double seconds = total.seconds().at("all");
+    std::printf(
+        "%s: empty space b0 %lld b1 %lld b2 %lld; skeleton %zu nodes, %zu edges, b0 %lld b1 %lld; "
+        "filtered %zu nodes, %zu edges, b0 %lld b1 %lld; %.3g s\n",
+        path.c_str(), (long long)result.empty.b0, (long long)result.empty.b1,
+        (long long)result.empty.b2, result.raw.nodes.size(), result.raw.edges.size(),
+        (long long)result.skeleton.b0, (long long)result.skeleton.b1, skeleton.nodes.size(),
+        skeleton.edges.size(), (long long)result.filtered.b0, (long long)result.filtered.b1,
+        seconds);
+    if (result.skeleton.b0 != result.empty.b0 || result.skeleton.b1 != result.empty.b1) {
+        progress.warning("warning: " + path +
+                         ": the skeleton has other loops than the empty space (" +
+                         std::to_string(result.squares) + " squares could not be collapsed)");
+    }
+    writeReport(
+        options.common,
+        {{"file", path},
+         {"empty_space",
+          {{"b0", result.empty.b0},
+           {"b1", result.empty.b1},
+           {"b2", result.empty.b2},
+           {"euler", result.empty.euler()}}},
+         {"skeleton", graphJson(result.raw.nodes.size(), result.raw.edges.size(), result.skeleton)},
+         {"filtered", graphJson(skeleton.nodes.size(), skeleton.edges.size(), result.filtered)},
+         {"rounds", result.rounds},
+         {"punctures", result.punctures},
+         {"squares", result.squares},
+         {"node_map_bytes", skeleton.map.entries().size_bytes()},
+         {"content_hash", result.file.contentHash},
+         {"phases", phases.seconds()},
+         {"seconds", seconds},
+         {"peak_bytes", peakBytes()}});
+    return 0;
+}
+
+}  // namespace
+}  // namespace lacuna
+
+int main(int argc, char** argv) {
+    return lacuna::runTool([&] { return lacuna::skeletonizeTool(argc, argv); });
+}

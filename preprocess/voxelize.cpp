@@ -1,0 +1,92 @@
+#include "preprocess/voxelize.h"
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/voxel/surface_distance.h"
+
+namespace lacuna {
+
+VoxelBox parseDomain(const std::string& text) {
+    double number[6];
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    bool good = true;
+    for (int i = 0; i < 6 && good; ++i) {
+        const auto [next, error] = std::from_chars(at, end, number[i]);
+        good = error == std::errc{} && std::isfinite(number[i]) &&
+               (i == 5 ? next == end : next != end && *next == ',');
+        at = next + (i < 5 ? 1 : 0);
+    }
+    for (int i = 0; i < 3 && good; ++i) good = number[i] < number[i + 3];
+    if (!good) {
+        throw UsageError(
+            "--domain: expected x0,y0,z0,x1,y1,z1 in the scene's coordinates with x0 < x1, y0 < y1 "
+            "and z0 < z1, found '" +
+            text + "'");
+    }
+    return {{number[0], number[1], number[2]}, {number[3], number[4], number[5]}};
+}
+
+void Phases::run(const std::string& name, const std::function<void()>& work) {
+    using Clock = std::chrono::steady_clock;
+    if (announce_) announce_(name);
+    const Clock::time_point start = Clock::now();
+    work();
+    seconds_[name] += std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
+                        const ThreadPool& pool, const std::atomic<bool>& cancel, Phases& phases) {
+    std::vector<Triangle> triangles;
+    Reach reach;
+    phases.run("reach", [&] {
+        triangles = scene.blockingTriangles(pool);
+        if (triangles.empty()) {
+            throw InputError(scene.description().file +
+                             ": expected triangles that stop light, found none: there is no empty "
+                             "space to describe");
+        }
+        reach = traceReach(scene, pool);
+    });
+
+    Voxelized result;
+    result.file.stamp =
+        voxelStamp(scene.description().contentHash, settings.resolution, settings.domainText);
+    VoxelSpace& space = result.file.space;
+    phases.run("voxelize", [&] {
+        if (settings.domainText.empty()) {
+            space.shape =
+                latticeOver(defaultDomain(reach, boundsOf(triangles)), settings.resolution);
+        } else {
+            VoxelBox domain = parseDomain(settings.domainText);
+            domain.low -= scene.centre();
+            domain.high -= scene.centre();
+            space.shape = latticeExactlyOver(domain, settings.resolution);
+        }
+        if (!(space.shape.voxel > 0.0)) {
+            throw InputError(scene.description().file +
+                             ": expected a scene with an extent, found a point");
+        }
+        space.state.assign(space.shape.count(), VoxelState::Empty);
+        voxelize(triangles, space.shape, space.state, pool, cancel);
+    });
+    phases.run("parts", [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
+    if (result.parts.reached == 0) {
+        throw UsageError(
+            settings.domainText.empty()
+                ? "--resolution: expected voxels fine enough to leave empty ones where the camera "
+                  "looks, found none; raise it"
+                : "--domain: expected a box that camera paths or lamps reach, found none of them "
+                  "in it; leave it out or raise --resolution");
+    }
+    phases.run("distance", [&] {
+        const SurfaceDistance surface(triangles, pool);
+        space.distance = surfaceDistances(surface, space.shape, space.state, pool, cancel);
+    });
+    return result;
+}
+
+}  // namespace lacuna

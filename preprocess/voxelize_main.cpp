@@ -1,0 +1,77 @@
+// lacuna-voxelize: the solid voxels of a scene, its empty space and the distances in it.
+#include <cstdio>
+
+#include "libcore/base/parallel.h"
+#include "preprocess/tool_stage.h"
+#include "render/interrupt.h"
+#include "render/progress.h"
+
+namespace lacuna {
+namespace {
+
+int voxelizeTool(int argc, const char* const* argv) {
+    CLI::App app("Finds the empty space of a glTF scene", "lacuna-voxelize");
+    BuildOptions options;
+    addBuildOptions(app, options);
+    addVoxelOptions(app, options);
+    app.footer(
+        "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the "
+        "scene's\n"
+        "coordinates. Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be\n"
+        "used, 130 interrupted (nothing is written then).");
+    if (const auto done = parseCommandLine(app, argc, argv)) return *done;
+    const VoxelizeSettings settings = checkedSettings(options);
+
+    const ThreadPool pool(options.common.threads);
+    const InterruptGuard interrupt;
+    Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
+    Phases phases([&](const std::string& name) { progress.phase(name); });
+    Phases total;
+    std::unique_ptr<Scene> scene;
+    Voxelized result;
+    std::string path;
+    total.run("all", [&] {
+        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
+        const CacheStamp stamp =
+            voxelStamp(scene->description().contentHash, settings.resolution, settings.domainText);
+        path = resultFile(options, stamp, "voxels.vdb");
+        result = voxelizeScene(*scene, settings, pool, interrupt.requested(), phases);
+        phases.run("write",
+                   [&] { pool.run([&] { writeVoxelFile(path, result.file, scene->centre()); }); });
+    });
+
+    const VoxelSpace& space = result.file.space;
+    std::size_t counts[3] = {0, 0, 0};
+    for (const VoxelState s : space.state) ++counts[std::size_t(s)];
+    const std::size_t solid = counts[std::size_t(VoxelState::Solid)];
+    const std::size_t empty = counts[std::size_t(VoxelState::Empty)];
+    const double seconds = total.seconds().at("all");
+    std::printf(
+        "%s: %d x %d x %d voxels of %.4g, %zu solid, %zu empty in %zu of %zu parts, %.3g s\n",
+        path.c_str(), space.shape.size[0], space.shape.size[1], space.shape.size[2],
+        space.shape.voxel, solid, empty, result.parts.reached, result.parts.total, seconds);
+    const Vec3d low = space.shape.box().low + scene->centre();
+    const Vec3d high = space.shape.box().high + scene->centre();
+    writeReport(options.common, {{"file", path},
+                                 {"resolution", space.shape.size},
+                                 {"voxel", space.shape.voxel},
+                                 {"domain", {low.x, low.y, low.z, high.x, high.y, high.z}},
+                                 {"solid_voxels", solid},
+                                 {"empty_voxels", empty},
+                                 {"unreached_voxels", counts[std::size_t(VoxelState::Unreached)]},
+                                 {"parts", result.parts.total},
+                                 {"reached_parts", result.parts.reached},
+                                 {"content_hash", space.contentHash()},
+                                 {"scene_hash", scene->description().contentHash},
+                                 {"phases", phases.seconds()},
+                                 {"seconds", seconds},
+                                 {"peak_bytes", peakBytes()}});
+    return 0;
+}
+
+}  // namespace
+}  // namespace lacuna
+
+int main(int argc, char** argv) {
+    return lacuna::runTool([&] { return lacuna::voxelizeTool(argc, argv); });
+}
