@@ -23,6 +23,16 @@ Parameter nextEventParameter(bool defaultOn) {
         "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light points"};
 }
 
+Parameter presetParameter() {
+    return {"preset",
+            Parameter::Kind::Choice,
+            0,
+            0,
+            1,
+            "defaults that measured best, or the paper's; single parameters override it",
+            {"measured", "paper"}};
+}
+
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {
     PathVertex& y0 = sink.newVertex();
     if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0, 0});

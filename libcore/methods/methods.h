@@ -18,6 +18,9 @@ Parameter lightPathsParameter();
 /// `next_event`: s = 1 by fresh light points instead of the pool's y_0.
 Parameter nextEventParameter(bool defaultOn);
 
+/// `preset`: our defaults, or those of the row's paper.
+Parameter presetParameter();
+
 /// Proposes one fresh light point: next event (s = 1, r = 1).
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
 

@@ -1,5 +1,6 @@
 #include "libcore/methods/registry.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -78,6 +79,9 @@ double parse(const Parameter& p, const std::string& text) {
 Settings resolve(const MethodRow& row, std::span<const std::string> assignments) {
     Settings settings;
     for (const Parameter& p : row.parameters) settings.values_[p.name] = p.defaultValue;
+    if (std::find(assignments.begin(), assignments.end(), "preset=paper") != assignments.end()) {
+        for (const auto& [name, value] : row.paper) settings.values_.at(name) = value;
+    }
     for (const std::string& assignment : assignments) {
         const std::size_t equals = assignment.find('=');
         const std::string key = assignment.substr(0, equals);

@@ -47,6 +47,9 @@ struct MethodRow {
     TechniqueSet techniques;
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     std::vector<Parameter> parameters;
+    /// What `preset=paper` sets, where the paper's value is not our default. A row that has any
+    /// lists presetParameter().
+    std::map<std::string, double> paper;
     std::function<std::unique_ptr<Method>(const Settings&)> create;
 };
 
@@ -54,8 +57,8 @@ struct MethodRow {
 std::span<const MethodRow> methods();
 /// Throws UsageError that lists the names.
 const MethodRow& findMethod(const std::string& name);
-/// Defaults overridden by `key=value` strings. Throws UsageError naming the key, its range and what
-/// was found.
+/// Defaults overridden by `key=value` strings, the preset's values first. Throws UsageError naming
+/// the key, its range and what was found.
 Settings resolve(const MethodRow& row, std::span<const std::string> assignments);
 
 }  // namespace lacuna

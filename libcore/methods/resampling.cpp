@@ -196,7 +196,8 @@ std::vector<Parameter> resamplingParameters(double candidates, CacheTarget targe
              {"flow", "flow-bsdf"}},
             {"untested", Kind::Real, 0.0, 0, 1,
              "share of a pmf, its smallest entries, that no visibility rays are spent on"},
-            nextEventParameter(false)};
+            nextEventParameter(true),
+            presetParameter()};
 }
 
 ResamplingOptions resamplingOptions(const Settings& s) {

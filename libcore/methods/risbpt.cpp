@@ -27,6 +27,7 @@ MethodRow resamplingAwareRow() {
                               1,
                               "density that the weights see: resampling-aware, or r = 1",
                               {"ris", "plain"}});
+    row.paper = {{"next_event", 0}, {"q_iterations", 1}};
     row.create = [](const Settings& s) {
         ResamplingOptions o = resamplingOptions(s);
         o.picks = int(s.integer("connections"));

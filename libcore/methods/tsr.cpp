@@ -290,7 +290,7 @@ MethodRow twoStageResamplingRow() {
         {"second_candidates", Kind::Integer, 200, 1, 1e6, "clusters of a cut, M2"},
         {"cache_density", Kind::Real, 0.004, 0, 16,
          "eye subpaths that leave cache points, per pixel"},
-        {"cache_points", Kind::Integer, 3, 1, 16, "cache points that serve an eye vertex, N_c"},
+        {"cache_points", Kind::Integer, 1, 1, 16, "cache points that serve an eye vertex, N_c"},
         {"q_points", Kind::Integer, 3, 1, 16,
          "cache points of the last iteration whose Q are averaged, N_q"},
         {"q_iterations", Kind::Integer, 16, 1, 256,
@@ -314,7 +314,9 @@ MethodRow twoStageResamplingRow() {
          2,
          "density that the weights see: both stages, the second alone, or r = 1",
          {"tsr", "ris", "plain"}},
-        nextEventParameter(false)};
+        nextEventParameter(true),
+        presetParameter()};
+    row.paper = {{"next_event", 0}, {"q_iterations", 1}, {"cache_points", 3}, {"target", 1}};
     row.create = [](const Settings& s) -> std::unique_ptr<Method> {
         Options o;
         o.subpaths = s.integer("candidates");
