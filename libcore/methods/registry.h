@@ -45,6 +45,8 @@ struct MethodRow {
     std::string reference;  ///< key in REFERENCES.md
     std::string summary;    ///< one line
     TechniqueSet techniques;
+    bool needsSkeleton = false;           ///< of the empty space (Method::useSkeleton)
+    std::vector<std::string> parts = {};  ///< names of proposals' labels, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     std::vector<Parameter> parameters;
     std::function<std::unique_ptr<Method>(const Settings&)> create;
