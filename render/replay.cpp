@@ -4,6 +4,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/bidir/verify.h"
+#include "render/caches.h"
 #include "render/interrupt.h"
 #include "render/stage.h"
 
@@ -130,6 +131,9 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     whole.crop = {0, film.width, 0, film.height};  // a sample does not depend on the crop
 
     const std::unique_ptr<Method> method = row.create(settings);
+    const Caches caches =
+        loadCaches(options, row, settings, *stage.scene, pool, interrupt.requested(), progress);
+    if (caches.skeleton) method->useSkeleton(caches.skeleton);
     BidirIntegrator integrator(*stage.scene, *stage.camera, row.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 

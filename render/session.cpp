@@ -74,8 +74,11 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       interrupt_(interrupt),
       progress_(progress),
       stage_(loadStage(options, row, settings, pool, progress)),
+      caches_(
+          loadCaches(options, row, settings, *stage_.scene, pool, interrupt.requested(), progress)),
       method_(row.create(settings)),
       film_(makeFilm(options, stage_.settings)) {
+    if (caches_.skeleton) method_->useSkeleton(caches_.skeleton);
     loadReference();
     integrator_ = std::make_unique<BidirIntegrator>(*stage_.scene, *stage_.camera, row.techniques,
                                                     *method_, stage_.settings, pool_);
@@ -86,10 +89,15 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     if (options_.verify) {
         verifier_ = std::make_unique<WeightVerifier>(*stage_.scene, *stage_.camera,
                                                      stage_.settings.limits, pool_);
-        integrator_->setObserver([this](const PathEvent& event) { verifier_->check(event); });
     }
-    if (options_.prepare) {
-        progress_.remark("--prepare: " + row.name + " needs no caches: nothing to build");
+    if (options_.techniques && !row.parts.empty()) {
+        parts_.emplace(row.parts, film_.width(), film_.height());
+    }
+    if (verifier_ || parts_) {
+        integrator_->setObserver([this](const PathEvent& event) {
+            if (verifier_) verifier_->check(event);
+            if (parts_) parts_->add(event);
+        });
     }
 
     RenderReport& r = report_;
@@ -104,8 +112,10 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.limits = stage_.settings.limits;
     r.lightPaths = row.techniques.splats ? integrator_->lightPaths() : 0;
     r.warmupIterations = method_->warmupIterations();
-    r.setupSeconds = stage_.setupSeconds;
+    r.setupSeconds = stage_.setupSeconds + caches_.seconds;
     r.phaseSeconds = stage_.phaseSeconds;
+    for (const auto& [phase, seconds] : caches_.phaseSeconds) r.phaseSeconds[phase] += seconds;
+    r.cacheHashes = caches_.hashes;
     r.sceneHash = stage_.scene->description().contentHash;
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
@@ -250,10 +260,14 @@ void Session::save() {
     }
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
-        writeImage(options_.output,
-                   composeImage(report_, film_, features ? &*features : nullptr,
-                                techniques_ ? &*techniques_ : nullptr),
-                   options_.exposure);
+        LayeredImage image = composeImage(report_, film_, features ? &*features : nullptr,
+                                          techniques_ ? &*techniques_ : nullptr);
+        if (parts_) parts_->writeTo(image, report_.iterations);
+        if (caches_.skeleton && features) {
+            image.setRgb("node", nodeLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                           *caches_.skeleton, pool_));
+        }
+        writeImage(options_.output, image, options_.exposure);
     }
     if (!options_.common.json.empty()) {
         writeJson(options_.common.json, reportJson(report_));

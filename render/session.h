@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "libcore/image/error_metrics.h"
+#include "render/caches.h"
 #include "render/curve_log.h"
 #include "render/interrupt.h"
+#include "render/method_layers.h"
 #include "render/options.h"
 #include "render/output.h"
 #include "render/progress.h"
@@ -41,10 +43,12 @@ class Session {
     Progress& progress_;
 
     Stage stage_;
+    Caches caches_;
     std::unique_ptr<Method> method_;
     std::unique_ptr<BidirIntegrator> integrator_;
     Film film_;
     std::optional<TechniqueFilm> techniques_;
+    std::optional<PartFilm> parts_;
     std::unique_ptr<WeightVerifier> verifier_;
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;

@@ -20,6 +20,7 @@
 namespace lacuna {
 
 class ThreadPool;
+struct Skeleton;
 
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
 /// prefix of any vertex is the `count` entries that end with it.
@@ -161,6 +162,8 @@ class Method {
   public:
     virtual ~Method() = default;
 
+    /// Rows that need a skeleton get it before anything else; without it they must still work.
+    virtual void useSkeleton(std::shared_ptr<const Skeleton> skeleton) { (void)skeleton; }
     /// Iterations to run and throw away before the first one that counts.
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }

@@ -12,6 +12,8 @@ MethodRow lvcRow();                       // lvcbpt.cpp
 MethodRow probabilisticConnectionsRow();  // pcbpt.cpp
 MethodRow resamplingAwareRow();           // risbpt.cpp
 MethodRow twoStageResamplingRow();        // tsr.cpp
+MethodRow importanceCachingRow();         // icbpt.cpp
+MethodRow skeletonRow();                  // skelbpt.cpp
 
 /// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
 Parameter lightPathsParameter();

@@ -16,7 +16,9 @@ std::span<const MethodRow> methods() {
                                                 lvcRow(),
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
-                                                twoStageResamplingRow()};
+                                                twoStageResamplingRow(),
+                                                importanceCachingRow(),
+                                                skeletonRow()};
     return rows;
 }
 

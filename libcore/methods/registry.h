@@ -45,6 +45,8 @@ struct MethodRow {
     std::string reference;  ///< key in REFERENCES.md
     std::string summary;    ///< one line
     TechniqueSet techniques;
+    bool needsSkeleton = false;           ///< of the empty space (Method::useSkeleton)
+    std::vector<std::string> parts = {};  ///< names of proposals' labels, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     std::vector<Parameter> parameters;
     /// What `preset=paper` sets, where the paper's value is not our default. A row that has any

@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <utility>
@@ -26,24 +27,54 @@ constexpr std::uint64_t keyOf(std::uint64_t distance, std::uint64_t node) {
     return distance << 16 | node;
 }
 
-template <class Body>
-void forNeighbours(const VoxelShape& shape, const VoxelIndex& v, const Body& body) {
-    for (int n = 0; n < 27; ++n) {
-        if (n == 13) continue;
-        const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;
-        const VoxelIndex u{v[0] + dx, v[1] + dy, v[2] + dz};
-        if (shape.contains(u)) {
-            body(shape.at(u), keyOf(kMove[std::abs(dx) + std::abs(dy) + std::abs(dz)], 0));
+/// The 26 moves from a voxel.
+class Moves {
+  public:
+    explicit Moves(const VoxelShape& shape) : shape_(shape) {
+        for (int n = 0; n < 27; ++n) {
+            if (n == 13) continue;
+            const VoxelIndex d{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+            const int axes = std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]);
+            const auto x = std::ptrdiff_t(shape.size[0]), y = std::ptrdiff_t(shape.size[1]);
+            moves_[count_++] = {d, (d[2] * y + d[1]) * x + d[0], keyOf(kMove[axes], 0)};
         }
     }
-}
+
+    /// body(voxel, key of the move) for the neighbours inside the grid.
+    template <class Body>
+    void from(std::size_t voxel, const Body& body) const {
+        const VoxelIndex v = shape_.indexOf(voxel);
+        const bool inner = v[0] > 0 && v[1] > 0 && v[2] > 0 && v[0] + 1 < shape_.size[0] &&
+                           v[1] + 1 < shape_.size[1] && v[2] + 1 < shape_.size[2];
+        for (const Move& m : moves_) {
+            if (!inner && !shape_.contains({v[0] + m.by[0], v[1] + m.by[1], v[2] + m.by[2]})) {
+                continue;
+            }
+            body(voxel + std::size_t(m.offset), m.key);
+        }
+    }
+
+  private:
+    struct Move {
+        VoxelIndex by;
+        std::ptrdiff_t offset;
+        std::uint64_t key;
+    };
+    VoxelShape shape_;
+    std::array<Move, 26> moves_;
+    std::size_t count_ = 0;
+};
 
 /// Spreads in waves as wide as the shortest move: a wave never changes itself, so that its voxels
 /// can be visited in any order and at once.
 class Waves {
   public:
     Waves(const VoxelSpace& space, const ThreadPool& pool)
-        : space_(space), pool_(pool), key_(space.state.size(), kFar), done_(key_.size(), 0) {}
+        : space_(space),
+          pool_(pool),
+          moves_(space.shape),
+          key_(space.state.size(), kFar),
+          done_(key_.size(), 0) {}
 
     void seed(std::size_t voxel, std::size_t node) {
         if (keyOf(0, node) < key_[voxel]) {
@@ -73,13 +104,11 @@ class Waves {
                 if (std::atomic_ref(done_[wave[i]]).exchange(1, std::memory_order_relaxed))
                     continue;
                 const std::uint64_t own = key_[wave[i]];
-                forNeighbours(space_.shape, space_.shape.indexOf(wave[i]),
-                              [&](std::size_t u, std::uint64_t move) {
-                                  if (space_.state[u] != VoxelState::Empty) return;
-                                  if (!lower(u, own + move)) return;
-                                  const std::uint64_t distance = (own + move) >> 16;
-                                  found[task].next[distance / kUnit % 3].push_back(u);
-                              });
+                moves_.from(wave[i], [&](std::size_t u, std::uint64_t move) {
+                    if (space_.state[u] != VoxelState::Empty || !lower(u, own + move)) return;
+                    const std::uint64_t distance = (own + move) >> 16;
+                    found[task].next[distance / kUnit % 3].push_back(u);
+                });
             }
         });
         for (const Found& f : found) {
@@ -100,6 +129,7 @@ class Waves {
 
     const VoxelSpace& space_;
     const ThreadPool& pool_;
+    Moves moves_;
     std::vector<std::uint64_t> key_;
     std::vector<std::uint8_t> done_;
     std::vector<std::size_t> wave_[3];  // by distance / kUnit modulo 3
@@ -141,6 +171,7 @@ NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
     }
     const std::vector<std::uint64_t> key = waves.run(cancel);
 
+    const Moves moves(shape);
     std::vector<std::uint16_t> entries(shape.count(), NodeMap::kNone);
     const auto layer = std::size_t(shape.size[0]) * std::size_t(shape.size[1]);
     pool.forEach(std::size_t(shape.size[2]), [&](std::size_t z) {
@@ -150,7 +181,7 @@ NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
                 continue;
             }
             std::uint64_t best = kFar;
-            forNeighbours(shape, shape.indexOf(i), [&](std::size_t u, std::uint64_t move) {
+            moves.from(i, [&](std::size_t u, std::uint64_t move) {
                 if (space.state[u] == VoxelState::Empty && key[u] != kFar) {
                     best = std::min(best, key[u] + move);
                 }

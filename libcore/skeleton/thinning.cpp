@@ -105,9 +105,12 @@ class Thinning {
                 const bool alone = reach == Reach::Itself;
                 for (int n = alone ? 13 : 0; n < (alone ? 14 : 27); ++n) {
                     const Corner c = centres[i] + neighbour_[std::size_t(n)];
-                    if (complex().cells(c) == 0) continue;
-                    if (std::atomic_ref(stamp_[c]).exchange(mark, std::memory_order_relaxed) !=
-                        mark) {
+                    const std::atomic_ref stamp(stamp_[c]);
+                    // Most are in the list already: a look is cheaper than an exchange.
+                    if (stamp.load(std::memory_order_relaxed) == mark || complex().cells(c) == 0) {
+                        continue;
+                    }
+                    if (stamp.exchange(mark, std::memory_order_relaxed) != mark) {
                         parts[task].push_back(c);
                     }
                 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "libcore/methods/methods.h"
+#include "libcore/skeleton/node_map.h"
 
 namespace lacuna::test {
 
@@ -100,6 +101,21 @@ class UniformUnderHash final : public Method {
     const LightPool* pool_ = nullptr;
 };
 
+/// skelbpt with nodes: the finite space's states lie near x = 0 within 4 of the axis. Three nodes
+/// that stand where a state does (that is how FiniteSpace knows who sees them), mapped to by blocks
+/// of the plane, and blocks without a node.
+std::shared_ptr<const Skeleton> threeNodes() {
+    const VoxelShape shape{{1, 5, 5}, {-1, -5, -5}, 2};
+    std::vector<std::uint16_t> entries;
+    for (std::size_t i = 0; i < shape.count(); ++i) {
+        entries.push_back(i % 4 == 3 ? NodeMap::kNone : std::uint16_t(i % 4));
+    }
+    auto skeleton = std::make_shared<Skeleton>();
+    skeleton->nodes = {{{0.025, 1, 0}, 2}, {{0.035, -1, 1}, 1}, {{0.065, 0, -2}, 3}};
+    skeleton->map = NodeMap(shape, std::move(entries));
+    return skeleton;
+}
+
 Parameter candidatesParameter() {
     return {"candidates", Parameter::Kind::Integer, 1000, 1, 1e6, "light subpaths in the pool"};
 }
@@ -128,6 +144,21 @@ MethodRow hashedDensityRow() {
     return row;
 }
 
+MethodRow mappedSkeletonRow() {
+    MethodRow row = findMethod("skelbpt");
+    row.name = "test-skelbpt-mapped";
+    row.create = [](const Settings& s) {
+        auto method = findMethod("skelbpt").create(s);
+        method->useSkeleton(threeNodes());
+        return method;
+    };
+    // So that no node is turned down.
+    for (Parameter& p : row.parameters) {
+        if (p.name == "node_acceptance") p.defaultValue = 0;
+    }
+    return row;
+}
+
 std::vector<MethodRow> allRows() {
     std::vector<MethodRow> rows;
     for (const MethodRow& row : methods()) {
@@ -135,6 +166,7 @@ std::vector<MethodRow> allRows() {
     }
     rows.push_back(potpourriRow());
     rows.push_back(hashedDensityRow());
+    rows.push_back(mappedSkeletonRow());
     return rows;
 }
 

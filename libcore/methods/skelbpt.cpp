@@ -1,0 +1,383 @@
+// Connections resampled at the nodes of the empty space's skeleton [Noel15].
+//
+//   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
+//   node      n(z): nearest node by geodesic distance (node_map.h), on the side the eye path is on
+//   weight    w_n(y) = mean(beta(y)) / max(|P_n - y|, d)^2, at infinity mean(beta(y))   [eq 5]
+//             d: a share of the ball's radius, because a light vertex may lie on the node
+//   pmfs      over L_s, per node and s:  V ∝ w_n V(n, y) [eq 6],  U ∝ w_n [eq 7],  C = 1 / |L_s|
+//   [eq 8]
+//             combined by the maximum heuristic, one of them chosen                 [4.3]
+//   pick      one y per s:  contribution h(y) / (M P(y))                            [eq 9]
+//   accepted  nodes that more than `node_acceptance` times the mean of all nodes' eye vertices are
+//             mapped to [4.4]; at the others C alone. Counted by eye subpaths of their own over the
+//             whole film before the first iteration, not by those of earlier iterations: a crop
+//             sees the same nodes, and the first iteration has distributions as well
+//   MIS       credit:  r is one constant, 1 <= r <= M (the authors' code: M)
+//             aware:   r = [1/M + (1 - 1/M) / R]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M P(y)
+//             is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of maxima,
+//             all per node and s from earlier iterations, taking V(n, y) = 1; after [Nabata20a eq
+//             14]. Z is exact for the choice by mass and stands in for the even one
+//   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/methods/length_pmfs.h"
+#include "libcore/methods/methods.h"
+#include "libcore/skeleton/node_map.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::uint64_t kCountingPaths = 16384, kCountingPathsPerTask = 256;
+constexpr std::size_t kVerticesPerTask = 512;
+constexpr double kNearest = 0.1;  // of the ball's radius: the closest a light vertex counts as
+constexpr std::uint32_t kUnmapped = NodeMap::kNone;
+enum Row : std::uint32_t { kSeen, kUnseen, kUniform, kRows };
+
+struct Options {
+    std::uint64_t subpaths;
+    double acceptance, credit;
+    bool use[kRows];
+    Choice choice;
+    bool nextEvent, aware;
+};
+
+/// Nodes of both sides of a surface in one tag, so that the tag is a function of the vertex alone.
+class NodeLookup {
+  public:
+    void use(std::shared_ptr<const Skeleton> skeleton) { skeleton_ = std::move(skeleton); }
+    const Skeleton* skeleton() const { return skeleton_.get(); }
+
+    std::uint32_t bothSides(const PathVertex& v) const {
+        const Vec3d p(v.position), n(v.ng);
+        return std::uint32_t(skeleton_->map.at(p, n)) | std::uint32_t(skeleton_->map.at(p, -n))
+                                                            << 16;
+    }
+    /// Node of a vertex on the side where `direction` leaves it.
+    std::uint32_t at(const PathVertex& v, Vec3 direction) const {
+        if (!skeleton_) return kUnmapped;
+        const std::uint32_t tag = v.tag != kNone ? v.tag : bothSides(v);
+        return dot(v.ng, direction) < 0.0f ? tag >> 16 : tag & 0xffffu;
+    }
+
+  private:
+    std::shared_ptr<const Skeleton> skeleton_;
+};
+
+double weightOf(const SkeletonNode& node, const PathVertex& y, double beta) {
+    if (y.infinite()) return beta;
+    const double d2 = lengthSquared(Vec3d(y.position) - node.position);
+    const double least = kNearest * node.radius;
+    return beta / std::max({d2, least * least, 1e-30});
+}
+
+/// Frozen means of one node and length.
+struct Expected {
+    double seen = 0, unseen = 0, uniform = 0, maxima = 0;
+    std::uint64_t iterations = 0;
+};
+
+class SkeletonDensity final : public ConnectionDensity {
+  public:
+    SkeletonDensity(const Options& options, const NodeLookup& lookup)
+        : options_(options), lookup_(lookup) {}
+
+    /// By node (the last row: where there is none) and s.
+    void freeze(const std::vector<std::vector<Expected>>* expected,
+                const std::vector<bool>* accepted) {
+        expected_ = expected;
+        accepted_ = accepted;
+    }
+
+    std::optional<Constants> constants() const override {
+        if (options_.aware) return std::nullopt;
+        return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
+    }
+    bool tagsVertices() const override { return options_.aware && lookup_.skeleton(); }
+    std::uint32_t tagOf(const PathVertex& vertex) const override {
+        return lookup_.bothSides(vertex);
+    }
+
+    double effectiveSamples(const Connection& c) const override {
+        if (options_.nextEvent && c.light.count == 1) return 1.0;
+        const auto m = double(options_.subpaths);
+        const PathVertex& z = *c.eye.vertex;
+        const Vec3 back = c.eye.predecessor->position - z.position;
+        std::uint32_t node = lookup_.at(z, back);
+        if (expected_->empty()) return 1.0;
+        const std::size_t nodes = expected_->size() - 1;
+        if (node >= nodes || !(*accepted_)[node]) node = std::uint32_t(nodes);
+        const std::vector<Expected>& row = (*expected_)[node];
+        const auto s = std::size_t(c.light.count);
+        // A length that was never seen: one sample is as good a guess as any.
+        if (s >= row.size() || !(row[s].uniform > 0.0)) return 1.0;
+        const Expected& e = row[s];
+        double ratio = 1.0 / e.uniform;
+        if (node < nodes) {
+            const double w =
+                weightOf(lookup_.skeleton()->nodes[node], *c.light.vertex, double(mean(c.beta)));
+            ratio = options_.use[kUniform] ? ratio : 0.0;
+            if (options_.use[kSeen] && e.seen > 0.0) ratio = std::max(ratio, w / e.seen);
+            if (options_.use[kUnseen] && e.unseen > 0.0) ratio = std::max(ratio, w / e.unseen);
+            ratio /= std::max(e.maxima, 1e-3);
+        }
+        return ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / ratio) : 1.0 / m;
+    }
+
+  private:
+    const Options& options_;
+    const NodeLookup& lookup_;
+    const std::vector<std::vector<Expected>>* expected_ = nullptr;
+    const std::vector<bool>* accepted_ = nullptr;
+};
+
+class SkeletonConnections final : public Method {
+  public:
+    explicit SkeletonConnections(const Options& options)
+        : options_(options), density_(options_, lookup_) {}
+
+    void useSkeleton(std::shared_ptr<const Skeleton> skeleton) override {
+        lookup_.use(std::move(skeleton));
+    }
+    int warmupIterations() const override { return 1; }
+    PoolRequest pool() const override { return {options_.subpaths}; }
+    bool learns() const override { return options_.aware; }
+
+    const ConnectionDensity& freeze(std::uint32_t) override {
+        density_.freeze(&expected_, &accepted_);
+        return density_;
+    }
+
+    void prepare(const LightPool& pool, IterationContext& context) override {
+        if (accepted_.empty()) countEyeVertices(context);
+        vertices_.assign(pool, !options_.nextEvent);
+        const std::size_t n = vertices_.size();
+        const auto lengths = std::size_t(vertices_.lengths()) + 1;
+        found_.assign(used_.size() * lengths, {});
+        pmfs_.assign(used_.size() * lengths, {});
+        std::vector<double> seen(used_.size() * n), unseen(used_.size() * n);
+        const std::vector<double> ones(n, 1.0);
+        {
+            PhaseTimer timer(context.statistics, "node visibility");
+            const std::size_t tasksPerNode = (n + kVerticesPerTask - 1) / kVerticesPerTask;
+            std::vector<RayTally> tallies(used_.size() * tasksPerNode);
+            context.threads.forEach(tallies.size(), [&](std::size_t task) {
+                const std::size_t u = task / tasksPerNode,
+                                  first = task % tasksPerNode * kVerticesPerTask;
+                const SkeletonNode& node = lookup_.skeleton()->nodes[used_[u]];
+                PathVertex at;
+                at.kind = VertexKind::Lens;  // a point without a surface
+                at.position = Vec3(node.position);
+                for (std::size_t i = first; i < std::min(n, first + kVerticesPerTask); ++i) {
+                    const PathVertex& y = vertices_.prefix(i).back();
+                    const double w = weightOf(node, y, double(mean(y.throughput)));
+                    unseen[u * n + i] = w;
+                    if (w > 0.0 && options_.use[kSeen] &&
+                        context.space.visible(y, at, tallies[task])) {
+                        seen[u * n + i] = w;
+                    }
+                }
+            });
+            for (const RayTally& t : tallies) context.statistics.add(t);
+        }
+        PhaseTimer timer(context.statistics, "node distributions");
+        context.threads.forEach(pmfs_.size(), [&](std::size_t i) {
+            const std::size_t u = i / lengths, s = i % lengths;
+            if (s == 0) return;
+            const std::size_t from = vertices_.begin(int(s)), count = vertices_.count(int(s));
+            std::vector<std::span<const double>> rows(kRows);
+            const std::vector<double> none(count, 0.0);
+            const auto part = [&](const std::vector<double>& all, std::size_t at, Row row) {
+                rows[row] = options_.use[row] ? std::span(all).subspan(at, count) : std::span(none);
+            };
+            part(seen, u * n + from, kSeen);
+            part(unseen, u * n + from, kUnseen);
+            part(ones, from, kUniform);
+            pmfs_[i] = CombinedPmf(rows, options_.choice);
+            if (options_.aware) found_[i] = sumsOf(rows);
+        });
+    }
+
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        const std::uint32_t node = lookup_.at(context.vertex, context.vertex.toPrevious);
+        const std::uint32_t slot = node < slot_.size() ? slot_[node] : kNone;
+        const auto lengths = std::size_t(vertices_.lengths()) + 1;
+        const auto m = double(options_.subpaths);
+        for (int s = 1; s < int(lengths); ++s) {
+            const std::size_t count = vertices_.count(s);
+            if (count == 0) continue;
+            const double u = rng.uniformDouble();
+            if (slot == kNone) {
+                const auto place = vertices_.begin(s) + std::size_t(u * double(count));
+                sink.add({vertices_.prefix(place), double(count) / m, kRows});
+                continue;
+            }
+            const CombinedPmf& pmf = pmfs_[slot * lengths + std::size_t(s)];
+            if (pmf.empty()) continue;
+            const auto pick = pmf.sample(u);
+            sink.add({vertices_.prefix(vertices_.begin(s) + pick.index), 1.0 / (m * pick.pmf),
+                      pmf.owner(pick.index)});
+        }
+    }
+
+    void observe(const LightPool&, IterationContext&) override {
+        if (!options_.aware) return;
+        const auto lengths = std::size_t(vertices_.lengths()) + 1;
+        expected_.resize(accepted_.size() + 1);
+        const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {
+            std::vector<Expected>& row = expected_[node];
+            if (row.size() <= s) row.resize(s + 1);
+            Expected& e = row[s];
+            const double k = double(++e.iterations);
+            e.seen += (now.seen - e.seen) / k;
+            e.unseen += (now.unseen - e.unseen) / k;
+            e.uniform += (now.uniform - e.uniform) / k;
+            e.maxima += (now.maxima - e.maxima) / k;
+        };
+        for (std::size_t s = 1; s < lengths; ++s) {
+            for (std::size_t u = 0; u < used_.size(); ++u)
+                learn(used_[u], s, found_[u * lengths + s]);
+            Expected share;
+            share.uniform = double(vertices_.count(int(s))) / double(options_.subpaths);
+            learn(accepted_.size(), s, share);
+        }
+    }
+
+  private:
+    /// Which nodes are worth distributions: those that many eye vertices are mapped to.
+    void countEyeVertices(IterationContext& context) {
+        const std::size_t nodes = lookup_.skeleton() ? lookup_.skeleton()->nodes.size() : 0;
+        accepted_.assign(nodes, false);
+        slot_.assign(nodes, kNone);
+        if (nodes == 0) return;
+        constexpr std::uint64_t kTasks = kCountingPaths / kCountingPathsPerTask;
+        std::vector<std::vector<std::uint32_t>> counts(kTasks);
+        std::vector<RayTally> tallies(kTasks);
+        context.threads.forEach(kTasks, [&](std::size_t task) {
+            counts[task].assign(nodes, 0);
+            std::vector<PathVertex> path;
+            for (std::uint64_t i = 0; i < kCountingPathsPerTask; ++i) {
+                Rng rng(context.seed, 0, StreamKind::CachePath, task * kCountingPathsPerTask + i);
+                context.space.traceEye(rng, tallies[task], path);
+                for (const PathVertex& v : path) {
+                    if (v.kind != VertexKind::Surface || !v.connectable()) continue;
+                    const std::uint32_t node = lookup_.at(v, v.toPrevious);
+                    if (node < nodes) ++counts[task][node];
+                }
+            }
+        });
+        for (const RayTally& t : tallies) context.statistics.add(t);
+        std::vector<std::uint64_t> hits(nodes, 0);
+        std::uint64_t all = 0;
+        for (const auto& part : counts) {
+            for (std::size_t n = 0; n < nodes; ++n) {
+                hits[n] += part[n];
+                all += part[n];
+            }
+        }
+        for (std::uint32_t n = 0; n < nodes; ++n) {
+            if (double(hits[n]) * double(nodes) <= options_.acceptance * double(all)) continue;
+            accepted_[n] = true;
+            slot_[n] = std::uint32_t(used_.size());
+            used_.push_back(n);
+        }
+    }
+
+    Expected sumsOf(std::span<const std::span<const double>> rows) const {
+        const auto m = double(options_.subpaths);
+        double sum[kRows] = {0, 0, 0};
+        for (std::size_t r = 0; r < kRows; ++r) {
+            for (const double w : rows[r]) sum[r] += w;
+        }
+        Expected e{sum[kSeen] / m, sum[kUnseen] / m, double(rows[kSeen].size()) / m, 0.0, 0};
+        for (std::size_t i = 0; i < rows[kSeen].size(); ++i) {
+            double largest = 0.0;
+            for (std::size_t r = 0; r < kRows; ++r) {
+                if (sum[r] > 0.0) largest = std::max(largest, rows[r][i] / sum[r]);
+            }
+            e.maxima += largest;
+        }
+        return e;
+    }
+
+    Options options_;
+    NodeLookup lookup_;
+    SkeletonDensity density_;
+    std::vector<bool> accepted_;       // by node
+    std::vector<std::uint32_t> slot_;  // by node: place in used_, kNone where not accepted
+    std::vector<std::uint32_t> used_;  // accepted nodes
+    VerticesByLength vertices_;
+    std::vector<CombinedPmf> pmfs_;                // by slot and s
+    std::vector<Expected> found_;                  // likewise, of this iteration
+    std::vector<std::vector<Expected>> expected_;  // by node and s, of earlier iterations
+};
+
+}  // namespace
+
+MethodRow skeletonRow() {
+    using Kind = Parameter::Kind;
+    MethodRow row;
+    row.name = "skelbpt";
+    row.reference = "Noel15";
+    row.summary = "light vertices resampled at the nodes of the empty space's skeleton";
+    row.techniques = {.hits = true, .connects = true, .splats = true};
+    row.needsSkeleton = true;
+    row.parts = {"visible", "unoccluded", "uniform", "fallback"};
+    row.parameters = {
+        lightPathsParameter(),
+        {"candidates", Kind::Integer, 1024, 1, 1e6, "light subpaths in the pool, N"},
+        {"node_acceptance", Kind::Real, 1, 0, 1e6,
+         "nodes with at most so many times the mean number of eye vertices get no distributions"},
+        {"distributions",
+         Kind::Choice,
+         0,
+         0,
+         3,
+         "which of visible (v), unoccluded (u) and uniform (c) there are at a node",
+         {"vuc", "uc", "vc", "c"}},
+        {"choice",
+         Kind::Choice,
+         0,
+         0,
+         1,
+         "how one of a node's distributions is chosen: evenly, or by what is its own of the pool",
+         {"even", "mass"}},
+        {"weights",
+         Kind::Choice,
+         0,
+         0,
+         1,
+         "what the weights believe: credit samples per connection, or aware of the resampling",
+         {"credit", "aware"}},
+        {"credit",
+         Kind::Real,
+         0,
+         0,
+         1e6,
+         "samples that a connection counts as; 0: all candidates",
+         {},
+         "candidates"},
+        {"voxels.resolution", Kind::Integer, 128, 8, 1024,
+         "voxels along the longest side of the skeleton's cache"},
+        nextEventParameter(false)};
+    row.create = [](const Settings& s) {
+        Options o;
+        o.subpaths = s.integer("candidates");
+        o.acceptance = s.real("node_acceptance");
+        o.credit = s.real("credit") > 0.0 ? s.real("credit") : double(o.subpaths);
+        const std::uint64_t d = s.integer("distributions");
+        o.use[kSeen] = d == 0 || d == 2;
+        o.use[kUnseen] = d <= 1;
+        o.use[kUniform] = true;
+        o.choice = s.integer("choice") == 0 ? Choice::Even : Choice::Mass;
+        o.aware = s.integer("weights") == 1;
+        o.nextEvent = s.on("next_event");
+        return std::make_unique<SkeletonConnections>(o);
+    };
+    return row;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,55 @@
+#include "render/method_layers.h"
+
+#include "libcore/base/parallel.h"
+
+namespace lacuna {
+
+PartFilm::PartFilm(std::vector<std::string> names, int width, int height)
+    : names_(std::move(names)),
+      width_(width),
+      height_(height),
+      sums_(names_.size(), std::vector<Rgb>(std::size_t(width) * std::size_t(height))) {}
+
+void PartFilm::add(const PathEvent& event) {
+    if (!event.proposal || event.proposal->label >= sums_.size()) return;
+    if (isFinite(event.contribution))
+        sums_[event.proposal->label][event.pixel] += event.contribution;
+}
+
+void PartFilm::writeTo(LayeredImage& image, std::uint64_t iterations) const {
+    const float scale = iterations > 0 ? 1.0f / float(iterations) : 0.0f;
+    for (std::size_t part = 0; part < names_.size(); ++part) {
+        Image layer(width_, height_);
+        for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
+            layer.pixels[i] = sums_[part][i] * scale;
+        }
+        image.setRgb("part." + names_[part], layer);
+    }
+}
+
+Image nodeLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                const Skeleton& skeleton, const ThreadPool& pool) {
+    Image layer(crop.width(), crop.height());
+    pool.forEach(std::size_t(crop.height()), [&](std::size_t row) {
+        RayTally tally;
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const Vec2 raster{float(x) + 0.5f, float(crop.y0 + int(row)) + 0.5f};
+            const Vec3 direction = camera.directionAt(camera.position(), raster).direction;
+            const auto hit =
+                scene.intersect(camera.position(), {}, direction, RayKind::Camera, tally);
+            if (!hit) continue;
+            const Vec3d side(dot(hit->ng, direction) > 0.0f ? -hit->ng : hit->ng);
+            const std::uint16_t node = skeleton.map.at(Vec3d(hit->position), side);
+            if (node == NodeMap::kNone) continue;
+            // Neighbours in number are far apart in colour.
+            const std::uint32_t h = (node + 1u) * 2654435761u;
+            const auto part = [h](int shift) {
+                return 0.1f + 0.8f * float(h >> shift & 255u) / 255.0f;
+            };
+            layer.at(x - crop.x0, int(row)) = {part(24), part(16), part(8)};
+        }
+    });
+    return layer;
+}
+
+}  // namespace lacuna
