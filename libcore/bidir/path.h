@@ -63,9 +63,10 @@ struct Edge {
     float geometry = 0;  ///< G without visibility
 };
 
-/// Cosine of the area measure at a vertex: 1 where it has no surface.
-inline float measureCosine(const PathVertex& v, Vec3 direction) {
-    return v.ng == Vec3{} ? 1.0f : std::fabs(dot(v.ng, direction));
+/// Cosine of the area measure at a vertex: 1 where it has no surface. In double, because a float
+/// product of grazing directions is off by 1e-4, and weights that read G see that.
+inline double measureCosine(const PathVertex& v, Vec3 direction) {
+    return v.ng == Vec3{} ? 1.0 : std::fabs(dot(Vec3d(v.ng), Vec3d(direction)));
 }
 
 /// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the
@@ -77,7 +78,7 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     if (a.infinite() || b.infinite()) {
         const bool toInfinity = b.infinite();
         e.direction = toInfinity ? b.position : -a.position;
-        const float cosine = measureCosine(toInfinity ? a : b, e.direction);
+        const auto cosine = float(measureCosine(toInfinity ? a : b, e.direction));
         e.toSecond = toInfinity ? 1.0f : cosine;
         e.toFirst = toInfinity ? cosine : 1.0f;
         e.geometry = cosine;
@@ -91,10 +92,10 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     const double inverse = 1.0 / std::sqrt(d2);
     e.direction = Vec3(d * inverse);
     const double inverse2 = inverse * inverse;
-    const float cosA = measureCosine(a, e.direction), cosB = measureCosine(b, e.direction);
-    e.toSecond = float(double(cosB) * inverse2);
-    e.toFirst = float(double(cosA) * inverse2);
-    e.geometry = cosA * e.toSecond;
+    const double cosA = measureCosine(a, e.direction), cosB = measureCosine(b, e.direction);
+    e.toSecond = float(cosB * inverse2);
+    e.toFirst = float(cosA * inverse2);
+    e.geometry = float(cosA * cosB * inverse2);
     return e;
 }
 

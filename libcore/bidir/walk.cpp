@@ -42,7 +42,7 @@ void Walker::traceLight(Rng& rng, RayTally& tally, std::vector<PathVertex>& out)
     const auto ray = scene_.lights().sampleEmission(point, rng);
     if (!ray) return;
     out[0].scatter = ray->emission.profile;
-    const float cosine = measureCosine(y0, ray->direction);
+    const auto cosine = float(measureCosine(y0, ray->direction));
     goOn(Side::Light, ray->origin, ray->direction, ray->emission.pdfW,
          y0.throughput * ray->emission.profile * (cosine / ray->emission.pdfW),
          std::size_t(limits_.maxDepth), rng, tally, out);
@@ -71,15 +71,15 @@ void Walker::addSurface(const SurfacePoint& point, Vec3 direction, float pdfW, R
     v.survival = v.bsdf.survivalAlbedo();
     v.throughput = throughput;
 
-    const float cosine = std::fabs(dot(point.ng, direction));
+    const double cosine = measureCosine(v, direction);
     if (previous.infinite()) {
-        v.pdfA = pdfW * cosine;  // density on the disk -> area here
+        v.pdfA = float(double(pdfW) * cosine);  // density on the disk -> area here
         v.toPreviousFactor = 1.0f;
         return;
     }
     const double inverse2 = 1.0 / lengthSquared(Vec3d(point.position) - Vec3d(previous.position));
-    v.pdfA = float(double(pdfW) * double(cosine) * inverse2);
-    v.toPreviousFactor = float(double(measureCosine(previous, direction)) * inverse2);
+    v.pdfA = float(double(pdfW) * cosine * inverse2);
+    v.toPreviousFactor = float(measureCosine(previous, direction) * inverse2);
 }
 
 void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throughput,
@@ -102,7 +102,7 @@ void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throug
                 v.light = scene_.lights().environmentIndex();
                 v.throughput = throughput;
                 v.pdfA = pdfW;
-                v.toPreviousFactor = measureCosine(previous, direction);
+                v.toPreviousFactor = float(measureCosine(previous, direction));
             }
             return;
         }
