@@ -362,7 +362,9 @@ MethodRow skeletonRow() {
          "candidates"},
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
-        nextEventParameter(false)};
+        nextEventParameter(false),
+        presetParameter()};
+    row.paper = {{"weights", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");
