@@ -67,7 +67,7 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
             }
             file = skeletonize(scene, *voxels, pool, cancel, phases).file;
             pool.run([&] { writeSkeletonFile(path, *file, scene.centre()); });
-            progress.remark("built " + path);
+            if (options.common.verbose) progress.remark("built " + path);
         }
         caches.hashes["skeleton"] = file->contentHash;
         caches.skeleton = std::make_shared<const Skeleton>(std::move(file->skeleton));

@@ -347,10 +347,10 @@ MethodRow skeletonRow() {
          {"even", "mass"}},
         {"weights",
          Kind::Choice,
-         0,
+         1,
          0,
          1,
-         "what the weights believe: credit samples per connection, or aware of the resampling",
+         "what the weights believe: credit samples per connection (the paper), or the resampling",
          {"credit", "aware"}},
         {"credit",
          Kind::Real,
@@ -362,7 +362,9 @@ MethodRow skeletonRow() {
          "candidates"},
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
-        nextEventParameter(false)};
+        nextEventParameter(false),
+        presetParameter()};
+    row.paper = {{"weights", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");

@@ -108,9 +108,11 @@ std::string RenderTool::quick(const std::string& method, const std::string& more
 
 std::string cheap(const std::string& method) {
     std::string text;
-    for (const Parameter& p : findMethod(method).parameters) {
+    const MethodRow& row = findMethod(method);
+    for (const Parameter& p : row.parameters) {
         if (p.name == "candidates") text += " --set candidates=100";
     }
+    if (row.needsSkeleton) text += " --prepare --cache @cache --set voxels.resolution=32";
     return text;
 }
 

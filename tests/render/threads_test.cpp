@@ -46,7 +46,8 @@ TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
         const std::string file = std::string(LACUNA_SCENES) + "/" + scene + ".glb";
         if (!std::filesystem::exists(file)) GTEST_SKIP() << file;
         expectTheSame(file + " -o @out.exr --width 96 --height 54 --iterations 4 --method " +
-                      GetParam());
+                      GetParam() +
+                      (findMethod(GetParam()).needsSkeleton ? " --prepare --cache @cache" : ""));
     }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()),
