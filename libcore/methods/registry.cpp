@@ -16,8 +16,6 @@ std::span<const MethodRow> methods() {
                                                 lvcRow(),
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
-                                                twoStageResamplingRow(),
-                                                importanceCachingRow(),
                                                 skeletonRow()};
     return rows;
 }
