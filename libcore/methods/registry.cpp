@@ -10,13 +10,9 @@
 namespace lacuna {
 
 std::span<const MethodRow> methods() {
-    static const std::vector<MethodRow> rows = {pathTracingRow(),
-                                                lightTracingRow(),
-                                                bidirectionalRow(),
-                                                lvcRow(),
-                                                probabilisticConnectionsRow(),
-                                                resamplingAwareRow(),
-                                                skeletonRow()};
+    static const std::vector<MethodRow> rows = {pathTracingRow(), lightTracingRow(),
+                                                bidirectionalRow(), lvcRow(),
+                                                probabilisticConnectionsRow()};
     return rows;
 }
 

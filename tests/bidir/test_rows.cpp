@@ -145,10 +145,10 @@ MethodRow hashedDensityRow() {
 }
 
 MethodRow mappedSkeletonRow() {
-    MethodRow row = findMethod("skelbpt");
+    MethodRow row = skeletonRow();
     row.name = "test-skelbpt-mapped";
     row.create = [](const Settings& s) {
-        auto method = findMethod("skelbpt").create(s);
+        auto method = skeletonRow().create(s);
         method->useSkeleton(threeNodes());
         return method;
     };
