@@ -1,6 +1,6 @@
 #include "libcore/bidir/connect.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace lacuna {
 
@@ -33,6 +33,13 @@ void fillEyePart(FullPath& path, Subpath eye) {
     }
 }
 
+/// The path's size and who made its edges, but for a connection's one.
+void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices) {
+    path.edges = int(lightVertices + eyeVertices) - 1;
+    path.lightEdges = std::max(0, int(lightVertices) - 1);
+    path.eyeEdges = int(eyeVertices) - 1;
+}
+
 void setSource(FullPath& path, const Lights& lights, const PathVertex& source, const Rgb& beta) {
     const LightKind kind = lights.kind(source.light);
     path.sourceBeta = beta;
@@ -62,7 +69,7 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
     const Closed closed{z.throughput * point.exitance * emission.profile, int(eye.size()), {}};
     if (isBlack(closed.contribution)) return std::nullopt;
 
-    path.edges = int(eye.size()) - 1;
+    setEdges(path, 0, eye.size());
     fillEyePart(path, eye);
     // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
     setSource(path, lights, z, point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
@@ -88,7 +95,8 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
                         projection->raster};
     if (isBlack(closed.contribution)) return std::nullopt;
 
-    const int k = path.edges = int(light.size());
+    setEdges(path, light.size(), 1);
+    const int k = path.edges;
     fillLightPart(path, light);
     setSource(path, lights, light[0], light[0].throughput);
     path.vertex[k] = &z0;
@@ -117,7 +125,7 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     if (isBlack(closed.contribution)) return std::nullopt;
 
     const int s = int(light.size());
-    path.edges = s + int(eye.size()) - 1;
+    setEdges(path, light.size(), eye.size());
     fillLightPart(path, light);
     fillEyePart(path, eye);
     setSource(path, lights, light[0], light[0].throughput);

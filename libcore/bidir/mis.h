@@ -101,6 +101,8 @@ struct FullPath {
     Rgb sourceBeta;                              ///< exitance over density at x_0
     bool hittable = false;                       ///< an eye walk can run into this light
     bool splattable = true;                      ///< k = 1 under a punctual light is not splatted
+    /// How many of the first (last) edges the light's (the eye's) walk made.
+    int lightEdges = 0, eyeEdges = 0;
 
     /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
     bool exists(int t) const {
@@ -117,9 +119,13 @@ struct FullPath {
     double eyeRoulette(int i, int rouletteDepth) const {
         return edges - i - 1 >= rouletteDepth ? double(survival[i + 1]) : 1.0;
     }
+    /// G of the edge x_i, x_{i+1}. A walk's edge has the direction that the walk drew, which its
+    /// densities are made of: the positions at its ends know it to 1e-7 of the scene's size only,
+    /// and over a short or grazing edge the cosines of the two differ by percents.
+    double geometryOf(int i) const;
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     std::array<Rgb, kMaxEdges + 1> beta;
-    std::array<double, kMaxEdges + 1> geometry;  ///< G of the edge x_i, x_{i+1}; filled likewise
+    std::array<double, kMaxEdges + 1> geometry;  ///< geometryOf; filled likewise
     void fillLightThroughputs(int rouletteDepth);
 };
 

@@ -24,6 +24,17 @@ void forEachPoint(const ThreadPool& threads, std::size_t n, const Body& body) {
     });
 }
 
+/// Squared distance that points so many in a box like theirs have about, were they on a surface.
+double typicalSpacing2(std::span<const Vec3> positions) {
+    if (positions.empty()) return 0.0;
+    Vec3 low = positions[0], high = positions[0];
+    for (const Vec3 p : positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return lengthSquared(Vec3d(high) - Vec3d(low)) / double(positions.size());
+}
+
 }  // namespace
 
 CachePoints::CachePoints(IterationContext& context, double density, int neighbours,
@@ -55,6 +66,7 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
             vertices_.push_back(v);
         }
     }
+    const double spacing2 = typicalSpacing2(positions);
     nearest_ = NearestPoints(std::move(positions));
 
     // One neighbour beyond N_c says how far the point's region reaches where N_c is 1.
@@ -75,7 +87,9 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
         for (const std::uint32_t j : found) {
             d2 = std::max(d2, lengthSquared(Vec3d(position(j)) - Vec3d(position(i))));
         }
-        // No neighbour elsewhere: finite is all that can be asked.
+        // Where all neighbours coincide they say nothing; where all points do, finite is all that
+        // can be asked.
+        if (!(d2 > 0.0)) d2 = spacing2;
         geometryLimit_[i] = d2 > 0.0 ? 1.0 / d2 : double(std::numeric_limits<float>::max());
     });
 }

@@ -10,9 +10,15 @@
 namespace lacuna {
 
 std::span<const MethodRow> methods() {
-    static const std::vector<MethodRow> rows = {pathTracingRow(), lightTracingRow(),
-                                                bidirectionalRow(), lvcRow(),
-                                                probabilisticConnectionsRow()};
+    static const std::vector<MethodRow> rows = {pathTracingRow(),
+                                                lightTracingRow(),
+                                                bidirectionalRow(),
+                                                lvcRow(),
+                                                probabilisticConnectionsRow(),
+                                                resamplingAwareRow(),
+                                                twoStageResamplingRow(),
+                                                skeletonRow(),
+                                                importanceCachingRow()};
     return rows;
 }
 

@@ -144,6 +144,7 @@ void FiniteSpace::fill(const std::vector<int>& x, FullPath& path) const {
     }
     path.hittable = true;
     path.splattable = true;
+    path.lightEdges = path.eyeEdges = 0;  // geometry is a function of the two states
     path.sourceBeta = exitance_[x[0]] * float(1.0 / sourcePmf_[x[0]]);
 }
 
