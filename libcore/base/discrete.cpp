@@ -38,9 +38,7 @@ DiscreteDistribution::Pick DiscreteDistribution::sample(double u) const {
     const auto it = std::upper_bound(cdf_.begin(), cdf_.end(), u);
     const std::size_t index = std::min(std::size_t(it - cdf_.begin()), cdf_.size() - 1);
     const double below = index == 0 ? 0.0 : cdf_[index - 1];
-    const double width = cdf_[index] - below;
-    return {std::uint32_t(index), width,
-            std::clamp((u - below) / width, 0.0, 0x1.fffffffffffffp-1)};
+    return {std::uint32_t(index), cdf_[index] - below, u - below};
 }
 
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 // A table to pick one of n outcomes with given weights (numerics.md 18-20).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,7 +33,9 @@ class DiscreteDistribution {
     struct Pick {
         std::uint32_t index;
         double pmf;
-        double remapped;  ///< u, stretched to [0, 1) inside the outcome: to be used again
+        double rest;  ///< u less the probability of all outcomes before this one
+        /// u, stretched to [0, 1) inside the outcome: to be used again.
+        double remapped() const { return std::clamp(rest / pmf, 0.0, 0x1.fffffffffffffp-1); }
     };
     /// u in [0, 1). Not to be called when empty().
     Pick sample(double u) const;

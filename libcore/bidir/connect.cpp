@@ -80,7 +80,7 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
 }
 
 std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
-                                 FullPath& path) {
+                                 const PixelRect& crop, RayTally& tally, FullPath& path) {
     const PathVertex& y = light.back();
     const Lights& lights = walker.scene().lights();
     // A punctual light in the picture itself has no size: no strategy makes that path, so that all
@@ -89,11 +89,15 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     const Edge edge = edgeBetween(z0, y);
     if (!(edge.geometry > 0.0f)) return std::nullopt;
     const auto projection = walker.camera().project(z0.position, edge.direction);
-    if (!projection) return std::nullopt;
+    if (!projection || !crop.contains(int(projection->raster.x), int(projection->raster.y))) {
+        return std::nullopt;
+    }
     const EndValue end = lightEnd(lights, y, -edge.direction);
     const Closed closed{y.throughput * end.f * (edge.geometry * projection->pdfW), 1,
                         projection->raster};
-    if (isBlack(closed.contribution)) return std::nullopt;
+    if (isBlack(closed.contribution) || !connected(walker.scene(), y, z0, RayKind::Splat, tally)) {
+        return std::nullopt;
+    }
 
     setEdges(path, light.size(), 1);
     const int k = path.edges;
@@ -111,7 +115,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
 }
 
 std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
-                                      FullPath& path) {
+                                      RayTally& tally, FullPath& path) {
     const PathVertex& y = light.back();
     const PathVertex& z = eye.back();
     const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
@@ -122,7 +126,10 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
     const Closed closed{
         z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry, int(eye.size()), {}};
-    if (isBlack(closed.contribution)) return std::nullopt;
+    if (isBlack(closed.contribution) ||
+        !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
+        return std::nullopt;
+    }
 
     const int s = int(light.size());
     setEdges(path, light.size(), eye.size());

@@ -1,16 +1,19 @@
 // Full paths from subpaths: the three ways in which a strategy closes a path (hit, splat, connect),
 // each giving the contribution without its weight, and the FullPath that the weight is made from.
+// In the order of what it costs to find out that a path carries nothing: contribution, visibility;
+// the FullPath only where there is something to weigh.
 #pragma once
 
 #include <optional>
 
+#include "libcore/bidir/film.h"
 #include "libcore/bidir/mis.h"
 #include "libcore/bidir/walk.h"
 
 namespace lacuna {
 
-/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight,
-/// without the selector's weight and without visibility.
+/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight and
+/// without the selector's weight.
 struct Closed {
     Rgb contribution;
     int t = 0;
@@ -30,14 +33,13 @@ EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye);
 /// `path`.
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path);
 
-/// t = 1: the lens vertex `z0` sees the light subpath's last vertex. Fills `path`. Empty where the
-/// contribution is zero; visibility is not looked at.
+/// t = 1: the lens vertex `z0` sees the light subpath's last vertex, within `crop`. Likewise.
 std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
-                                 FullPath& path);
+                                 const PixelRect& crop, RayTally& tally, FullPath& path);
 
 /// s >= 1, t >= 2. Both last vertices must be connectable. Likewise.
 std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
-                                      FullPath& path);
+                                      RayTally& tally, FullPath& path);
 
 /// Whether the two vertices see each other.
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,

@@ -236,11 +236,9 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
                        worker.proposals);
         for (const Proposal& proposal : worker.proposals.proposals()) {
             if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
-            const auto closed = closeConnection(walker_, proposal.light, eye, worker.path);
-            if (!closed ||
-                !connected(scene_, proposal.light.back(), z, RayKind::Connection, chunk.tally)) {
-                continue;
-            }
+            const auto closed =
+                closeConnection(walker_, proposal.light, eye, chunk.tally, worker.path);
+            if (!closed) continue;
             deliver(*closed, &proposal, proposal.weight, iteration, filmIndex, pixelIndex, &pixel,
                     worker, chunk);
         }
@@ -254,11 +252,9 @@ void BidirIntegrator::splatLightPath(std::span<PathVertex> path, std::uint32_t i
     for (std::size_t s = 1; s <= path.size(); ++s) {
         const Subpath light = path.first(s);
         if (!light.back().connectable()) continue;
-        const auto closed = closeSplat(walker_, light, z0, worker.path);
+        const auto closed = closeSplat(walker_, light, z0, crop, chunk.tally, worker.path);
         if (!closed) continue;
         const int x = int(closed->raster.x), y = int(closed->raster.y);
-        if (!crop.contains(x, y)) continue;
-        if (!connected(scene_, light.back(), z0, RayKind::Splat, chunk.tally)) continue;
         const auto pixel =
             std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
         techniques_.tag(path.first(s));  // here, because most light paths are never seen

@@ -67,6 +67,7 @@ double misWeight(FullPath& path, const Techniques& techniques, int t) {
         sum += ratio * effectiveCount(path, techniques, k - i + 1);
     }
     // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}.
+    if (techniques.onlyDirect()) return own / sum;
     ratio = 1.0;
     for (int i = k - t + 1; i <= k - 1; ++i) {
         ratio *= path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth) /

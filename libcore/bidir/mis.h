@@ -74,6 +74,11 @@ struct Techniques {
     bool tags = false;      ///< connections->tagsVertices(), likewise
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
+    /// Whether there are none but s = 0 and s = 1.
+    bool onlyDirect() const {
+        return splats == 0.0 && (!connections || (constants && constants->indirect == 0.0));
+    }
+
     void connectThrough(const ConnectionDensity& density) {
         connections = &density;
         constants = density.constants();

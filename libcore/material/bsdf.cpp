@@ -86,17 +86,17 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
 }
 
 float Bsdf::survivalAlbedo() const {
-    // Hemispherical means of Fresnel's reflectance; glass from its inside, where total internal
-    // reflection makes it largest: 1 - (1 - F_avg) / ior^2.
-    const float f0 = (ior_ - 1.0f) * (ior_ - 1.0f) / ((ior_ + 1.0f) * (ior_ + 1.0f));
-    const float average = f0 + (1.0f - f0) * (1.0f / 21.0f);
     const float color = maxComponent(baseColor_);
     const float dark = 1.0f - color;
-    float albedo = metal_ * (color + dark * (1.0f / 21.0f));
-    albedo += plastic_ * (color + (has(kCoat) ? dark * specular_ * average : 0.0f));
-    if (has(kGlass)) {
+    float albedo = metal_ * (color + dark * (1.0f / 21.0f)) + plastic_ * color;
+    if (has(kCoat | kGlass)) {
+        // Hemispherical means of Fresnel's reflectance; glass from its inside, where total internal
+        // reflection makes it largest: 1 - (1 - F_avg) / ior^2.
+        const float f0 = (ior_ - 1.0f) * (ior_ - 1.0f) / ((ior_ + 1.0f) * (ior_ + 1.0f));
+        const float average = f0 + (1.0f - f0) * (1.0f / 21.0f);
+        albedo += has(kCoat) ? plastic_ * dark * specular_ * average : 0.0f;
         const float inside = has(kThin) ? average : 1.0f - (1.0f - average) / (ior_ * ior_);
-        albedo += glass_ * (color + dark * inside);
+        albedo += has(kGlass) ? glass_ * (color + dark * inside) : 0.0f;
     }
     return std::clamp(albedo, kMinSurvival, 1.0f);
 }

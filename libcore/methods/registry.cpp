@@ -17,8 +17,7 @@ std::span<const MethodRow> methods() {
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
                                                 twoStageResamplingRow(),
-                                                skeletonRow(),
-                                                importanceCachingRow()};
+                                                skeletonRow()};
     return rows;
 }
 

@@ -151,7 +151,7 @@ LightPoint Lights::samplePoint(Rng& rng) const {
             return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y, triangleNormal_[light], b);
         }
         case LightKind::Environment: {
-            const Environment::Sample s = environment_->sample(pick.remapped, u1, u2);
+            const Environment::Sample s = environment_->sample(pick.remapped(), u1, u2);
             LightPoint p;
             p.light = light;
             p.kind = LightKind::Environment;

@@ -56,7 +56,7 @@ void checkInvariants(const std::vector<double>& weights) {
         ASSERT_GT(weights[pick.index], 0.0);
         ASSERT_EQ(pick.pmf, d.pmf(pick.index));
         ASSERT_GT(pick.pmf, 0.0);
-        ASSERT_TRUE(pick.remapped >= 0.0 && pick.remapped < 1.0);
+        ASSERT_TRUE(pick.remapped() >= 0.0 && pick.remapped() < 1.0);
     }
 }
 
@@ -133,7 +133,7 @@ TEST(DiscreteDistribution, FrequenciesAndRemappedNumber) {
         for (int i = 0; i < kSamples; ++i) {
             const auto pick = d.sample(rng.uniformDouble());
             ++counts[pick.index];
-            ++cells[std::size_t(pick.remapped * 20)];
+            ++cells[std::size_t(pick.remapped() * 20)];
         }
         std::vector<double> pmf;
         for (std::size_t i = 0; i < d.size(); ++i) pmf.push_back(d.pmf(i));
@@ -153,7 +153,7 @@ TEST(DiscreteDistribution, RemappedNumberIsIndependentOfTheOutcome) {
     std::vector<double> expected(40);
     for (int i = 0; i < kSamples; ++i) {
         const auto pick = d.sample(rng.uniformDouble());
-        ++counts[pick.index * 10 + std::size_t(pick.remapped * 10)];
+        ++counts[pick.index * 10 + std::size_t(pick.remapped() * 10)];
     }
     for (std::size_t i = 0; i < 40; ++i) expected[i] = d.pmf(i / 10) / 10;
     EXPECT_GT(chiSquareSignificance(counts, expected, kSamples), sidak(kAlarm, kComparisons));
