@@ -66,10 +66,10 @@ double misWeight(FullPath& path, const Techniques& techniques, int t) {
         if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
         sum += ratio * effectiveCount(path, techniques, k - i + 1);
     }
-    // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}.
-    if (techniques.onlyDirect()) return own / sum;
+    // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}, or x_0 at most.
+    const int last = techniques.onlyDirect() ? 0 : k - 1;
     ratio = 1.0;
-    for (int i = k - t + 1; i <= k - 1; ++i) {
+    for (int i = k - t + 1; i <= last; ++i) {
         ratio *= path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth) /
                  (path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth));
         if (!(ratio > 0.0)) break;
