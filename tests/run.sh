@@ -42,5 +42,4 @@ python3 "$project/scenes/make_scenes.py" --check
 
 say "Tests ($preset)"
 cd "$project"
-# One after the other: they use all processors themselves, and some measure times.
-exec ctest --preset "$preset" "$@"
+exec ctest --preset "$preset" --parallel "$(nproc)" "$@"

@@ -29,8 +29,8 @@ double typicalSpacing2(std::span<const Vec3> positions) {
     if (positions.empty()) return 0.0;
     Vec3 low = positions[0], high = positions[0];
     for (const Vec3 p : positions) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        low = min(low, p);
+        high = max(high, p);
     }
     return lengthSquared(Vec3d(high) - Vec3d(low)) / double(positions.size());
 }

@@ -3,16 +3,18 @@
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
 //   records   vertices of record_density x pixels eye subpaths that add nothing to the image, new
-//   in
-//             every iteration (cache_points.h); an eye vertex is served by the `records` = 3
-//             nearest
-//   pmfs      over L_s, per record c and s:  F ∝ beta rho rho_c G V (full contribution),
+//             in every iteration (cache_points.h); `records` = 3 of them serve an eye vertex
+//   pmfs      over L_s, per record c and s:  F ∝ w_F = beta rho rho_c G V (full contribution),
 //             U the same without V, B the same without V and rho_c and with G bounded by what it is
 //             at four times the distance to the records around, C = 1 / |L_s|
 //             combined by the maximum heuristic, one of them chosen evenly (length_pmfs.h)
 //   pick      one y per s, from one of the records evenly; divided by the mixture's probability:
 //             contribution h(y) / (M Pbar(y)),  Pbar = mean of P_c(y) over the records
-//   MIS       r is one constant credit, 1 <= r <= M
+//   MIS       credit:  r is one constant, 1 <= r <= M
+//             aware:   r = mean over the records of [1/M + (1 - 1/M) / R_c]^-1,
+//             R_c = max over the four of (w/Q) / Z: what M P_c(y) is for frozen means
+//             Q = (1/M) sum of w and Z of the sum of maxima, per record and s from the earlier
+//             iteration, with V = 1 and rho at the eye vertex; after [Nabata20a eq 14]
 //   s = 1     from the pool, or from next event; t = 1 is never resampled
 #include <algorithm>
 
@@ -29,33 +31,99 @@ namespace {
 constexpr double kBoundedShare = 1.0 / 16.0;
 enum Row : std::uint32_t { kFull, kUnoccluded, kBounded, kUniform, kRows };
 
+/// What weights read of a record and a length, in this order: Q of the four, and Z.
+constexpr int kColumns = kRows + 1;
+constexpr std::uint32_t kMaxima = kRows;
+/// Longer light subpaths are believed to be what those of this length are.
+constexpr int kLengths = 8;
+
 struct Options {
     std::uint64_t subpaths;
     double density, credit;
     int records;
-    bool nextEvent;
+    bool nextEvent, aware;
+    int qRecords;  ///< N_q
+};
+
+/// n r of a connection; frozen for an iteration.
+class RecordDensity final : public ConnectionDensity {
+  public:
+    explicit RecordDensity(const Options& options) : options_(options) {}
+
+    /// `learnt`: kColumns values per record and length.
+    void freeze(const CachePoints& records, std::span<const double> learnt) {
+        records_ = &records;
+        learnt_ = learnt;
+    }
+
+    std::optional<Constants> constants() const override {
+        if (options_.aware) return std::nullopt;
+        return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
+    }
+    bool tagsVertices() const override { return options_.aware; }
+    std::uint32_t tagOf(const PathVertex& vertex) const override {
+        return records_->nearest(vertex.position);
+    }
+
+    double effectiveSamples(const Connection& c) const override {
+        if (options_.nextEvent && c.light.count == 1) return 1.0;
+        const auto around = records_->around(records_->serving(*c.eye.vertex));
+        if (around.empty()) return 1.0;
+        const auto perSubpath = 1.0 / double(options_.subpaths);
+        const Rgb arriving = c.beta * c.light.scatter;
+        const double flow = double(mean(arriving));
+        const double through = double(mean(arriving * c.eye.scatter));
+        const int length = std::min(c.light.count, kLengths) - 1;
+        double sum = 0.0;
+        for (const std::uint32_t i : around) {
+            const double* q =
+                &learnt_[(std::size_t(i) * kLengths + std::size_t(length)) * kColumns];
+            // A length that was never seen: one sample is as good a guess as any.
+            if (!(q[kUniform] > 0.0)) {
+                sum += 1.0;
+                continue;
+            }
+            const double g = records_->trustedGeometry(i, *c.light.vertex, c.geometry);
+            const double bounded = std::min(g, kBoundedShare * records_->geometryLimit(i));
+            double ratio = 1.0 / q[kUniform];
+            if (q[kFull] > 0.0) ratio = std::max(ratio, through * g / q[kFull]);
+            if (q[kUnoccluded] > 0.0) ratio = std::max(ratio, through * g / q[kUnoccluded]);
+            if (q[kBounded] > 0.0) ratio = std::max(ratio, flow * bounded / q[kBounded]);
+            ratio /= q[kMaxima];
+            sum += 1.0 / (perSubpath + (1.0 - perSubpath) / ratio);
+        }
+        return sum / double(around.size());
+    }
+
+  private:
+    Options options_;
+    const CachePoints* records_ = nullptr;
+    std::span<const double> learnt_;
 };
 
 class ImportanceCaching final : public Method {
   public:
     explicit ImportanceCaching(const Options& options)
-        : options_(options), density_(options.nextEvent ? 1.0 : options.credit, options.credit) {}
+        : options_(options),
+          density_(options),
+          earlier_(kLengths * kColumns, 1, options.qRecords) {}
 
+    // The first leaves records, the second finds their sums.
+    int warmupIterations() const override { return 2; }
     PoolRequest pool() const override { return {options_.subpaths}; }
-    const ConnectionDensity& freeze(std::uint32_t iteration) override {
-        iteration_ = iteration;
+    bool learns() const override { return true; }
+
+    const ConnectionDensity& freeze(std::uint32_t) override {
+        density_.freeze(records_, learnt_);
         return density_;
     }
 
     void prepare(const LightPool& pool, IterationContext& context) override {
-        {
-            PhaseTimer timer(context.statistics, "importance records");
-            records_ = CachePoints(context, options_.density, options_.records, iteration_);
-        }
         PhaseTimer timer(context.statistics, "record distributions");
         vertices_.assign(pool, !options_.nextEvent);
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         pmfs_.assign(records_.size() * lengths, {});
+        found_.assign(records_.size() * kLengths * kColumns, 0.0);
         std::vector<RayTally> tallies(records_.size());
         context.threads.forEach(records_.size(), [&](std::size_t r) {
             std::vector<double> weight[kRows];
@@ -67,7 +135,13 @@ class ImportanceCaching final : public Method {
                     rows[i] = std::span(weight[i]).subspan(vertices_.begin(int(s)),
                                                            vertices_.count(int(s)));
                 }
-                pmfs_[r * lengths + s] = CombinedPmf(rows, Choice::Even);
+                const CombinedPmf& pmf = pmfs_[r * lengths + s] = CombinedPmf(rows, Choice::Even);
+                if (s > kLengths) continue;
+                double* found = &found_[(r * kLengths + s - 1) * kColumns];
+                for (std::size_t i = 0; i < kRows; ++i) {
+                    found[i] = pmf.sum(i) / double(options_.subpaths);
+                }
+                found[kMaxima] = pmf.maxima();
             }
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
@@ -100,6 +174,16 @@ class ImportanceCaching final : public Method {
         }
     }
 
+    void observe(const LightPool&, IterationContext& context) override {
+        PhaseTimer timer(context.statistics, "importance records");
+        CachePoints next(context, options_.density, options_.records, generation_++);
+        if (options_.aware) {
+            earlier_.add(std::move(records_), std::move(found_));
+            learnt_ = earlier_.at(next, context.threads);
+        }
+        records_ = std::move(next);
+    }
+
   private:
     /// Fills the four rows for all vertices; `weight` holds zeros.
     void weigh(std::uint32_t record, const PathSpace& space, RayTally& tally,
@@ -123,11 +207,14 @@ class ImportanceCaching final : public Method {
     }
 
     Options options_;
-    ConstantDensity density_;
-    CachePoints records_;          // of this iteration: the weights do not look at them
-    std::uint32_t iteration_ = 0;  // addresses the records' random numbers
+    RecordDensity density_;
+    CachePoints records_;         // of this iteration
+    std::vector<double> learnt_;  // by record, length and column, from the earlier iteration
+    EarlierValues earlier_;
+    std::uint32_t generation_ = 0;
     VerticesByLength vertices_;
     std::vector<CombinedPmf> pmfs_;  // by record and s
+    std::vector<double> found_;      // as learnt_, of this iteration
 };
 
 }  // namespace
@@ -145,6 +232,15 @@ MethodRow importanceCachingRow() {
                       {"record_density", Kind::Real, 0.001, 0, 16,
                        "eye subpaths that leave importance records, per pixel"},
                       {"records", Kind::Integer, 3, 1, 16, "records that serve an eye vertex"},
+                      {"weights",
+                       Kind::Choice,
+                       1,
+                       0,
+                       1,
+                       "what the weights believe: credit samples per connection, or the resampling",
+                       {"credit", "aware"}},
+                      {"q_records", Kind::Integer, 3, 1, 16,
+                       "records of the iteration before that tell a record its sums, N_q"},
                       {"credit",
                        Kind::Real,
                        0,
@@ -161,6 +257,8 @@ MethodRow importanceCachingRow() {
         o.records = int(s.integer("records"));
         o.credit = s.real("credit") > 0.0 ? s.real("credit") : double(o.subpaths);
         o.nextEvent = s.on("next_event");
+        o.aware = s.integer("weights") == 1;
+        o.qRecords = int(s.integer("q_records"));
         return std::make_unique<ImportanceCaching>(o);
     };
     return row;

@@ -1,6 +1,7 @@
 #include "libcore/methods/length_pmfs.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace lacuna {
 
@@ -21,9 +22,10 @@ CombinedPmf::CombinedPmf(std::span<const std::span<const double>> targets, Choic
     const std::size_t n = targets.empty() ? 0 : targets[0].size();
     std::vector<double> weight(n, 0.0);
     owner_.assign(n, 0);
+    sum_.assign(targets.size(), 0.0);
     for (std::size_t row = 0; row < targets.size(); ++row) {
-        double sum = 0.0;
-        for (const double w : targets[row]) sum += w;
+        const double sum = sum_[row] =
+            std::accumulate(targets[row].begin(), targets[row].end(), 0.0);
         if (!(sum > 0.0)) continue;
         for (std::size_t i = 0; i < n; ++i) {
             const double p = targets[row][i] / sum;
@@ -32,6 +34,7 @@ CombinedPmf::CombinedPmf(std::span<const std::span<const double>> targets, Choic
             owner_[i] = std::uint8_t(row);
         }
     }
+    maxima_ = std::accumulate(weight.begin(), weight.end(), 0.0);
     if (choice == Choice::Even) {
         std::vector<double> mass(targets.size(), 0.0);
         for (std::size_t i = 0; i < n; ++i) mass[owner_[i]] += weight[i];

@@ -53,9 +53,17 @@ class CombinedPmf {
     /// The row that the outcome belongs to.
     std::uint32_t owner(std::size_t outcome) const { return owner_[outcome]; }
 
+    /// Sum of a row's weights.
+    double sum(std::size_t row) const { return sum_[row]; }
+    /// Sum over the outcomes of the highest probability that a row gives them, in [1, rows]: what
+    /// the choice by mass divides each by. Zero where empty().
+    double maxima() const { return maxima_; }
+
   private:
     DiscreteDistribution pmf_;
     std::vector<std::uint8_t> owner_;
+    std::vector<double> sum_;
+    double maxima_ = 0.0;
 };
 
 }  // namespace lacuna

@@ -96,8 +96,8 @@ void LightTree::fillNode(std::uint32_t node, std::span<Leaf> leaves, std::uint32
     n.low = n.high = leaves[0].place;
     for (const Leaf& leaf : leaves) {
         const Vec3 p = leaf.place;
-        n.low = {std::min(n.low.x, p.x), std::min(n.low.y, p.y), std::min(n.low.z, p.z)};
-        n.high = {std::max(n.high.x, p.x), std::max(n.high.y, p.y), std::max(n.high.z, p.z)};
+        n.low = min(n.low, p);
+        n.high = max(n.high, p);
     }
     if (leaves.size() == 1) {
         const Leaf& leaf = leaves[0];

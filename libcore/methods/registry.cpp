@@ -17,6 +17,7 @@ std::span<const MethodRow> methods() {
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
                                                 twoStageResamplingRow(),
+                                                importanceCachingRow(),
                                                 skeletonRow()};
     return rows;
 }

@@ -196,7 +196,9 @@ class SkeletonConnections final : public Method {
             part(unseen, u * n + from, kUnseen);
             part(ones, from, kUniform);
             pmfs_[i] = CombinedPmf(rows, options_.choice);
-            if (options_.aware) found_[i] = sumsOf(rows);
+            const auto m = double(options_.subpaths);
+            found_[i] = {pmfs_[i].sum(kSeen) / m, pmfs_[i].sum(kUnseen) / m, double(count) / m,
+                         pmfs_[i].maxima(), 0};
         });
     }
 
@@ -284,23 +286,6 @@ class SkeletonConnections final : public Method {
             slot_[n] = std::uint32_t(used_.size());
             used_.push_back(n);
         }
-    }
-
-    Expected sumsOf(std::span<const std::span<const double>> rows) const {
-        const auto m = double(options_.subpaths);
-        double sum[kRows] = {0, 0, 0};
-        for (std::size_t r = 0; r < kRows; ++r) {
-            for (const double w : rows[r]) sum[r] += w;
-        }
-        Expected e{sum[kSeen] / m, sum[kUnseen] / m, double(rows[kSeen].size()) / m, 0.0, 0};
-        for (std::size_t i = 0; i < rows[kSeen].size(); ++i) {
-            double largest = 0.0;
-            for (std::size_t r = 0; r < kRows; ++r) {
-                if (sum[r] > 0.0) largest = std::max(largest, rows[r][i] / sum[r]);
-            }
-            e.maxima += largest;
-        }
-        return e;
     }
 
     Options options_;

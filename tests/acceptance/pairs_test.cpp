@@ -101,11 +101,11 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
 INSTANTIATE_TEST_SUITE_P(
     All, SceneFilesSlow,
     testing::Values(SceneFile{"cornell-box", 100}, SceneFile{"door", 60},
-                    SceneFile{"glossy-room", 60, true}, SceneFile{"kitchen-glass", 60, true},
-                    SceneFile{"ring-caustic", 60, true}, SceneFile{"furnace", 40},
+                    SceneFile{"glossy-room", 240, true}, SceneFile{"kitchen-glass", 240, true},
+                    SceneFile{"ring-caustic", 240, true}, SceneFile{"furnace", 40},
                     SceneFile{"light-quad", 60}, SceneFile{"light-sphere", 60},
                     SceneFile{"light-two-sided", 60}, SceneFile{"light-point", 60},
-                    SceneFile{"light-spot", 60, true}, SceneFile{"light-directional", 60},
+                    SceneFile{"light-spot", 240, true}, SceneFile{"light-directional", 60},
                     SceneFile{"light-environment", 60}, SceneFile{"light-mesh-instanced", 60}),
     ByParameter());
 

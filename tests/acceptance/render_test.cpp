@@ -29,15 +29,16 @@ Settings settingsOf(const MethodRow& row, const Shot& shot) {
     return resolve(row, assignments);
 }
 
-/// |z| that one of `tests` two-sided tests exceeds with probability kFalseAlarm.
-double threshold(double tests) {
+/// Standard errors, estimated from `iterations`, that one of `tests` two-sided tests exceeds with
+/// probability kFalseAlarm.
+double threshold(double tests, std::uint64_t iterations) {
     const double significance = sidak(kFalseAlarm, tests);
     double low = 0, high = 40;
     for (int i = 0; i < 100; ++i) {
         const double z = 0.5 * (low + high);
         (normalTail(z, 2) > significance ? low : high) = z;
     }
-    return low;
+    return studentQuantile(low, double(iterations) - 1.0);
 }
 
 float channel(const Rgb& c, int i) {
@@ -73,11 +74,12 @@ void expectValid(const Picture& p, const std::string& what) {
 
 void judgeAll(const Picture& a, const Image& pixels, const Image& pixelVariance,
               const Image& blocks, const Image& blockVariance, const double mean[3],
-              const double meanError[3], const std::string& what, Judge which) {
+              const double meanError[3], std::uint64_t iterations, const std::string& what,
+              Judge which) {
     double tests = 3;
     if (which != Judge::MeanOnly) tests += 3.0 * double(blocks.pixels.size());
     if (which == Judge::Everything) tests += 3.0 * double(pixels.pixels.size());
-    const double z = threshold(tests);
+    const double z = threshold(tests, std::min(iterations, a.pixels.iterations()));
     if (which == Judge::Everything) {
         judge(a.pixels.image(), a.pixels.variance(), pixels, pixelVariance, z, what + ": pixel");
     }
@@ -182,7 +184,7 @@ void expectSame(const Picture& a, const Picture& b, const std::string& what, Jud
     expectValid(b, what);
     const Film::MeanColour m = b.pixels.meanColour();
     judgeAll(a, b.pixels.image(), b.pixels.variance(), b.blocks.image(), b.blocks.variance(),
-             m.mean, m.standardError, what, which);
+             m.mean, m.standardError, b.pixels.iterations(), what, which);
 }
 
 void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact,
@@ -204,7 +206,7 @@ void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact,
         }
     }
     judgeAll(picture, pixels, Image(width, height), blocks, Image(blocks.width, blocks.height),
-             mean, none, what, Judge::Everything);
+             mean, none, picture.pixels.iterations(), what, Judge::Everything);
 }
 
 void expectRadiance(const Picture& picture, double exact, const std::string& what) {

@@ -1,10 +1,10 @@
 // Renders a scene with one row of the method table and compares pictures by z-tests.
 //
 // What the tests state: `kFalseAlarm` is the probability that one comparison of two pictures fails
-// by chance (Sidak over its pixels, blocks and channels, normal approximation). A program has a few
-// hundred comparisons, so one in about 10^4 changes of random numbers raises a false alarm. Scenes
-// must keep samples tame enough for that: no tiny light behind a mirror, no corner that is lit by
-// unweighted connections.
+// by chance (Sidak over its pixels, blocks and channels; Student's t over iterations, with the
+// fewer ones of the two). A program has a few hundred comparisons, so one in about 10^4 changes of
+// random numbers raises a false alarm. Scenes must keep samples tame enough for that, and renders
+// be long enough: no tiny light behind a mirror, no corner that is lit by unweighted connections.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -23,6 +23,14 @@ inline double normalTail(double z, int sides = 1) {
     return 0.5 * sides * std::erfc(z / std::sqrt(2.0));
 }
 
+/// The value that Student's t with `dof` degrees of freedom exceeds as often as a normal variable
+/// exceeds z: what a bound of z standard errors becomes where those were estimated from dof + 1
+/// samples. After Wallace 1959; within 1 % of itself for dof >= 20 and z <= 6.
+inline double studentQuantile(double z, double dof) {
+    const double scaled = z * (8.0 * dof + 3.0) / (8.0 * dof + 1.0);
+    return std::sqrt(dof * std::expm1(scaled * scaled / dof));
+}
+
 /// P(chi^2 with `dof` > x) after Wilson and Hilferty; far in the tail within a factor of two.
 inline double chiSquareTail(double x, double dof) {
     const double k = 2.0 / (9.0 * dof);
