@@ -11,7 +11,7 @@ namespace {
 /// What the instances of a scene really use, counted once.
 struct Inventory {
     std::vector<const Material*> materials;  // used by at least one triangle
-    std::size_t emissiveTriangles = 0;
+    std::size_t emissiveTriangles = 0, coloredPrimitives = 0;
     bool emissiveTextures = false;
     std::size_t points = 0, spots = 0, directionals = 0;
 
@@ -21,6 +21,7 @@ struct Inventory {
             const Mesh& mesh = scene.meshes[instance.mesh];
             if (mesh.triangles.empty()) continue;
             used.insert(mesh.material);
+            coloredPrimitives += !mesh.colors.empty();
             const Material& m = scene.materials[mesh.material];
             if (isBlack(m.emission)) continue;
             emissiveTriangles += mesh.triangles.size();
@@ -116,12 +117,14 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("alpha_mask",
           have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Mask; }),
           "material", " with alphaMode MASK", "no material with alphaMode MASK: no alpha test");
-    const std::size_t blended =
-        have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Blend; });
-    t.add("alpha_blend", false,
-          blended ? "not implemented: " + std::to_string(blended) +
-                        " material(s) with alphaMode BLEND are rendered opaque"
-                  : "no material with alphaMode BLEND");
+    t.add("alpha_blend",
+          have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Blend; }),
+          "material", " with alphaMode BLEND: a share of the rays passes",
+          "no material with alphaMode BLEND");
+    t.add("normal_maps", have.count([](const Material& m) { return bool(m.normalTexture); }),
+          "material", " with a normal map", "no normal map");
+    t.add("vertex_colors", have.coloredPrimitives, "coloured primitive", "",
+          "no mesh with COLOR_0");
 
     t.add("diffuse", have.count(isDiffuse), "material", " with a diffuse lobe",
           "no diffuse material");

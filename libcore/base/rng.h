@@ -5,6 +5,7 @@
 
 #include <Random123/philox.h>
 
+#include <array>
 #include <cstdint>
 
 namespace lacuna {
@@ -58,5 +59,14 @@ class Rng {
     Philox::ctr_type block_{};
     unsigned used_ = 4;
 };
+
+/// Uniform float in [0, 1) that depends on nothing but the words: a draw where there is no stream.
+inline float hashToUniform(const std::array<std::uint32_t, 8>& words) {
+    using Philox = r123::Philox4x32_R<7>;
+    Philox::ctr_type block{{words[0], words[1], words[2], words[3]}};
+    block = Philox{}(block, {{words[4], words[5]}});
+    block = Philox{}(block, {{words[6], words[7]}});
+    return float(block.v[0] >> 8) * 0x1p-24f;
+}
 
 }  // namespace lacuna

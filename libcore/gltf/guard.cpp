@@ -10,16 +10,15 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 7> kSupported = {
+constexpr std::array<std::string_view, 8> kSupported = {
     "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_ior",     "KHR_materials_specular",
     "KHR_materials_volume",  "KHR_materials_transmission",
-    "KHR_mesh_quantization",
+    "KHR_mesh_quantization", "KHR_texture_transform",
 };
 
 /// Known by name and warned about where they are used (material.cpp): no second warning here.
-constexpr std::array<std::string_view, 2> kWarnedWhereUsed = {"KHR_materials_clearcoat",
-                                                              "KHR_texture_transform"};
+constexpr std::array<std::string_view, 1> kWarnedWhereUsed = {"KHR_materials_clearcoat"};
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& names, const std::string& name) {

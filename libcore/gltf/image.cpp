@@ -116,7 +116,7 @@ Texture::Wrap TextureTable::wrap(int sampler, int mode, const char* name) const 
     }
 }
 
-TextureIndex TextureTable::request(int texture, bool srgb, Warnings& warnings) {
+TextureUse TextureTable::request(int texture, bool srgb, Warnings& warnings) {
     const tinygltf::Texture& entry = document_.model.textures[std::size_t(texture)];
     if (entry.source < 0) {
         warnings.add("textures without a PNG or JPEG image are left out", 1,
@@ -131,7 +131,9 @@ TextureIndex TextureTable::request(int texture, bool srgb, Warnings& warnings) {
     }
     const auto [at, isNew] = known_.try_emplace(key, std::int32_t(keys_.size()));
     if (isNew) keys_.push_back(key);
-    return {at->second};
+    TextureUse use;
+    use.value = at->second;
+    return use;
 }
 
 std::vector<Texture> TextureTable::decode(Document& document) const {

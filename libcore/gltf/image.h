@@ -20,7 +20,7 @@ class TextureTable {
 
     /// Index of glTF texture `texture` (in range) read as sRGB or linear; none, with a warning,
     /// where it has no image that we can read (only one of an extension).
-    TextureIndex request(int texture, bool srgb, Warnings& warnings);
+    TextureUse request(int texture, bool srgb, Warnings& warnings);
 
     /// Reads and decodes all that was requested: images in parallel, external files in order of
     /// image number. Throws InputError for what is no PNG or JPEG, is damaged or is too large.

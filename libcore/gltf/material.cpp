@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace lacuna::gltf {
@@ -19,9 +20,8 @@ class Reader {
           place_("materials[" + std::to_string(index) + "]"),
           textures_(textures),
           warnings_(warnings) {
-        const json& material = document.json["materials"][index];
-        const auto extensions = material.find("extensions");
-        if (extensions != material.end()) extensions_ = &*extensions;
+        json_ = &document.json["materials"][index];
+        extensions_ = member(*json_, "extensions");
     }
 
     Material read() {
@@ -40,15 +40,19 @@ class Reader {
         const tinygltf::PbrMetallicRoughness& pbr = source_.pbrMetallicRoughness;
         material_.baseColor = clampedRgb(pbr.baseColorFactor, "baseColorFactor");
         material_.baseAlpha = clamped(pbr.baseColorFactor[3], 0, 1, "baseColorFactor");
-        material_.baseColorTexture = texture(pbr.baseColorTexture, true);
+        const json* pbrJson = member(*json_, "pbrMetallicRoughness");
+        material_.baseColorTexture = texture(pbrJson, "baseColorTexture", true);
         material_.metallic = clamped(pbr.metallicFactor, 0, 1, "metallicFactor");
         material_.roughness = clamped(pbr.roughnessFactor, 0, 1, "roughnessFactor");
-        material_.metallicRoughnessTexture = texture(pbr.metallicRoughnessTexture, false);
+        material_.metallicRoughnessTexture = texture(pbrJson, "metallicRoughnessTexture", false);
+        material_.normalTexture = texture(json_, "normalTexture", false);
+        material_.normalScale =
+            clamped(source_.normalTexture.scale, -1e6, 1e6, "normalTexture.scale");
 
         if (const json* specular = extension("KHR_materials_specular")) {
             material_.specular =
                 clamped(number(*specular, "specularFactor", 1.0), 0, 1, "specularFactor");
-            const auto color = numbers3(*specular, "specularColorFactor", 1.0);
+            const auto color = numbers<3>(*specular, "specularColorFactor", {1, 1, 1});
             const bool tinted =
                 std::any_of(color.begin(), color.end(), [](double c) { return c != 1.0; });
             warn("specularColorFactor is not rendered yet", tinted);
@@ -80,7 +84,7 @@ class Reader {
         }
         material_.emission = clampedRgb(source_.emissiveFactor, "emissiveFactor") * float(strength);
         if (!isBlack(material_.emission)) {
-            material_.emissiveTexture = texture(source_.emissiveTexture, true);
+            material_.emissiveTexture = texture(json_, "emissiveTexture", true);
         }
     }
 
@@ -90,7 +94,6 @@ class Reader {
             material_.alphaMode = Material::Alpha::Mask;
         } else if (mode == "BLEND") {
             material_.alphaMode = Material::Alpha::Blend;
-            warn("alphaMode BLEND is rendered opaque for now", true);
         } else if (mode != "OPAQUE") {
             refuse(document_.file, place_ + ".alphaMode", "OPAQUE, MASK or BLEND",
                    '"' + mode + '"');
@@ -104,13 +107,12 @@ class Reader {
             material_.transmission = clamped(number(*transmission, "transmissionFactor", 0.0), 0, 1,
                                              "transmissionFactor");
             if (material_.transmission > 0.0f) {
-                material_.transmissionTexture =
-                    extensionTexture(*transmission, "transmissionTexture", false);
+                material_.transmissionTexture = texture(transmission, "transmissionTexture", false);
             }
         }
         if (const json* volume = extension("KHR_materials_volume")) {
             material_.thin = !(number(*volume, "thicknessFactor", 0.0) > 0.0);
-            const auto color = numbers3(*volume, "attenuationColor", 1.0);
+            const auto color = numbers<3>(*volume, "attenuationColor", {1, 1, 1});
             const bool attenuates =
                 volume->contains("attenuationDistance") &&
                 std::any_of(color.begin(), color.end(), [](double c) { return c != 1.0; });
@@ -120,17 +122,18 @@ class Reader {
     }
 
     void warnAboutRest() {
-        warn("normal maps are not rendered yet", source_.normalTexture.index >= 0);
         if (const json* coat = extension("KHR_materials_clearcoat")) {
             warn("clearcoat is not rendered yet", number(*coat, "clearcoatFactor", 0.0) > 0.0);
         }
     }
 
+    static const json* member(const json& object, const char* name) {
+        const auto found = object.find(name);
+        return found == object.end() ? nullptr : &*found;
+    }
     /// The extension's object, or null.
     const json* extension(const char* name) const {
-        if (!extensions_) return nullptr;
-        const auto found = extensions_->find(name);
-        return found == extensions_->end() ? nullptr : &*found;
+        return extensions_ ? member(*extensions_, name) : nullptr;
     }
 
     double number(const json& object, const char* name, double otherwise) const {
@@ -143,17 +146,21 @@ class Reader {
         return found->get<double>();
     }
 
-    std::array<double, 3> numbers3(const json& object, const char* name, double otherwise) const {
+    template <std::size_t N>
+    std::array<double, N> numbers(const json& object, const char* name,
+                                  std::array<double, N> otherwise) const {
         const auto found = object.find(name);
-        if (found == object.end()) return {otherwise, otherwise, otherwise};
+        if (found == object.end()) return otherwise;
         const bool right =
-            found->is_array() && found->size() == 3 &&
+            found->is_array() && found->size() == N &&
             std::all_of(found->begin(), found->end(), [](const json& c) { return c.is_number(); });
         if (!right) {
-            refuse(document_.file, place_ + ".extensions..." + name, "3 numbers",
+            refuse(document_.file, place_ + ".extensions..." + name, std::to_string(N) + " numbers",
                    printable(found->dump(), 60));
         }
-        return {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
+        std::array<double, N> result;
+        for (std::size_t i = 0; i < N; ++i) result[i] = (*found)[i].get<double>();
+        return result;
     }
 
     float clamped(double value, double least, double most, const char* name) {
@@ -170,45 +177,47 @@ class Reader {
                 clamped(factors[2], 0, 1, name)};
     }
 
-    TextureIndex texture(const tinygltf::TextureInfo& info, bool srgb) {
-        if (info.index < 0) return {};
-        warn("texture coordinate sets other than 0 are not rendered yet: set 0 is used",
-             info.texCoord != 0);
-        const auto transform = info.extensions.find("KHR_texture_transform");
-        warn("texture transforms are not rendered yet",
-             transform != info.extensions.end() && !isIdentity(transform->second));
-        return textures_.request(info.index, srgb, warnings_);
+    /// The texture that `name` of `object` (may be null) asks for. Index and set were range-checked
+    /// (rules.cpp).
+    TextureUse texture(const json* object, const char* name, bool srgb) {
+        const json* info = object ? member(*object, name) : nullptr;
+        if (!info) return {};
+        const json* index = info->is_object() ? member(*info, "index") : nullptr;
+        if (!index) {
+            refuse(document_.file, place_ + "..." + name, "a texture index", "none");
+        }
+        TextureUse use = textures_.request(index->get<int>(), srgb, warnings_);
+        bool otherSet = info->value("texCoord", 0) != 0;
+        const json* extensions = member(*info, "extensions");
+        const json* transform = extensions && extensions->is_object()
+                                    ? member(*extensions, "KHR_texture_transform")
+                                    : nullptr;
+        if (transform) {
+            if (!transform->is_object()) {
+                refuse(document_.file, place_ + "..." + name + "...KHR_texture_transform",
+                       "an object", printable(transform->dump(), 60));
+            }
+            place(*transform, use);
+            otherSet = number(*transform, "texCoord", otherSet ? 1.0 : 0.0) != 0.0;
+        }
+        warn("texture coordinate sets other than 0 are not rendered yet: set 0 is used", otherSet);
+        return use;
     }
 
-    TextureIndex extensionTexture(const json& object, const char* name, bool srgb) {
-        const auto found = object.find(name);
-        if (found == object.end()) return {};
-        const auto index = found->find("index");
-        if (!found->is_object() || index == found->end()) {
-            refuse(document_.file, place_ + ".extensions..." + name, "a texture index", "none");
-        }
-        tinygltf::TextureInfo info;  // both were range-checked (rules.cpp)
-        info.index = index->get<int>();
-        info.texCoord = found->value("texCoord", 0);
-        const auto extensions = found->find("extensions");
-        if (extensions != found->end() && extensions->contains("KHR_texture_transform")) {
-            info.extensions["KHR_texture_transform"] = tinygltf::Value(1);  // not the identity
-        }
-        return texture(info, srgb);
-    }
-
-    /// Exporters write the transform's defaults; then there is nothing to warn about.
-    static bool isIdentity(const tinygltf::Value& transform) {
-        const auto is = [&](const char* name, std::size_t i, double value) {
-            if (!transform.Has(name)) return true;
-            const tinygltf::Value& v = transform.Get(name);
-            if (!v.IsArray()) return v.IsNumber() && v.GetNumberAsDouble() == value;
-            return i < v.ArrayLen() && v.Get(int(i)).IsNumber() &&
-                   v.Get(int(i)).GetNumberAsDouble() == value;
-        };
-        return transform.IsObject() && is("offset", 0, 0) && is("offset", 1, 0) &&
-               is("scale", 0, 1) && is("scale", 1, 1) && is("rotation", 0, 0) &&
-               is("texCoord", 0, 0);
+    /// KHR_texture_transform: scaled, turned about the origin, moved. Positive angles turn the
+    /// coordinates against the clock as the image is seen; v points down.
+    void place(const json& transform, TextureUse& use) {
+        constexpr double kMost = 1e6;
+        const auto scale = numbers<2>(transform, "scale", {1, 1});
+        const auto offset = numbers<2>(transform, "offset", {0, 0});
+        const double angle = number(transform, "rotation", 0.0);
+        const double c = std::cos(angle), s = std::sin(angle);
+        const float su = clamped(scale[0], -kMost, kMost, "scale");
+        const float sv = clamped(scale[1], -kMost, kMost, "scale");
+        use.uAxis = Vec2{float(c), float(-s)} * su;
+        use.vAxis = Vec2{float(s), float(c)} * sv;
+        use.offset = {clamped(offset[0], -kMost, kMost, "offset"),
+                      clamped(offset[1], -kMost, kMost, "offset")};
     }
 
     void warn(const char* kind, bool applies) { warnings_.add(kind, applies, place_); }
@@ -218,7 +227,8 @@ class Reader {
     std::string place_;
     TextureTable& textures_;
     Warnings& warnings_;
-    const json* extensions_ = nullptr;
+    const json* json_ = nullptr;
+    const json* extensions_ = nullptr;  // the material's own
     Material material_;
 };
 

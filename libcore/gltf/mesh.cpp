@@ -144,6 +144,25 @@ void repairNormals(Task& task) {
     }
 }
 
+/// COLOR_0 has three components or four; values outside [0, 1] are cut off.
+void readColors(const Document& document, Task& task, int accessor, std::size_t count,
+                const std::vector<std::uint32_t>& which) {
+    using Color = std::array<float, 4>;
+    std::vector<Color>& colors = task.result.colors;
+    const int type = document.model.accessors[std::size_t(accessor)].type;
+    if (type == TINYGLTF_TYPE_VEC3) {
+        for (const Vec3 c :
+             readVertices<Vec3, 3>(document, task, "COLOR_0", accessor, count, which)) {
+            colors.push_back({c.x, c.y, c.z, 1.0f});
+        }
+    } else {
+        colors = readVertices<Color, 4>(document, task, "COLOR_0", accessor, count, which);
+    }
+    for (Color& color : colors) {
+        for (float& c : color) c = std::clamp(c, 0.0f, 1.0f);
+    }
+}
+
 void readPrimitive(const Document& document, Task& task) {
     const tinygltf::Primitive& primitive = primitiveOf(document, task);
     const int positions = attribute(primitive, "POSITION");
@@ -170,6 +189,9 @@ void readPrimitive(const Document& document, Task& task) {
     }
     if (const int uvs = attribute(primitive, "TEXCOORD_0"); uvs >= 0) {
         mesh.uvs = readVertices<Vec2, 2>(document, task, "TEXCOORD_0", uvs, vertexCount, which);
+    }
+    if (const int colors = attribute(primitive, "COLOR_0"); colors >= 0) {
+        readColors(document, task, colors, vertexCount, which);
     }
     mesh.material = primitive.material >= 0 ? std::uint32_t(primitive.material)
                                             : std::uint32_t(document.model.materials.size());
@@ -232,8 +254,6 @@ void warnAbout(const Document& document, const Task& task, Warnings& warnings) {
     warnings.add("vertex normals of zero length are replaced by the faces' normals",
                  task.zeroNormals, place);
     warnings.add("morph targets are not rendered", !primitive.targets.empty(), place);
-    warnings.add("vertex colours (COLOR_0) are not rendered yet",
-                 primitive.attributes.contains("COLOR_0"), place);
 }
 
 }  // namespace

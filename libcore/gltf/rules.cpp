@@ -118,6 +118,8 @@ constexpr Rule kRules[] = {
     {"materials/*/emissiveTexture/texCoord", Shape::Count32},
     {"materials/*/normalTexture", Shape::Object},
     {"materials/*/normalTexture/index", Shape::Index, 0, "textures"},
+    {"materials/*/normalTexture/texCoord", Shape::Count32},
+    {"materials/*/normalTexture/scale", Shape::Number},
     {"materials/*/occlusionTexture", Shape::Object},
     {"materials/*/occlusionTexture/index", Shape::Index, 0, "textures"},
     {"materials/*/pbrMetallicRoughness", Shape::Object},

@@ -28,7 +28,7 @@ struct Accel::Impl {
     RTCScene scene = nullptr;
     std::vector<RTCScene> meshScenes;  // per mesh, null where it is not instanced
     std::vector<FilterData> filterData;
-    AlphaTest alphaTest;
+    HoleTest holeTest;
     std::string error;
 
     ~Impl() {
@@ -66,7 +66,13 @@ struct Accel::Impl {
             const Hit hit{instance != RTC_INVALID_GEOMETRY_ID ? instance : data.object,
                           RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
                           RTCHitN_v(args->hit, args->N, i)};
-            if (!data.impl->alphaTest(hit)) args->valid[i] = 0;
+            const Vec3 origin{RTCRayN_org_x(args->ray, args->N, i),
+                              RTCRayN_org_y(args->ray, args->N, i),
+                              RTCRayN_org_z(args->ray, args->N, i)};
+            const Vec3 direction{RTCRayN_dir_x(args->ray, args->N, i),
+                                 RTCRayN_dir_y(args->ray, args->N, i),
+                                 RTCRayN_dir_z(args->ray, args->N, i)};
+            if (!data.impl->holeTest(hit, origin, direction)) args->valid[i] = 0;
         }
     }
 
@@ -87,10 +93,10 @@ struct Accel::Impl {
 };
 
 Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> objects,
-             AlphaTest alphaTest, const ThreadPool& pool)
+             HoleTest holeTest, const ThreadPool& pool)
     : impl_(std::make_unique<Impl>()) {
     Impl& a = *impl_;
-    a.alphaTest = std::move(alphaTest);
+    a.holeTest = std::move(holeTest);
     a.filterData.reserve(objects.size());
     a.device = rtcNewDevice(nullptr);
     a.require(a.device != nullptr);
@@ -109,7 +115,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
                 if (!shared) {
                     shared = a.newScene();
                     RTCGeometry triangles = a.makeTriangles(meshes[object.mesh]);
-                    if (object.alphaMasked) a.attachFilter(triangles, i);
+                    if (object.hasHoles) a.attachFilter(triangles, i);
                     rtcCommitGeometry(triangles);
                     rtcAttachGeometry(shared, triangles);
                     rtcReleaseGeometry(triangles);
@@ -124,7 +130,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
                 rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
             } else {
                 g = a.makeTriangles(meshes[object.mesh]);
-                if (object.alphaMasked) a.attachFilter(g, i);
+                if (object.hasHoles) a.attachFilter(g, i);
             }
             rtcCommitGeometry(g);
             rtcAttachGeometryByID(a.scene, g, i);

@@ -21,8 +21,8 @@ class ThreadPool;
 struct AccelObject {
     std::uint32_t mesh = 0;
     bool instanced = false;
-    Affine toWorld;  ///< used where instanced
-    bool alphaMasked = false;
+    Affine toWorld;         ///< used where instanced
+    bool hasHoles = false;  ///< some of its points may not be there
 };
 
 /// Triangles as Embree reads them. `positions` must have one more element than vertices: Embree
@@ -34,13 +34,14 @@ struct AccelMesh {
 
 class Accel {
   public:
-    /// Tells whether the surface is there at this point of an alphaMasked object.
-    using AlphaTest = std::function<bool(const Hit&)>;
+    /// Tells whether the surface of an object with holes is there at this point, for a ray (of
+    /// which origin and direction may be in the object's own space).
+    using HoleTest = std::function<bool(const Hit&, Vec3 origin, Vec3 direction)>;
 
     /// Builds the hierarchies (in `pool`'s threads). The spans must outlive the object. Throws
     /// RunError if Embree cannot build (out of memory).
     Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> objects,
-          AlphaTest alphaTest, const ThreadPool& pool);
+          HoleTest holeTest, const ThreadPool& pool);
     ~Accel();
     Accel(Accel&&) noexcept;
     Accel& operator=(Accel&&) noexcept;

@@ -24,11 +24,16 @@ struct Texture {
     Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
 };
 
-/// Index into SceneDescription::textures, or none.
-struct TextureIndex {
+/// A texture as a material uses it: index into SceneDescription::textures, or none, and how it lies
+/// on the surface (KHR_texture_transform).
+struct TextureUse {
     static constexpr std::int32_t kNone = -1;
     std::int32_t value = kNone;
+    Vec2 uAxis{1, 0}, vAxis{0, 1}, offset{0, 0};
+
     explicit operator bool() const { return value != kNone; }
+    /// Coordinates in the texture, from those of the mesh.
+    Vec2 at(Vec2 uv) const { return uAxis * uv.x + vAxis * uv.y + offset; }
 };
 
 /// glTF metallic-roughness with the extensions that interface.md names; factors are linear.
@@ -38,18 +43,20 @@ struct Material {
     std::string name;
     Rgb baseColor{1.0f};
     float baseAlpha = 1.0f;
-    TextureIndex baseColorTexture;  ///< sRGB, times baseColor and baseAlpha
+    TextureUse baseColorTexture;  ///< sRGB, times baseColor and baseAlpha
     float metallic = 1.0f;
-    float roughness = 1.0f;                 ///< GGX alpha = roughness^2; 0 is a perfect mirror
-    TextureIndex metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
-    float specular = 1.0f;                  ///< KHR_materials_specular factor; 0 = exactly Lambert
+    float roughness = 1.0f;               ///< GGX alpha = roughness^2; 0 is a perfect mirror
+    TextureUse metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
+    float specular = 1.0f;                ///< KHR_materials_specular factor; 0 = exactly Lambert
     float ior = 1.5f;
     float transmission = 0.0f;
-    TextureIndex transmissionTexture;  ///< linear: R
-    bool thin = true;                  ///< no KHR_materials_volume thickness: no refraction
-    Rgb emission;                      ///< radiance: emissiveFactor x emissiveStrength
-    TextureIndex emissiveTexture;      ///< sRGB, times emission
-    bool doubleSided = false;          ///< emission from both sides (geometry is never culled)
+    TextureUse transmissionTexture;  ///< linear: R
+    bool thin = true;                ///< no KHR_materials_volume thickness: no refraction
+    TextureUse normalTexture;        ///< linear: tangent, bitangent, normal as (x + 1) / 2
+    float normalScale = 1.0f;        ///< of the first two
+    Rgb emission;                    ///< radiance: emissiveFactor x emissiveStrength
+    TextureUse emissiveTexture;      ///< sRGB, times emission
+    bool doubleSided = false;        ///< emission from both sides (geometry is never culled)
     Alpha alphaMode = Alpha::Opaque;
     float alphaCutoff = 0.5f;
 };
@@ -60,6 +67,8 @@ struct Mesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty, or one per position (not necessarily unit)
     std::vector<Vec2> uvs;      ///< empty, or one per position (TEXCOORD_0)
+    /// Empty, or one per position (COLOR_0): linear factors on base colour and alpha.
+    std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::uint32_t material = 0;
 };

@@ -1,11 +1,13 @@
 #include "libcore/scene/scene.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/rng.h"
 #include "libcore/image/image_io.h"
-#include "libcore/scene/texture.h"
 #include "libcore/scene/triangle.h"
 
 namespace lacuna {
@@ -16,6 +18,7 @@ struct Scene::WorldMesh {
     std::vector<Vec3> positions;  // one more than there are vertices (accel.h)
     std::vector<Vec3> normals;
     std::vector<Vec2> uvs;
+    std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
@@ -166,6 +169,7 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
         }
         to.uvs = std::move(from.uvs);
+        to.colors = std::move(from.colors);
         to.triangles = std::move(from.triangles);
         if (mirroredMesh[m]) {
             for (auto& t : to.triangles) std::swap(t[1], t[2]);
@@ -206,7 +210,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             for (int c = 0; c < 3; ++c) {
                 const Vec3 p = mesh.positions[triangle[c]];
                 e.corners[c] = object.instanced ? object.point(p) : p;
-                if (!mesh.uvs.empty()) e.uvs[c] = mesh.uvs[triangle[c]];
+                const Vec2 uv = mesh.uvs.empty() ? Vec2{} : mesh.uvs[triangle[c]];
+                e.uvs[c] = material.emissiveTexture.at(uv);
             }
             e.radiance = material.emission;
             if (material.emissiveTexture) e.texture = &d.textures[material.emissiveTexture.value];
@@ -239,6 +244,9 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             bsdf = Bsdf(bsdfParameters(m, {}), {}, {}, *tables_);
         }
     }
+    for (const WorldMesh& m : meshes_) {
+        if (!m.colors.empty()) constantBsdfs_[m.material].reset();
+    }
 
     std::vector<AccelMesh> accelMeshes;
     for (const WorldMesh& m : meshes_) accelMeshes.push_back({m.positions, m.triangles});
@@ -249,11 +257,15 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         a.instanced = o.instanced;
         for (int c = 0; c < 4; ++c) a.toWorld.m[c] = Vec3d(o.toWorld[c]);
         const Material& material = d.materials[meshes_[o.mesh].material];
-        a.alphaMasked = material.alphaMode == Material::Alpha::Mask;
+        a.hasHoles = hasHoles(material, meshes_[o.mesh]);
         accelObjects.push_back(a);
     }
     accel_ = std::make_unique<Accel>(
-        accelMeshes, accelObjects, [this](const Hit& hit) { return alphaTest(hit); }, pool);
+        accelMeshes, accelObjects,
+        [this](const Hit& hit, Vec3 origin, Vec3 direction) {
+            return isThere(hit, origin, direction);
+        },
+        pool);
 }
 
 Scene::~Scene() = default;
@@ -278,15 +290,49 @@ Vec2 Scene::uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& t, f
     return mesh.uvs[t[0]] * (1.0f - u - v) + mesh.uvs[t[1]] * u + mesh.uvs[t[2]] * v;
 }
 
-bool Scene::alphaTest(const Hit& hit) const {
+bool Scene::hasHoles(const Material& material, const WorldMesh& mesh) const {
+    if (material.alphaMode == Material::Alpha::Opaque) return false;
+    if (material.baseAlpha < 1.0f || material.alphaCutoff > 1.0f) return true;
+    if (std::any_of(mesh.colors.begin(), mesh.colors.end(),
+                    [](const auto& c) { return c[3] < 1.0f; })) {
+        return true;
+    }
+    if (!material.baseColorTexture) return false;
+    // Exporters like to call everything BLEND that has an image with an alpha channel.
+    const auto& texels = description_.textures[std::size_t(material.baseColorTexture.value)].rgba;
+    for (std::size_t i = 3; i < texels.size(); i += 4) {
+        if (texels[i] != 255) return true;
+    }
+    return false;
+}
+
+float Scene::opacity(const Hit& hit) const {
     const WorldMesh& mesh = meshes_[objects_[hit.object].mesh];
     const Material& material = description_.materials[mesh.material];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
     float alpha = material.baseAlpha;
     if (material.baseColorTexture) {
-        const Vec2 uv = uvAt(mesh, mesh.triangles[hit.primitive], hit.u, hit.v);
-        alpha *= sampleTexture(description_.textures[material.baseColorTexture.value], uv).alpha;
+        alpha *= sample(material.baseColorTexture, uvAt(mesh, t, hit.u, hit.v)).alpha;
     }
-    return alpha >= material.alphaCutoff;
+    if (!mesh.colors.empty()) {
+        alpha *= mesh.colors[t[0]][3] * (1.0f - hit.u - hit.v) + mesh.colors[t[1]][3] * hit.u +
+                 mesh.colors[t[2]][3] * hit.v;
+    }
+    if (material.alphaMode == Material::Alpha::Blend) return alpha;
+    return alpha >= material.alphaCutoff ? 1.0f : 0.0f;
+}
+
+bool Scene::isThere(const Hit& hit, Vec3 origin, Vec3 direction) const {
+    const float alpha = opacity(hit);
+    if (alpha <= 0.0f || alpha >= 1.0f) return alpha > 0.0f;
+    // A share of the rays, which they draw themselves: no state, and the same ray again meets the
+    // same surfaces. Every strategy of a path has the same chance at each of its edges and
+    // vertices, so that the weights need not know.
+    return hashToUniform(
+               {std::bit_cast<std::uint32_t>(origin.x), std::bit_cast<std::uint32_t>(origin.y),
+                std::bit_cast<std::uint32_t>(origin.z), std::bit_cast<std::uint32_t>(direction.x),
+                std::bit_cast<std::uint32_t>(direction.y),
+                std::bit_cast<std::uint32_t>(direction.z), hit.object, hit.primitive}) < alpha;
 }
 
 void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
@@ -318,7 +364,43 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     }
     s.uv = uvAt(mesh, t, hit.u, hit.v);
     s.material = mesh.material;
+    if (!mesh.colors.empty()) {
+        const auto color = [&](std::uint32_t corner) {
+            const auto& c = mesh.colors[corner];
+            return Rgb{c[0], c[1], c[2]};
+        };
+        s.color = color(t[0]) * w + color(t[1]) * hit.u + color(t[2]) * hit.v;
+    }
+    const Material& material = description_.materials[mesh.material];
+    if (material.normalTexture && !mesh.uvs.empty()) {
+        s.ns = bumped(s, material.normalTexture, material.normalScale, {p0, p1, p2},
+                      {mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]});
+    }
     if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
+}
+
+/// Shading normal by a normal map. The tangents are the directions in which the triangle's texture
+/// coordinates grow, made perpendicular to the interpolated normal.
+Vec3 Scene::bumped(const SurfacePoint& point, const TextureUse& map, float scale,
+                   const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& uvs) const {
+    const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+    const Vec2 d1 = uvs[1] - uvs[0], d2 = uvs[2] - uvs[0];
+    // The determinant's sign is enough: lengths are normalised away.
+    const float side = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;
+    const Vec3 along = (e1 * d2.y - e2 * d1.y) * side;
+    const Vec3 tangent = normalize(along - point.ns * dot(point.ns, along));
+    const Vec3 down = (e2 * d1.x - e1 * d2.x) * side;
+    Vec3 bitangent = cross(point.ns, tangent);
+    // glTF's bitangent points to the image's upper edge, against v [glTF 2.0, 3.9.3].
+    if (dot(bitangent, down) > 0.0f) bitangent = -bitangent;
+    const Rgb texel = sample(map, point.uv).rgb;
+    const Vec3 n = tangent * ((2.0f * texel.r - 1.0f) * scale) +
+                   bitangent * ((2.0f * texel.g - 1.0f) * scale) +
+                   point.ns * (2.0f * texel.b - 1.0f);
+    const Vec3 unit = normalize(n);
+    // Normals that lead below the surface, and those of triangles without tangents (NaN), say
+    // nothing.
+    return dot(unit, point.ng) > 1e-3f ? unit : point.ns;
 }
 
 bool Scene::mostlyHoles(std::uint32_t object, std::uint32_t primitive) const {
@@ -329,7 +411,7 @@ bool Scene::mostlyHoles(std::uint32_t object, std::uint32_t primitive) const {
         for (int j = 0; j < 2 * (kRows - i) - 1; ++j) {
             const float third = j % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
             const float u = (float(i) + third) / kRows, v = (float(j / 2) + third) / kRows;
-            there += alphaTest({object, primitive, u, v}) ? 1 : 0;
+            there += opacity({object, primitive, u, v}) >= 0.5f ? 1 : 0;
         }
     }
     return 2 * there < kRows * kRows;
@@ -340,11 +422,10 @@ std::vector<std::array<Vec3, 3>> Scene::blockingTriangles(const ThreadPool& pool
     pool.forEach(objects_.size(), [&](std::size_t o) {
         const Object& object = objects_[o];
         const WorldMesh& mesh = meshes_[object.mesh];
-        const bool masked =
-            description_.materials[mesh.material].alphaMode == Material::Alpha::Mask;
+        const bool holes = hasHoles(description_.materials[mesh.material], mesh);
         parts[o].reserve(mesh.triangles.size());
         for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
-            if (masked && mostlyHoles(std::uint32_t(o), k)) continue;
+            if (holes && mostlyHoles(std::uint32_t(o), k)) continue;
             std::array<Vec3, 3> t;
             for (std::size_t c = 0; c < 3; ++c) {
                 const Vec3 p = mesh.positions[mesh.triangles[k][c]];
@@ -394,12 +475,12 @@ bool Scene::visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind,
 Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
     const std::optional<Bsdf>& constant = constantBsdfs_[point.material];
     if (constant) return constant->at(point.ng, point.ns);
-    return Bsdf(bsdfParameters(description_.materials[point.material], point.uv), point.ng,
-                point.ns, *tables_);
+    Bsdf::Parameters p = bsdfParameters(description_.materials[point.material], point.uv);
+    p.baseColor *= point.color;
+    return Bsdf(p, point.ng, point.ns, *tables_);
 }
 
 Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
-    const auto& textures = description_.textures;
     Bsdf::Parameters p;
     p.baseColor = m.baseColor;
     p.metallic = m.metallic;
@@ -409,15 +490,15 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     p.transmission = m.transmission;
     p.thin = m.thin;
     if (m.baseColorTexture) {
-        p.baseColor *= sampleTexture(textures[m.baseColorTexture.value], uv).rgb;
+        p.baseColor *= sample(m.baseColorTexture, uv).rgb;
     }
     if (m.metallicRoughnessTexture) {
-        const Rgb t = sampleTexture(textures[m.metallicRoughnessTexture.value], uv).rgb;
+        const Rgb t = sample(m.metallicRoughnessTexture, uv).rgb;
         p.roughness *= t.g;
         p.metallic *= t.b;
     }
     if (m.transmissionTexture) {
-        p.transmission *= sampleTexture(textures[m.transmissionTexture.value], uv).rgb.r;
+        p.transmission *= sample(m.transmissionTexture, uv).rgb.r;
     }
     return p;
 }

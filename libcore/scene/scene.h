@@ -16,6 +16,7 @@
 #include "libcore/scene/environment.h"
 #include "libcore/scene/light.h"
 #include "libcore/scene/ray.h"
+#include "libcore/scene/texture.h"
 
 namespace lacuna {
 
@@ -24,9 +25,10 @@ class ThreadPool;
 /// Where a ray met a surface, with everything a path vertex needs.
 struct SurfacePoint {
     Vec3 position;
-    Vec3 ng;  ///< unit, by the winding (sign of the transform's determinant included)
-    Vec3 ns;  ///< unit, on ng's side
-    Vec2 uv;  ///< texture coordinates
+    Vec3 ng;          ///< unit, by the winding (sign of the transform's determinant included)
+    Vec3 ns;          ///< unit, on ng's side
+    Vec2 uv;          ///< texture coordinates
+    Rgb color{1.0f};  ///< the vertices', a factor on the base colour
     Vec2 barycentric;
     std::uint32_t material = 0;
     std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
@@ -57,7 +59,7 @@ class Scene {
     std::size_t triangleCount() const { return triangleCount_; }
     /// The triangles that stop light, in our coordinates, instances each time, in a fixed order.
     /// That is all of them, glass too: a connection does not pass through glass either. Left out
-    /// are masked triangles of which the alpha test lets more than half through (leaves, chains).
+    /// are triangles of which alpha lets more than half through (leaves, chains, veils).
     std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const;
 
     /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no
@@ -78,7 +80,15 @@ class Scene {
     struct WorldMesh;
 
     void surfaceAt(const Hit& hit, SurfacePoint& out) const;
-    bool alphaTest(const Hit& hit) const;
+    Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
+                const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& uvs) const;
+    /// Whether rays can pass through some of the mesh's points.
+    bool hasHoles(const Material& material, const WorldMesh& mesh) const;
+    float opacity(const Hit& hit) const;
+    bool isThere(const Hit& hit, Vec3 origin, Vec3 direction) const;
+    Rgba sample(const TextureUse& use, Vec2 uv) const {
+        return sampleTexture(description_.textures[std::size_t(use.value)], use.at(uv));
+    }
     Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv) const;
     bool mostlyHoles(std::uint32_t object, std::uint32_t primitive) const;
     Vec2 uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& triangle, float u,

@@ -172,6 +172,25 @@ TEST_P(Exact, convexBodyUnderAConstantSkyShowsItsAlbedo) {
     expectRadiance(render(*b.build(), row(), shot), 0.5, row().name + ", sphere under the sky");
 }
 
+/// Veils of alpha 0.25 and 0.5 that reflect nothing, between the camera and a light that fills its
+/// view: 0.75 x 0.5 of the light gets through.
+TEST_P(Exact, veilsLetTheirShareThrough) {
+    SceneBuilder b;
+    b.add(quad({-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, b.add(emitter(Rgb(2.0f)))));
+    for (const float alpha : {0.25f, 0.5f}) {
+        lacuna::Material veil = matte(Rgb(0.0f));
+        veil.alphaMode = lacuna::Material::Alpha::Blend;
+        veil.baseAlpha = alpha;
+        b.add(quad({-9, -9, -1 - alpha}, {18, 0, 0}, {0, 18, 0}, b.add(veil)));
+    }
+    b.add(lookAt({0, 0, 0}, {0, 0, -1}, 40));
+    Shot shot;
+    shot.maxDepth = 2;
+    shot.iterations = 300;
+    expectRadiance(render(*b.build(), row(), withSplatsForEveryPixel(shot, row())), 0.75,
+                   row().name + ", veils");
+}
+
 /// The sky is dimmed as the scene grows, so that the light that it holds (and whatever a density
 /// makes of beta) stays what it was; Shot::gain takes that back.
 SceneBuilder sphereOnGround(double scale, Vec3d offset) {

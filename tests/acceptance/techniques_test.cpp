@@ -67,6 +67,28 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
+        // Strong bumps on the floor, vertex colours on the wall, a veil between light and floor.
+        TechniqueScene s{"normal map, colours and a veil", plates(false), 2, 4};
+        SceneBuilder& b = s.builder;
+        Texture bumps;
+        bumps.width = bumps.height = 4;
+        for (int i = 0; i < 16; ++i) {
+            const std::uint8_t texel[] = {std::uint8_t(48 + 160 * (i % 2)),
+                                          std::uint8_t(208 - 53 * (i / 4)), 220, 255};
+            bumps.rgba.insert(bumps.rgba.end(), texel, texel + 4);
+        }
+        lacuna::Material bumpy = plastic({0.6f, 0.5f, 0.4f}, 0.7f);
+        bumpy.normalTexture = b.add(bumps);
+        b.d.meshes[0].material = b.add(bumpy);
+        b.d.meshes[1].colors = {{1, 1, 1, 1}, {1, 0.2f, 0.2f, 1}, {0.1f, 1, 0.3f, 1}, {1, 1, 0, 1}};
+        lacuna::Material veil = matte(Rgb(0.8f));
+        veil.alphaMode = lacuna::Material::Alpha::Blend;
+        veil.baseAlpha = 0.6f;
+        b.add(quad({-0.8f, 0.8f, -0.6f}, {1.6f, 0, 0}, {0, 0.1f, 1.4f}, b.add(veil)));
+        addQuadLight(b);
+        scenes.push_back(s);
+    }
+    {
         // Two rough faces of a plate of glass between light and floor.
         TechniqueScene s{"rough refraction", plates(false), 2, 4};
         // Very rough: unweighted connections across the plate meet two lobes at once.

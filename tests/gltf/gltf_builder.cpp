@@ -151,7 +151,7 @@ void expectRefused(const GltfBuilder& builder, const std::vector<std::string>& p
 
 void expectValid(const SceneDescription& scene) {
     ASSERT_FALSE(scene.materials.empty());
-    const auto isTexture = [&](TextureIndex t) {
+    const auto isTexture = [&](TextureUse t) {
         return t.value >= -1 && t.value < std::int32_t(scene.textures.size());
     };
     for (const Material& m : scene.materials) {

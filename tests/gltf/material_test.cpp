@@ -116,13 +116,9 @@ TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
     TriangleBuilder b;
     const int t = b.texture(redBlue());
     const json info = {{"index", t}};
-    json turned = {{"index", t}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}};
     const json material = {
         {"alphaMode", "BLEND"},
-        {"normalTexture", info},
         {"occlusionTexture", info},
-        {"emissiveFactor", {1, 1, 1}},
-        {"emissiveTexture", turned},
         {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}}}},
         {"extensions",
          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
@@ -136,14 +132,13 @@ TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
     b.add("materials", material);
     b.add("materials", material);
     const SceneDescription scene = b.load();
-    for (const char* kind :
-         {"BLEND", "normal maps", "texture transforms", "coordinate sets", "clearcoat",
-          "specularColorFactor", "specular textures", "attenuation", "thickness textures"}) {
+    for (const char* kind : {"coordinate sets", "clearcoat", "specularColorFactor",
+                             "specular textures", "attenuation", "thickness textures"}) {
         EXPECT_EQ(warningsWith(scene, kind), 1) << kind;
     }
-    EXPECT_EQ(warningsWith(scene, "2 times"), 9);
+    EXPECT_EQ(warningsWith(scene, "2 times"), 6);
     EXPECT_EQ(warningsWith(scene, "cclusion"), 0);
-    EXPECT_EQ(scene.warnings.size(), 9u);
+    EXPECT_EQ(scene.warnings.size(), 6u);
     EXPECT_EQ(scene.materials[0].alphaMode, Material::Alpha::Blend);
 }
 
@@ -171,8 +166,77 @@ TEST(Material, UnknownExtensions) {
     EXPECT_NO_THROW(b.load());
     b.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_draco_mesh_compression"};
     expectRefused(b, {"extensionsRequired", "KHR_draco_mesh_compression"});
+    b.root["extensionsRequired"] = {"KHR_materials_clearcoat"};
+    expectRefused(b, {"KHR_materials_clearcoat"});
+}
+
+json placedTexture(int index, const json& transform) {
+    return {{"index", index}, {"extensions", {{"KHR_texture_transform", transform}}}};
+}
+
+TEST(Material, TexturesArePlaced) {
+    constexpr double kQuarter = 1.57079632679489662;
+    TriangleBuilder b;
     b.root["extensionsRequired"] = {"KHR_texture_transform"};
-    expectRefused(b, {"KHR_texture_transform"});
+    const int t = b.texture(redBlue());
+    const json moved = {{"offset", {0.25, -1}}, {"scale", {2, 3}}};
+    // The specification's own example: the image's lower left quadrant, turned clockwise by 90
+    // degrees. v points down.
+    const json quadrant = {{"offset", {0, 1}}, {"rotation", kQuarter}, {"scale", {0.5, 0.5}}};
+    const json scaledThenTurned = {{"rotation", kQuarter}, {"scale", {2, 1}}};
+    const json metal = {
+        {"KHR_materials_transmission",
+         {{"transmissionFactor", 1}, {"transmissionTexture", placedTexture(t, moved)}}}};
+    b.add("materials", {{"pbrMetallicRoughness",
+                         {{"baseColorTexture", placedTexture(t, moved)},
+                          {"metallicRoughnessTexture", placedTexture(t, quadrant)}}},
+                        {"normalTexture", placedTexture(t, scaledThenTurned)},
+                        {"emissiveFactor", {1, 1, 1}},
+                        {"emissiveTexture", placedTexture(t, moved)},
+                        {"extensions", metal}});
+    const SceneDescription scene = b.load();
+    const Material& m = scene.materials[0];
+    EXPECT_TRUE(scene.warnings.empty());
+    const auto expectAt = [](const TextureUse& use, Vec2 from, Vec2 to) {
+        ASSERT_TRUE(use);
+        EXPECT_NEAR(use.at(from).x, to.x, 1e-6) << from.x << " " << from.y;
+        EXPECT_NEAR(use.at(from).y, to.y, 1e-6) << from.x << " " << from.y;
+    };
+    for (const TextureUse& use : {m.baseColorTexture, m.emissiveTexture, m.transmissionTexture}) {
+        expectAt(use, {0, 0}, {0.25f, -1});
+        expectAt(use, {1, 1}, {2.25f, 2});
+    }
+    expectAt(m.metallicRoughnessTexture, {0, 0}, {0, 1});
+    expectAt(m.metallicRoughnessTexture, {1, 0}, {0, 0.5f});
+    expectAt(m.metallicRoughnessTexture, {0, 1}, {0.5f, 1});
+    expectAt(m.metallicRoughnessTexture, {1, 1}, {0.5f, 0.5f});
+    expectAt(m.normalTexture, {1, 0}, {0, -2});
+    expectAt(m.normalTexture, {0, 1}, {1, 0});
+}
+
+TEST(Material, BadPlacesOfTexturesAreRefused) {
+    for (const json& wrong :
+         {json{{"scale", 2}}, json{{"offset", {1, 2, 3}}}, json{{"rotation", "left"}}, json(3)}) {
+        TriangleBuilder b;
+        const int t = b.texture(redBlue());
+        b.add("materials", {{"normalTexture", placedTexture(t, wrong)}});
+        expectRefused(b, {"materials[0]"});
+    }
+    TriangleBuilder b;
+    const int t = b.texture(redBlue());
+    b.add("materials", {{"normalTexture", placedTexture(t, {{"texCoord", 1}})}});
+    EXPECT_EQ(warningsWith(b.load(), "coordinate sets"), 1);
+}
+
+TEST(Material, NormalMap) {
+    TriangleBuilder b;
+    const int t = b.texture(redBlue());
+    b.add("materials", {{"normalTexture", {{"index", t}, {"scale", 0.5}}}});
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    ASSERT_TRUE(scene.materials[0].normalTexture);
+    EXPECT_EQ(scene.materials[0].normalScale, 0.5f);
+    EXPECT_FALSE(scene.textures[std::size_t(scene.materials[0].normalTexture.value)].srgb);
 }
 
 TEST(Material, BadValuesAreRefused) {

@@ -180,17 +180,38 @@ TEST(Mesh, AttributesMustAgree) {
 
 TEST(Mesh, WhatIsNotRenderedIsSaid) {
     TriangleBuilder b;
-    b.primitive()["attributes"]["COLOR_0"] = 0;
     b.primitive()["targets"] = json::array({{{"POSITION", 0}}});
     b.root["animations"] = json::array({json::object()});
     b.root["skins"] = json::array({{{"joints", {0}}}});
     b.root["nodes"][0]["skin"] = 0;
     const SceneDescription scene = b.load();
-    EXPECT_EQ(warningsWith(scene, "COLOR_0"), 1);
     EXPECT_EQ(warningsWith(scene, "morph"), 1);
     EXPECT_EQ(warningsWith(scene, "animations"), 1);
     EXPECT_EQ(warningsWith(scene, "skins"), 1);
-    EXPECT_EQ(scene.warnings.size(), 4u);
+    EXPECT_EQ(scene.warnings.size(), 3u);
+}
+
+TEST(Mesh, VertexColours) {
+    using Colors = std::vector<std::array<float, 4>>;
+    TriangleBuilder b;
+    b.primitive()["attributes"]["COLOR_0"] =
+        b.accessor<float>({1, 0.5, 0, 0.25, 0, 1, 2, -1, 0}, "VEC3");
+    EXPECT_EQ(b.load().meshes[0].colors,
+              (Colors{{1, 0.5, 0, 1}, {0.25, 0, 1, 1}, {1, 0, 0, 1}}));  // cut off at 0 and 1
+    const int bytes =
+        b.accessor<std::uint8_t>({255, 0, 51, 102, 0, 0, 0, 0, 255, 255, 255, 255}, "VEC4");
+    b.root["accessors"][std::size_t(bytes)]["normalized"] = true;
+    b.primitive()["attributes"]["COLOR_0"] = bytes;
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    const Colors exact{{1, 0, 0.2f, 0.4f}, {0, 0, 0, 0}, {1, 1, 1, 1}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+            EXPECT_NEAR(scene.meshes[0].colors[i][c], exact[i][c], 1e-6);
+        }
+    }
+    b.primitive()["attributes"]["COLOR_0"] = b.accessor<float>({1, 1, 1, 1, 1, 1}, "VEC2");
+    expectRefused(b, {"VEC4"});
 }
 
 TEST(Mesh, TheFirstFaultyPrimitiveIsReportedWhateverTheThreads) {

@@ -1,4 +1,5 @@
-// Alpha MASK: rays pass exactly where alpha < cutoff, closest hits and shadow rays alike.
+// Alpha: MASK lets rays pass exactly where alpha < cutoff, BLEND lets a share of them pass; closest
+// hits and shadow rays alike.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,6 +81,63 @@ TEST(AlphaMask, CutoffItselfIsThere) {
             scene->intersect({0.1f, 0.2f, 1}, {}, {0, 0, -1}, RayKind::Camera, tally).has_value(),
             there);
     }
+}
+
+TEST(AlphaBlend, AShareOfTheRaysPasses) {
+    // Factor, texture and vertex colour multiply: 0.8 x 0.75 x 0.5 = 0.3.
+    constexpr double kAlpha = 0.8 * (191.0 / 255.0) * 0.5;
+    constexpr int kRays = 40000;
+    for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+        SceneBuilder b;
+        lacuna::Material m = matte(Rgb(0.5f));
+        m.alphaMode = lacuna::Material::Alpha::Blend;
+        m.baseAlpha = 0.8f;
+        Texture t;
+        t.width = t.height = 1;
+        t.rgba = {255, 255, 255, 191};
+        m.baseColorTexture = b.add(t);
+        Mesh veil = quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m));
+        veil.colors.assign(4, {1, 1, 1, 0.5f});
+        place(b, veil, {}, placement);
+        b.add(quad({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}));
+        const auto scene = b.build();
+        const Vec3 centre(scene->centre());
+        RayTally tally;
+        Rng rng(3, 0, StreamKind::User, 0);
+        int hits = 0, shadows = 0, both = 0;
+        for (int i = 0; i < kRays; ++i) {
+            const Vec3 from =
+                Vec3{1.8f * rng.uniform() - 0.9f, 1.8f * rng.uniform() - 0.9f, 1} - centre;
+            const Vec3 to = from - Vec3{0, 0, 1.5f};
+            const auto hit = scene->intersect(from, {}, {0, 0, -1}, RayKind::Camera, tally);
+            ASSERT_TRUE(hit);
+            const bool met = hit->material == 1;
+            const bool shadow = !scene->visible(from, {}, to, {}, RayKind::Connection, tally);
+            const auto again = scene->intersect(from, {}, {0, 0, -1}, RayKind::Camera, tally);
+            ASSERT_EQ(again->material, hit->material);
+            hits += met;
+            shadows += shadow;
+            both += met && shadow;
+        }
+        // Five standard deviations: 6e-7 false alarms each. Two rays along one line that are not
+        // the same ray decide for themselves.
+        const double sigma = std::sqrt(kAlpha * (1 - kAlpha) / kRays);
+        EXPECT_NEAR(double(hits) / kRays, kAlpha, 5 * sigma);
+        EXPECT_NEAR(double(shadows) / kRays, kAlpha, 5 * sigma);
+        EXPECT_NEAR(double(both) / kRays, kAlpha * kAlpha, 5 * sigma);
+    }
+}
+
+TEST(AlphaBlend, OpaqueTexelsLeaveNoHoles) {
+    SceneBuilder b;
+    lacuna::Material m = matte(Rgb(0.5f));
+    m.alphaMode = lacuna::Material::Alpha::Blend;
+    b.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m)));
+    EXPECT_EQ(b.build()->blockingTriangles(pool()).size(), 2u);
+    b.d.materials.back().baseAlpha = 0.4f;
+    EXPECT_TRUE(b.build()->blockingTriangles(pool()).empty());
+    b.d.materials.back().baseAlpha = 0.6f;
+    EXPECT_EQ(b.build()->blockingTriangles(pool()).size(), 2u);
 }
 
 TEST(AlphaMask, OpaqueIgnoresAlpha) {

@@ -178,9 +178,11 @@ class SceneBuilder {
         d.materials.push_back(std::move(m));
         return std::uint32_t(d.materials.size() - 1);
     }
-    TextureIndex add(Texture t) {
+    TextureUse add(Texture t) {
         d.textures.push_back(std::move(t));
-        return {std::int32_t(d.textures.size() - 1)};
+        TextureUse use;
+        use.value = std::int32_t(d.textures.size() - 1);
+        return use;
     }
     /// A mesh and its first instance; returns the mesh. Used once, it is baked.
     std::uint32_t add(Mesh m, const Affine& toWorld = {}) {

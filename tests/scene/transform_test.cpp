@@ -195,5 +195,86 @@ TEST(SurfacePoint, SizesFarBelowOne) {
     }
 }
 
+/// One texel that tilts the normal by `x` along the image's width and `y` towards its upper edge.
+Texture tilt(std::uint8_t x, std::uint8_t y, std::uint8_t z) {
+    Texture t;
+    t.width = t.height = 1;
+    t.rgba = {x, y, z, 255};
+    return t;
+}
+
+TEST(SurfacePoint, NormalMapsTiltTowardsTheImagesRightAndTop) {
+    for (const NamedTransform& transform : transforms()) {
+        for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+            SceneBuilder b;
+            lacuna::Material m = matte(Rgb(0.5f));
+            m.normalTexture = b.add(tilt(191, 153, 255));
+            m.normalScale = 0.5f;
+            // u runs along +x; v, which points down in the image, along +y.
+            place(b, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m)), transform.toWorld,
+                  placement);
+            b.add(quad({-9, -9, -9}, {1, 0, 0}, {0, 1, 0}));
+            const auto scene = b.build();
+            const Affine& a = transform.toWorld;
+            const double sign = a.determinant() < 0 ? -1 : 1;
+            const Vec3d n = normalize(a.normal({0, 0, 1}) * sign);
+            const Vec3d tangent = normalize(a.vector({1, 0, 0}) - n * dot(n, a.vector({1, 0, 0})));
+            Vec3d up = normalize(cross(n, tangent));
+            if (dot(up, a.vector({0, -1, 0})) < 0) up = -up;
+            const Vec3d exact = normalize(tangent * (0.5 * (2 * 191 / 255.0 - 1)) +
+                                          up * (0.5 * (2 * 153 / 255.0 - 1)) + n);
+            RayTally tally;
+            const Vec3d at = a.point({0.3, 0.2, 0}) - scene->centre();
+            const double reach = 0.01 * length(a.vector({1, 0, 0}));
+            const auto hit =
+                scene->intersect(Vec3(at + n * reach), {}, Vec3(-n), RayKind::Camera, tally);
+            ASSERT_TRUE(hit) << transform.name;
+            EXPECT_LT(length(Vec3d(hit->ns) - exact), 2e-4) << transform.name;
+            EXPECT_LT(length(Vec3d(hit->ng) - n), 2e-4) << transform.name;
+        }
+    }
+}
+
+TEST(SurfacePoint, NormalMapsThatSayNothingAreIgnored) {
+    SceneBuilder b;
+    lacuna::Material below = matte(Rgb(0.5f)), plain = below;
+    below.normalTexture = b.add(tilt(128, 128, 0));
+    plain.normalTexture = b.add(tilt(255, 128, 128));
+    b.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(below)));
+    Mesh noTangents = quad({2, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(plain));
+    noTangents.uvs.assign(4, {0.5f, 0.5f});
+    b.add(noTangents);
+    Mesh noUvs = quad({4, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(plain));
+    noUvs.uvs.clear();
+    b.add(noUvs);
+    const auto scene = b.build();
+    RayTally tally;
+    for (const float x : {0.5f, 2.5f, 4.5f}) {
+        const auto hit = scene->intersect(Vec3(Vec3d{x, 0.4, 1} - scene->centre()), {}, {0, 0, -1},
+                                          RayKind::Camera, tally);
+        ASSERT_TRUE(hit);
+        EXPECT_EQ(hit->ns, hit->ng) << x;
+    }
+}
+
+TEST(SurfacePoint, VertexColoursAreInterpolatedAndMultiply) {
+    SceneBuilder b;
+    Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(matte({0.5f, 1.0f, 1.0f})));
+    mesh.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+    b.add(mesh);
+    const auto scene = b.build();
+    RayTally tally;
+    const auto hit = scene->intersect(Vec3(Vec3d{0.2, 0.3, 1} - scene->centre()), {}, {0, 0, -1},
+                                      RayKind::Camera, tally);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->color.r, 0.5, 1e-5);
+    EXPECT_NEAR(hit->color.g, 0.2, 1e-5);
+    EXPECT_NEAR(hit->color.b, 0.3, 1e-5);
+    const Rgb albedo = scene->bsdfAt(*hit).layerAlbedo();
+    EXPECT_NEAR(albedo.r, 0.25, 1e-5);
+    EXPECT_NEAR(albedo.g, 0.2, 1e-5);
+    EXPECT_NEAR(albedo.b, 0.3, 1e-5);
+}
+
 }  // namespace
 }  // namespace lacuna::test
