@@ -20,7 +20,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
     app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
         ->type_name("NAME");
-    app.add_option("--set", o.assignments, "Set a parameter of the method; may be repeated")
+    app.add_option("--set", o.assignments,
+                   "Set a parameter of the method, or effects.NAME=on|off; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
 
@@ -204,6 +205,7 @@ void checkOptions(RenderOptions& o) {
         throw UsageError(
             "--checkpoint: not there yet; leave it out (an interrupt saves the image)");
     }
+    o.effectSwitches = takeEffectSwitches(o.assignments);
     requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
     requireRange("--iterations", o.iterations, 1, 1'000'000'000);
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "render/effect_switches.h"
 #include "render/tool.h"
 
 namespace lacuna {
@@ -45,6 +46,7 @@ struct RenderOptions {
     std::optional<double> timeSeconds;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
+    std::vector<EffectSwitch> effectSwitches;  ///< taken out of `assignments`
 };
 
 /// Declares every option of interface.md. Both must outlive the parsing.

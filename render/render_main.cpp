@@ -19,7 +19,13 @@ int printEffects(const RenderOptions& options) {
     const ThreadPool pool(options.common.threads);
     SceneDescription scene;
     pool.run([&] { scene = describeScene(options); });
-    const std::vector<Effect> effects = effectsOf(scene, lensRadius(options, scene), row);
+    double radius = lensRadius(options, scene);
+    std::vector<Effect> effects = effectsOf(scene, radius, row);
+    TechniqueSet techniques = row ? row->techniques : TechniqueSet{};
+    for (const std::string& text : forceEffects(
+             options.effectSwitches, {scene, radius, row ? &techniques : nullptr}, effects)) {
+        std::fprintf(stderr, "warning: %s: %s\n", options.scene.c_str(), text.c_str());
+    }
     if (!options.common.json.empty()) {
         writeJson(options.common.json, {{"effects", effectsJson(effects)}});
     }

@@ -134,7 +134,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     const Caches caches =
         loadCaches(options, row, settings, *stage.scene, pool, interrupt.requested(), progress);
     if (caches.skeleton) method->useSkeleton(caches.skeleton);
-    BidirIntegrator integrator(*stage.scene, *stage.camera, row.techniques, *method, whole, pool);
+    BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 
     // Streams are addressed, so a sample needs nothing of the iterations before it but what the

@@ -80,8 +80,8 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       film_(makeFilm(options, stage_.settings)) {
     if (caches_.skeleton) method_->useSkeleton(caches_.skeleton);
     loadReference();
-    integrator_ = std::make_unique<BidirIntegrator>(*stage_.scene, *stage_.camera, row.techniques,
-                                                    *method_, stage_.settings, pool_);
+    integrator_ = std::make_unique<BidirIntegrator>(
+        *stage_.scene, *stage_.camera, stage_.techniques, *method_, stage_.settings, pool_);
     if (options_.techniques) {
         techniques_.emplace(film_.width(), film_.height(), stage_.settings.limits.maxDepth);
         integrator_->setTechniqueFilm(&*techniques_);

@@ -110,7 +110,15 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     // Everything that may refuse the command line comes before the long work.
     const Camera::Film film =
         chooseFilm(options, description, chosenCamera(description, options.camera));
-    const Camera::Lens lens = chooseLens(options, description);
+    Camera::Lens lens = chooseLens(options, description);
+    double radius = lens.radius;
+    stage.effects = effectsOf(description, radius, &method);
+    stage.techniques = method.techniques;
+    for (const std::string& text : forceEffects(
+             options.effectSwitches, {description, radius, &stage.techniques}, stage.effects)) {
+        warn(text);
+    }
+    lens.radius = float(radius);
     WalkLimits& limits = stage.settings.limits;
     if (options.maxDepth) {
         limits.maxDepth = int(*options.maxDepth);
@@ -127,7 +135,6 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     if (settings.values().contains("light_paths")) {
         stage.settings.lightPaths = settings.integer("light_paths");
     }
-    stage.effects = effectsOf(description, lens.radius, &method);
 
     progress.phase("building");
     const Clock::time_point building = Clock::now();

@@ -1,0 +1,168 @@
+#include "render/effect_switches.h"
+
+#include <algorithm>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+namespace {
+
+const std::string kPrefix = "effects.";
+
+/// A texture of one texel.
+TextureUse addTexel(SceneDescription& scene, bool srgb) {
+    Texture t;
+    t.width = t.height = 1;
+    t.rgba = {255, 255, 255, 255};
+    t.srgb = srgb;
+    scene.textures.push_back(std::move(t));
+    TextureUse use;
+    use.value = std::int32_t(scene.textures.size() - 1);
+    return use;
+}
+
+void eraseLights(SceneDescription& scene, PunctualLight::Kind kind) {
+    std::erase_if(scene.lights, [&](const PunctualLight& l) { return l.kind == kind; });
+}
+
+void makeOpaque(SceneDescription& scene, Material::Alpha mode) {
+    for (Material& m : scene.materials) {
+        if (m.alphaMode == mode) m.alphaMode = Material::Alpha::Opaque;
+    }
+}
+
+/// False where the effect cannot be taken out of a scene.
+bool switchOff(const std::string& name, const SwitchTargets& to) {
+    SceneDescription& scene = to.scene;
+    if (name == "area_lights") {
+        for (Material& m : scene.materials) m.emission = {};
+    } else if (name == "point_lights") {
+        eraseLights(scene, PunctualLight::Kind::Point);
+    } else if (name == "spot_lights") {
+        eraseLights(scene, PunctualLight::Kind::Spot);
+    } else if (name == "directional_lights") {
+        eraseLights(scene, PunctualLight::Kind::Directional);
+    } else if (name == "environment") {
+        scene.environment.reset();
+    } else if (name == "emissive_textures") {
+        for (Material& m : scene.materials) m.emissiveTexture = {};
+    } else if (name == "textures") {
+        for (Material& m : scene.materials) {
+            m.baseColorTexture = m.metallicRoughnessTexture = m.transmissionTexture = {};
+        }
+    } else if (name == "alpha_mask") {
+        makeOpaque(scene, Material::Alpha::Mask);
+    } else if (name == "alpha_blend") {
+        makeOpaque(scene, Material::Alpha::Blend);
+    } else if (name == "normal_maps") {
+        for (Material& m : scene.materials) m.normalTexture = {};
+    } else if (name == "vertex_colors") {
+        for (Mesh& m : scene.meshes) m.colors = {};
+    } else if (name == "thin_lens") {
+        to.lensRadius = 0.0;
+    } else if (to.techniques && name == "hits") {
+        to.techniques->hits = false;
+    } else if (to.techniques && name == "connections") {
+        to.techniques->connects = false;
+    } else if (to.techniques && name == "splats") {
+        to.techniques->splats = false;
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/// False where the scene has nothing that the effect's code could work on.
+bool switchOn(const std::string& name, const SwitchTargets& to) {
+    SceneDescription& scene = to.scene;
+    if (name == "textures") {
+        const TextureUse white = addTexel(scene, false);
+        for (Material& m : scene.materials) {
+            if (!m.baseColorTexture) m.baseColorTexture = white;
+            if (!m.metallicRoughnessTexture) m.metallicRoughnessTexture = white;
+        }
+    } else if (name == "emissive_textures") {
+        const TextureUse white = addTexel(scene, false);
+        for (Material& m : scene.materials) {
+            if (!isBlack(m.emission) && !m.emissiveTexture) m.emissiveTexture = white;
+        }
+    } else if (name == "normal_maps") {
+        const TextureUse flat = addTexel(scene, false);
+        for (Material& m : scene.materials) {
+            if (m.normalTexture) continue;
+            m.normalTexture = flat;
+            m.normalScale = 0.0f;
+        }
+    } else if (name == "alpha_mask") {
+        for (Material& m : scene.materials) {
+            if (m.alphaMode != Material::Alpha::Opaque) continue;
+            m.alphaMode = Material::Alpha::Mask;
+            m.baseAlpha = 0.75f;  // below one, so that it is looked at, and above any cutoff of 0
+            m.alphaCutoff = 0.0f;
+        }
+    } else if (name == "vertex_colors") {
+        for (Mesh& m : scene.meshes) {
+            if (m.colors.empty()) m.colors.assign(m.positions.size(), {1, 1, 1, 1});
+        }
+    } else {
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<EffectSwitch> takeEffectSwitches(std::vector<std::string>& assignments) {
+    std::vector<EffectSwitch> switches;
+    for (const std::string& text : assignments) {
+        if (!text.starts_with(kPrefix)) continue;
+        const std::size_t equals = text.find('=');
+        const std::string name =
+            text.substr(kPrefix.size(), equals == text.npos ? equals : equals - kPrefix.size());
+        const std::string value = equals == text.npos ? "" : text.substr(equals + 1);
+        if (value != "on" && value != "off") {
+            throw UsageError("--set " + kPrefix + name + ": expected on or off, found '" + value +
+                             "'");
+        }
+        std::erase_if(switches, [&](const EffectSwitch& s) { return s.name == name; });
+        switches.push_back({name, value == "on"});
+    }
+    std::erase_if(assignments, [](const std::string& a) { return a.starts_with(kPrefix); });
+    return switches;
+}
+
+std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
+                                      const SwitchTargets& targets, std::vector<Effect>& effects) {
+    std::vector<std::string> warnings;
+    for (const EffectSwitch& s : switches) {
+        const std::string option = "--set " + kPrefix + s.name;
+        const auto effect = std::find_if(effects.begin(), effects.end(),
+                                         [&](const Effect& e) { return e.name == s.name; });
+        if (effect == effects.end()) {
+            std::string names;
+            for (const Effect& e : effects) names += (names.empty() ? "" : ", ") + e.name;
+            throw UsageError(option + ": expected one of " + names + "; see --effects");
+        }
+        if (effect->simulated == s.on) continue;
+        if (s.on) {
+            if (!switchOn(s.name, targets)) {
+                throw UsageError(option + "=on: there is nothing to simulate (" + effect->reason +
+                                 "); leave it out");
+            }
+            effect->reason = "on by --set (" + effect->reason + ")";
+        } else {
+            if (!switchOff(s.name, targets)) {
+                throw UsageError(option +
+                                 "=off: that is what materials are made of; change them in the "
+                                 "scene, or leave it out");
+            }
+            warnings.push_back(s.name + " is off though the scene calls for it (" + effect->reason +
+                               "): the picture lacks what it does");
+            effect->reason = "off by --set, though " + effect->reason;
+        }
+        effect->simulated = s.on;
+    }
+    return warnings;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,38 @@
+// --set effects.NAME=on|off: effects forced on or off, whatever the scene calls for.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libcore/methods/registry.h"
+#include "libcore/scene/description.h"
+#include "render/effects.h"
+
+namespace lacuna {
+
+struct EffectSwitch {
+    std::string name;  ///< as --effects prints it
+    bool on = false;
+};
+
+/// Takes the assignments `effects.NAME=on|off` out of `assignments`; a later one of the same name
+/// wins. Throws UsageError for another value.
+std::vector<EffectSwitch> takeEffectSwitches(std::vector<std::string>& assignments);
+
+/// What the switches change besides the scene.
+struct SwitchTargets {
+    SceneDescription& scene;
+    double& lensRadius;
+    TechniqueSet* techniques;  ///< null: there is no method
+};
+
+/// Changes the scene so that an effect is not there any more, or so that its code runs though
+/// nothing calls for it (a white texture, a normal map that tilts nothing, a mask that hides
+/// nothing: the picture stays the same). `effects` is what effectsOf() found before; its rows then
+/// say what is done and why. Returns a warning for every effect that is off though the scene calls
+/// for it. Throws UsageError for unknown names and for what cannot be forced.
+std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
+                                      const SwitchTargets& targets, std::vector<Effect>& effects);
+
+}  // namespace lacuna

@@ -1,0 +1,163 @@
+// --set effects.NAME=on|off: what is forced on changes no picture, what is forced off is missing
+// and said to be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/image/image_io.h"
+#include "render/effect_switches.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+TEST(EffectSwitches, AreTakenOutOfTheAssignments) {
+    std::vector<std::string> assignments = {"effects.hits=off", "light_paths=7",
+                                            "effects.textures=off", "effects.textures=on"};
+    const auto switches = takeEffectSwitches(assignments);
+    EXPECT_EQ(assignments, std::vector<std::string>{"light_paths=7"});
+    ASSERT_EQ(switches.size(), 2u);
+    EXPECT_EQ(switches[0].name, "hits");
+    EXPECT_FALSE(switches[0].on);
+    EXPECT_EQ(switches[1].name, "textures");
+    EXPECT_TRUE(switches[1].on);  // the later one
+    for (const char* wrong : {"effects.hits", "effects.hits=", "effects.hits=maybe"}) {
+        assignments = {wrong};
+        EXPECT_THROW(takeEffectSwitches(assignments), UsageError) << wrong;
+    }
+}
+
+/// One triangle that has everything which can be switched off.
+SceneDescription everything() {
+    SceneDescription scene;
+    Texture texel;
+    texel.width = texel.height = 1;
+    texel.rgba = {255, 255, 255, 255};
+    scene.textures.push_back(texel);
+    TextureUse use;
+    use.value = 0;
+    scene.materials.resize(2);
+    Material& m = scene.materials[0];
+    m.emission = Rgb(1.0f);
+    m.emissiveTexture = m.baseColorTexture = m.normalTexture = use;
+    m.alphaMode = Material::Alpha::Mask;
+    scene.materials[1].alphaMode = Material::Alpha::Blend;
+    scene.meshes.resize(2);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        scene.meshes[i].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        scene.meshes[i].triangles = {{0, 1, 2}};
+        scene.meshes[i].colors.assign(3, {1, 1, 1, 1});
+        scene.meshes[i].material = i;
+        scene.instances.push_back({i, {}});
+    }
+    for (const auto kind : {PunctualLight::Kind::Point, PunctualLight::Kind::Spot,
+                            PunctualLight::Kind::Directional}) {
+        PunctualLight light;
+        light.kind = kind;
+        light.intensity = Rgb(1.0f);
+        scene.lights.push_back(light);
+    }
+    scene.environment = EnvironmentDescription{"sky.hdr", 1.0, 0.0};
+    return scene;
+}
+
+TEST(EffectSwitches, OffIsGoneAndSaid) {
+    const MethodRow& row = findMethod("bpt");
+    for (const char* name :
+         {"area_lights", "point_lights", "spot_lights", "directional_lights", "environment",
+          "emissive_textures", "textures", "alpha_mask", "alpha_blend", "normal_maps",
+          "vertex_colors", "thin_lens", "hits", "connections", "splats"}) {
+        SceneDescription scene = everything();
+        double lens = 0.1;
+        TechniqueSet techniques = row.techniques;
+        auto effects = effectsOf(scene, lens, &row);
+        const std::vector<EffectSwitch> off = {{name, false}};
+        const auto warnings = forceEffects(off, {scene, lens, &techniques}, effects);
+        ASSERT_EQ(warnings.size(), 1u) << name;
+        EXPECT_NE(warnings[0].find(name), std::string::npos);
+        // What is left does not call for it any more.
+        MethodRow rest = row;
+        rest.techniques = techniques;
+        for (const Effect& e : effectsOf(scene, lens, &rest)) {
+            if (e.name == name) {
+                EXPECT_FALSE(e.simulated) << name;
+            }
+        }
+        for (const Effect& e : effects) {
+            if (e.name != name) continue;
+            EXPECT_FALSE(e.simulated);
+            EXPECT_TRUE(e.reason.starts_with("off by --set")) << e.reason;
+        }
+        // Once more is no news.
+        EXPECT_TRUE(forceEffects(off, {scene, lens, &techniques}, effects).empty());
+    }
+}
+
+TEST(EffectSwitches, WhatCannotBeForcedIsRefused) {
+    const auto force = [](const char* name, bool on) {
+        SceneDescription scene = everything();
+        scene.environment.reset();
+        double lens = 0.0;
+        auto effects = effectsOf(scene, lens, nullptr);
+        const std::vector<EffectSwitch> one = {{name, on}};
+        return forceEffects(one, {scene, lens, nullptr}, effects);
+    };
+    EXPECT_THROW(force("nonsense", false), UsageError);
+    EXPECT_THROW(force("environment", true), UsageError);
+    EXPECT_THROW(force("thin_lens", true), UsageError);
+    EXPECT_THROW(force("glossy", false), UsageError);
+    EXPECT_THROW(force("hits", false), UsageError);  // no method, no techniques
+    EXPECT_TRUE(force("glossy", true).empty());      // as it is
+}
+
+using RenderEffects = RenderTool;
+
+TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
+    const auto switches = [](std::initializer_list<const char*> names) {
+        std::string text;
+        for (const char* name : names) text += std::string(" --set effects.") + name + "=on";
+        return text;
+    };
+    for (const MethodRow& row : methods()) {
+        ASSERT_EQ(run(quick(row.name, "--quiet")).exitCode, 0);
+        const Image plain = readImage(path("out.exr"));
+        const Outcome o = run(quick(
+            row.name, "--json @o.json" + switches({"textures", "alpha_mask", "emissive_textures",
+                                                   "vertex_colors", "normal_maps"})));
+        ASSERT_EQ(o.exitCode, 0) << o.err;
+        EXPECT_EQ(o.err.find("lacks"), std::string::npos) << o.err;
+        const Image forced = readImage(path("out.exr"));
+        const auto simulated = json("o.json")["effects"]["simulated"];
+        EXPECT_NE(std::find(simulated.begin(), simulated.end(), "normal_maps"), simulated.end());
+        // The same random numbers, so the same paths but for rounding.
+        double difference = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+            difference += std::fabs(mean(plain.pixels[i]) - mean(forced.pixels[i]));
+            sum += mean(plain.pixels[i]);
+        }
+        EXPECT_LT(difference, 1e-3 * sum) << row.name;
+    }
+}
+
+TEST_F(RenderEffects, ForcedOffThePictureAndItsHeaderLackIt) {
+    const Outcome o = run(quick("bpt", "--json @o.json --set effects.area_lights=off"));
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_NE(o.err.find("warning: "), std::string::npos);
+    EXPECT_NE(o.err.find("area_lights is off though the scene calls for it"), std::string::npos);
+    for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
+    EXPECT_TRUE(json("o.json")["effects"]["reasons"]["area_lights"].get<std::string>().starts_with(
+        "off by --set"));
+    // Without its connections bpt still has hits and splats.
+    ASSERT_EQ(run(quick("bpt", "--quiet --set effects.connections=off")).exitCode, 0);
+    double sum = 0.0;
+    for (const Rgb& p : readImage(path("out.exr")).pixels) sum += mean(p);
+    EXPECT_GT(sum, 0.0);
+    expectFailure(quick("bpt", "--set effects.fog=off"), 2, "effects.fog");
+    expectFailure(quick("bpt", "--set effects.hits=maybe"), 2, "on or off");
+    expectFailure(quick("pt", "--set effects.splats=on"), 2, "t = 1");
+}
+
+}  // namespace
+}  // namespace lacuna::test
