@@ -64,10 +64,10 @@ function drawCurves(id, view, axis, title) {
   const datasets = bands.flatMap((points, m) => bandDatasets(points, study.methods[m].name, m));
   const xs = bands.flat().filter(kFinite).map(p => p[0]);
   const range = [Math.min(...xs), Math.max(...xs)];
-  for (const bound of scene.bounds[view.measure] || []) {
-    datasets.push(horizontal('bound ' + bound, bound, range,
-                             {borderColor: '#999', borderDash: [6, 4]}));
-  }
+  (scene.bounds[view.measure] || []).forEach((bound, i) => {  // one entry in the legend for all
+    datasets.push(horizontal('bounds', bound, range,
+                             {borderColor: '#999', borderDash: [6, 4], edge: i > 0}));
+  });
   const own = scene.reference.own_error;
   if (own && own[view.measure] > 0) {
     datasets.push(horizontal('below: reference too noisy',
