@@ -186,9 +186,11 @@ void requireRenderable(const Study& study, const StudyScene& scene, const StudyM
     for (const auto* more : {&options, &study.effort}) {
         arguments.insert(arguments.end(), more->begin(), more->end());
     }
+    for (const std::string& assignment : method.assignments) {
+        arguments.insert(arguments.end(), {"--set", assignment});
+    }
     try {
-        parseRenderArguments(arguments);
-        resolve(findMethod(method.method), method.assignments);
+        resolve(findMethod(method.method), parseRenderArguments(arguments).assignments);
     } catch (const UsageError& e) {
         throw UsageError(study.file + ": method '" + method.name + "': " + e.what());
     }
