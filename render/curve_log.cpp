@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "libcore/base/error.h"
 
@@ -22,7 +23,9 @@ std::string number(double value) {
 }  // namespace
 
 CurveLog::CurveLog(const std::string& path) : path_(path), file_(path, std::ios::trunc) {
-    file_ << "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse" << std::endl;
+    file_ << "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse";
+    for (std::size_t i = 0; i < kRayKinds; ++i) file_ << ",rays_" << name(RayKind(i));
+    file_ << ",phases" << std::endl;
     check();
 }
 
@@ -49,11 +52,17 @@ void CurveLog::write(const CurveRow& row) {
     };
     append(number(row.seconds));
     append(number(row.setupSeconds));
-    append(std::to_string(row.rays));
+    append(std::to_string(std::accumulate(row.rays.begin(), row.rays.end(), std::uint64_t(0))));
     const ErrorMeasures e = row.error.value_or(ErrorMeasures{});
     for (const double measure : {e.mae, e.rmse, e.mape, e.relmse}) {
         append(row.error ? number(measure) : "");
     }
+    for (const std::uint64_t rays : row.rays) append(std::to_string(rays));
+    std::string phases;
+    for (const auto& [phase, seconds] : row.phaseSeconds) {
+        phases += (phases.empty() ? "" : ";") + phase + "=" + number(seconds);
+    }
+    append(phases);
     lastIteration_ = row.iteration;
     file_ << text << std::endl;  // flushed: the row survives a crash
     check();

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "libcore/image/error_metrics.h"
+#include "libcore/scene/ray.h"
 
 namespace lacuna {
 
@@ -14,12 +16,15 @@ struct CurveRow {
     std::uint64_t iteration = 0;  ///< complete ones
     double seconds = 0.0;         ///< rendering alone: no setup, no comparing, no saving
     double setupSeconds = 0.0;
-    std::uint64_t rays = 0;
-    std::optional<ErrorMeasures> error;  ///< empty columns without
+    RayCounts rays{};
+    std::optional<ErrorMeasures> error;          ///< empty columns without
+    std::map<std::string, double> phaseSeconds;  ///< of the iterations so far, by name
 };
 
-/// CSV: iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse. The first and the last iteration
-/// have a row, and at most ten iterations per decade of seconds in between.
+/// CSV: iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse, then rays_KIND per kind of ray
+/// and `phases`, which is name=seconds;name=seconds (methods have phases of their own, so they are
+/// not columns). The first and the last iteration have a row, and at most ten iterations per decade
+/// of seconds in between.
 class CurveLog {
   public:
     /// Replaces the file by its header line. Throws RunError.

@@ -231,7 +231,7 @@ void Session::logRow() {
     measure();
     try {
         log_->write({report_.iterations, report_.seconds, report_.setupSeconds,
-                     report_.statistics.totalRays(), report_.error});
+                     report_.statistics.rays, report_.error, report_.statistics.phaseSeconds});
     } catch (const RunError& e) {
         logFailure_ = e.what();
         log_.reset();

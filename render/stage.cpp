@@ -89,6 +89,10 @@ SceneDescription describeScene(const RenderOptions& options) {
     return scene;
 }
 
+Camera::Film filmOf(const RenderOptions& options, const SceneDescription& scene) {
+    return chooseFilm(options, scene, chosenCamera(scene, options.camera));
+}
+
 double lensRadius(const RenderOptions& options, const SceneDescription& scene) {
     return options.aperture ? *options.aperture : scene.aperture.value_or(0.0);
 }
@@ -108,8 +112,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     for (const std::string& text : description.warnings) warn(text);
 
     // Everything that may refuse the command line comes before the long work.
-    const Camera::Film film =
-        chooseFilm(options, description, chosenCamera(description, options.camera));
+    const Camera::Film film = filmOf(options, description);
     Camera::Lens lens = chooseLens(options, description);
     double radius = lens.radius;
     stage.effects = effectsOf(description, radius, &method);

@@ -29,6 +29,10 @@ struct Stage {
 /// The file with the options' environment put into it. Throws InputError, UsageError.
 SceneDescription describeScene(const RenderOptions& options);
 
+/// The size of the whole picture: options, else extras, else by the camera. Throws InputError
+/// without a camera, UsageError for an unknown one or an absurd size.
+Camera::Film filmOf(const RenderOptions& options, const SceneDescription& scene);
+
 /// The lens radius that options and extras ask for.
 double lensRadius(const RenderOptions& options, const SceneDescription& scene);
 

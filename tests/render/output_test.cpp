@@ -123,8 +123,10 @@ TEST_F(RenderOutput, JsonHasItsKeys) {
 TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
     ASSERT_EQ(run(quick("pt", "--quiet --iterations 200 --log @plain.csv")).exitCode, 0);
     const auto plain = csv("plain.csv");
-    const std::vector<std::string> header{"iteration", "seconds", "setup_seconds", "rays",
-                                          "mae",       "rmse",    "mape",          "relmse"};
+    const std::vector<std::string> header{
+        "iteration",  "seconds",    "setup_seconds", "rays",     "mae",        "rmse",
+        "mape",       "relmse",     "rays_camera",   "rays_eye", "rays_light", "rays_connection",
+        "rays_splat", "rays_cache", "phases"};
     ASSERT_GE(plain.size(), 3u);
     EXPECT_EQ(plain[0], header);
     EXPECT_EQ(plain[1][0], "1");
@@ -132,8 +134,12 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
     EXPECT_LT(plain.size(), 60u);
     std::map<int, int> perDecade;
     for (std::size_t i = 1; i < plain.size(); ++i) {
-        ASSERT_EQ(plain[i].size(), 8u);
+        ASSERT_EQ(plain[i].size(), header.size());
         for (std::size_t c = 4; c < 8; ++c) EXPECT_EQ(plain[i][c], "");
+        std::uint64_t rays = 0;
+        for (std::size_t c = 8; c < 14; ++c) rays += std::stoull(plain[i][c]);
+        EXPECT_EQ(rays, std::stoull(plain[i][3]));
+        EXPECT_NE(plain[i][14].find("eye paths="), std::string::npos) << plain[i][14];
         if (i + 1 < plain.size()) ++perDecade[int(std::floor(std::log10(std::stod(plain[i][1]))))];
         if (i > 1) {
             EXPECT_GT(std::stod(plain[i][1]), std::stod(plain[i - 1][1]));

@@ -61,8 +61,7 @@ Outcome RenderTool::run(const std::string& arguments) const {
 Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
                                  std::chrono::milliseconds delay) const {
     // The shell is replaced by the tool, so that the signals reach it.
-    const std::string command =
-        "exec " + std::string(LACUNA_RENDER) + " " + withDirectory(arguments, path(""));
+    const std::string command = "exec " + tool() + " " + withDirectory(arguments, path(""));
     const std::string out = path("stdout.txt"), err = path("stderr.txt");
     const pid_t child = fork();
     if (child == 0) {

@@ -1,4 +1,4 @@
-// Runs lacuna-render itself in a directory of the test's own.
+// Runs lacuna-render itself (or another tool) in a directory of the test's own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,6 +22,8 @@ class RenderTool : public ::testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
+    /// Path of the program that `run` starts.
+    virtual std::string tool() const { return LACUNA_RENDER; }
 
     std::string path(const std::string& name) const { return (directory_ / name).string(); }
     std::string write(const std::string& name, const std::string& text) const;

@@ -63,23 +63,24 @@ TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
         }
         EXPECT_LE(rows, 50);
         EXPECT_GT(rows, 40);
-        log.write({3, 0.5, 0.25, 7, std::nullopt});
+        log.write({3, 0.5, 0.25, {1, 2, 0, 4}, std::nullopt, {}});
         ErrorMeasures e;
         e.mae = 0.1;
         e.relmse = std::numeric_limits<double>::infinity();
-        log.write({4, 1.0, 0.25, 9, e});
+        log.write({4, 1.0, 0.25, {2, 7}, e, {{"eye paths", 0.5}, {"light paths", 0.25}}});
         EXPECT_EQ(log.lastIteration(), 4u);
     }
     std::ifstream in(file);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     EXPECT_EQ(text,
-              "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse\n"
-              "3,0.5,0.25,7,,,,\n"
-              "4,1,0.25,9,0.1,0,0,inf\n");
+              "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse,rays_camera,rays_eye,"
+              "rays_light,rays_connection,rays_splat,rays_cache,phases\n"
+              "3,0.5,0.25,7,,,,,1,2,0,4,0,0,\n"
+              "4,1,0.25,9,0.1,0,0,inf,2,7,0,0,0,0,eye paths=0.5;light paths=0.25\n");
     std::filesystem::remove(file);
     EXPECT_THROW(CurveLog("/nonexistent/curve.csv"), RunError);
     CurveLog full("/dev/null");
-    EXPECT_NO_THROW(full.write({1, 1.0, 1.0, 1, std::nullopt}));
+    EXPECT_NO_THROW(full.write({1, 1.0, 1.0, {}, std::nullopt, {}}));
     if (std::filesystem::exists("/dev/full")) {
         EXPECT_THROW(CurveLog("/dev/full"), RunError);
     }

@@ -1,0 +1,61 @@
+#include "render/study/child.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+namespace {
+
+/// In the child, between fork and exec: nothing but system calls.
+[[noreturn]] void becomeProgram(char* const* argv, int log, pid_t parent) {
+    // Out of the terminal's foreground group: Ctrl-C comes to us alone, and from us to the child.
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(127);  // we were killed in between
+    dup2(log, STDOUT_FILENO);
+    dup2(log, STDERR_FILENO);
+    execv(argv[0], argv);
+    _exit(127);
+}
+
+}  // namespace
+
+int runChild(const std::vector<std::string>& arguments, const std::string& log,
+             const std::atomic<bool>& cancel) {
+    std::vector<char*> argv;
+    for (const std::string& argument : arguments) {
+        argv.push_back(const_cast<char*>(argument.c_str()));  // exec does not write to it
+    }
+    argv.push_back(nullptr);
+    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) throw RunError(log + ": expected to write there, found it not writable");
+    const pid_t parent = getpid();
+    const pid_t child = fork();
+    if (child == 0) becomeProgram(argv.data(), file, parent);
+    close(file);
+    if (child < 0) throw RunError(arguments[0] + ": expected to start it, found no process left");
+
+    bool asked = false;
+    for (;;) {
+        int status = 0;
+        if (waitpid(child, &status, WNOHANG) == child) {
+            return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        }
+        if (cancel && !asked) {
+            kill(child, SIGTERM);
+            asked = true;
+        }
+        // Short beside a run, and long enough to leave the processors to the child.
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}
+
+}  // namespace lacuna

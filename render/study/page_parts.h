@@ -1,0 +1,9 @@
+// The files of page/, compiled in: a tool that was moved or installed still writes its page.
+#pragma once
+
+namespace lacuna {
+
+extern const char* const kPageFrame;   ///< page.html, with {{parts}} to fill in
+extern const char* const kPageStyle;   ///< page.css
+extern const char* const kPageScript;  ///< all of page/*.js
+}  // namespace lacuna

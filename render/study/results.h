@@ -1,0 +1,40 @@
+// What the runs of a study logged, by scene, method and seed.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "render/study/curve.h"
+#include "render/study/plan.h"
+#include "render/study/reference.h"
+
+namespace lacuna {
+
+struct RunResult {
+    PlannedRun run;
+    Curve curve;
+    nlohmann::json report;  ///< lacuna-render's --json
+    std::string image;      ///< path
+};
+
+struct Results {
+    Study study;
+    std::string machine;                ///< see machineText
+    std::string rendererHash;           ///< of lacuna-render's file
+    std::vector<SceneFacts> facts;      ///< by scene
+    std::vector<Reference> references;  ///< by scene
+    std::vector<RunResult> runs;        ///< in the order of the plan
+
+    /// The runs of one scene and method, in the order of study.seeds.
+    std::vector<const RunResult*> of(std::size_t scene, std::size_t method) const;
+};
+
+/// One row per run and checkpoint: scene, name, method, seed, run, then the curve's columns.
+std::string rawCsv(const Results& results);
+/// One row per run: what it was, and totals.
+std::string runsCsv(const Results& results);
+/// Quoted where CSV needs it.
+std::string csvField(const std::string& text);
+
+}  // namespace lacuna

@@ -1,0 +1,67 @@
+// What a study asks for: the .json file, checked as far as it can be without the scenes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/options.h"
+
+namespace lacuna {
+
+/// A reference that the study renders itself: `parts` renders of different seeds, averaged. More
+/// parts continue an older reference.
+struct ReferenceRecipe {
+    std::string method;
+    std::int64_t iterations = 0;  ///< of each part
+    std::int64_t parts = 0;
+};
+
+struct StudyScene {
+    std::string name;
+    std::string file;                  ///< path that can be opened
+    std::vector<std::string> options;  ///< of lacuna-render: "--width", "192", ...
+    std::string reference;             ///< path; empty: by recipe
+    std::optional<ReferenceRecipe> recipe;
+    std::map<std::string, std::vector<double>> bounds;  ///< by measure
+};
+
+/// One setting of one method: a curve of each plot, a row of each table.
+struct StudyMethod {
+    std::string name;                      ///< what plots and tables call it
+    std::string method;                    ///< row of the registry
+    std::vector<std::string> assignments;  ///< --set
+    std::vector<std::string> options;
+    std::string knob;       ///< the key that `vary` varies; empty: none
+    std::string knobGroup;  ///< name before the knob's value was added
+    std::string knobValue;
+};
+
+struct Study {
+    std::string file;
+    std::string title;
+    std::vector<std::uint64_t> seeds;
+    std::vector<std::string> effort;  ///< "--time", "6s", "--iterations", "64"
+    int threads = 0;                  ///< 0: all
+    std::string baseline;             ///< name of a method: what speedups are against
+    std::vector<std::string> measures;
+    std::vector<double> times;       ///< seconds; empty: the longest that all runs have
+    std::vector<double> iterations;  ///< empty: the most that all runs have
+    std::vector<StudyScene> scenes;
+    std::vector<StudyMethod> methods;
+};
+
+/// Reads and checks. `quick`: the file's member "quick" is merged into it first (RFC 7386). Throws
+/// InputError naming file and key; UsageError for methods, parameters and options that
+/// lacuna-render would refuse.
+Study readStudy(const std::string& path, bool quick);
+
+/// The scene's options and the method's; of one that both name, the method's counts.
+std::vector<std::string> mergedOptions(const StudyScene& scene, const StudyMethod& method);
+
+/// What lacuna-render would make of these arguments (without its own name). Throws UsageError.
+RenderOptions parseRenderArguments(const std::vector<std::string>& arguments);
+
+}  // namespace lacuna

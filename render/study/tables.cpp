@@ -1,0 +1,278 @@
+#include "render/study/tables.h"
+
+#include <algorithm>
+
+#include "render/study/band.h"
+
+namespace lacuna {
+namespace {
+
+using Values = std::vector<std::optional<double>>;
+
+/// "" or why the reference cannot judge an error of this size.
+std::string referenceFlag(const Reference& reference, Measure measure, double error) {
+    if (!reference.ownError) return "its error is not known";
+    const ErrorMeasures& own = *reference.ownError;
+    const double values[] = {own.mae, own.rmse, own.mape, own.relmse};
+    const double value = values[std::size_t(measure)];
+    return value * referenceMargin(measure) <= error ? "" : "too noisy: " + shortNumber(value);
+}
+
+/// Visits every scene and measure.
+template <class Visit>
+void forEachMeasure(const Results& results, const Visit& visit) {
+    for (std::size_t s = 0; s < results.study.scenes.size(); ++s) {
+        for (const std::string& measure : results.study.measures) visit(s, measure);
+    }
+}
+
+Values timesTo(const Results& results, std::size_t scene, std::size_t method, Measure measure,
+               double bound, Axis axis) {
+    Values values;
+    for (const RunResult* r : results.of(scene, method)) {
+        values.push_back(timeToError(r->curve.points, measure, bound, axis));
+    }
+    return values;
+}
+
+Values errorsAt(const Results& results, std::size_t scene, std::size_t method, Measure measure,
+                double x, Axis axis) {
+    Values values;
+    for (const RunResult* r : results.of(scene, method)) {
+        values.push_back(errorAt(r->curve.points, measure, x, axis));
+    }
+    return values;
+}
+
+std::size_t baselineOf(const Study& study) {
+    std::size_t m = 0;
+    while (study.methods[m].name != study.baseline) ++m;
+    return m;
+}
+
+Table timeTable(const Results& results) {
+    const Study& study = results.study;
+    Table table;
+    table.id = "time-to-error";
+    table.title = "Time to an error";
+    table.columns = {"scene",    "measure",    "bound",   "method",
+                     "seconds",  "with setup", "speedup", "speedup with setup",
+                     "reference"};
+    const std::size_t baseline = baselineOf(study);
+    forEachMeasure(results, [&](std::size_t s, const std::string& name) {
+        const auto bounds = study.scenes[s].bounds.find(name);
+        if (bounds == study.scenes[s].bounds.end()) return;
+        const Measure measure = measureOf(name);
+        for (const double bound : bounds->second) {
+            for (std::size_t m = 0; m < study.methods.size(); ++m) {
+                std::vector<Table::Cell> row{study.scenes[s].name, name, shortNumber(bound),
+                                             study.methods[m].name};
+                std::vector<Table::Cell> speedups;
+                for (const Axis axis : {Axis::Seconds, Axis::SecondsWithSetup}) {
+                    const Values own = timesTo(results, s, m, measure, bound, axis);
+                    row.push_back(spread(own));
+                    speedups.push_back(
+                        spread(ratios(timesTo(results, s, baseline, measure, bound, axis), own)));
+                }
+                row.insert(row.end(), speedups.begin(), speedups.end());
+                row.push_back(referenceFlag(results.references[s], measure, bound));
+                table.rows.push_back(std::move(row));
+            }
+        }
+    });
+    table.notes = {"Speedups are against " + study.baseline +
+                       ": ratios of times of the same seed, then the median over seeds.",
+                   "A time is the first after which the error stays below the bound. Where the "
+                   "first row of a curve is below already, it is that row's time."};
+    return table;
+}
+
+/// The largest x that every run of the scene has.
+double commonEnd(const Results& results, std::size_t scene, Axis axis) {
+    std::vector<const Curve*> curves;
+    for (const RunResult& r : results.runs) {
+        if (r.run.scene == scene) curves.push_back(&r.curve);
+    }
+    return commonEnd(curves, axis);
+}
+
+/// How far the references are from converged themselves.
+Table referenceTable(const Results& results) {
+    Table table;
+    table.id = "references";
+    table.title = "References and their own errors";
+    table.columns = {"scene", "reference", "mae", "rmse", "mape", "relmse"};
+    for (std::size_t s = 0; s < results.study.scenes.size(); ++s) {
+        const Reference& reference = results.references[s];
+        std::vector<Table::Cell> row{results.study.scenes[s].name, reference.origin};
+        const ErrorMeasures e = reference.ownError.value_or(ErrorMeasures{});
+        for (const double value : {e.mae, e.rmse, e.mape, e.relmse}) {
+            row.push_back(reference.ownError ? shortNumber(value) : "not known");
+        }
+        table.rows.push_back(std::move(row));
+    }
+    table.notes = {
+        "Expected from the variance in the file. An error is judged by a reference that "
+        "is ten times better (relmse, a square: a hundred times); tables say where it "
+        "is not."};
+    return table;
+}
+
+Table errorTable(const Results& results, Axis axis) {
+    const Study& study = results.study;
+    const bool iterations = axis == Axis::Iterations;
+    const bool setup = axis == Axis::SecondsWithSetup;
+    const std::vector<double>& asked = iterations ? study.iterations : study.times;
+    Table table;
+    table.id = iterations ? "error-at-iterations"
+               : setup    ? "error-at-time-with-setup"
+                          : "error-at-time";
+    table.title = std::string("Error at equal ") + (iterations ? "iterations" : "time") +
+                  (setup ? ", setup counted" : "");
+    table.columns = {"scene",    "measure", iterations ? "iterations" : "seconds",
+                     "method",   "error",   "ratio to " + study.baseline,
+                     "reference"};
+    const std::size_t baseline = baselineOf(study);
+    forEachMeasure(results, [&](std::size_t s, const std::string& name) {
+        const Measure measure = measureOf(name);
+        const std::vector<double> at =
+            asked.empty() ? std::vector<double>{commonEnd(results, s, axis)} : asked;
+        for (const double x : at) {
+            for (std::size_t m = 0; m < study.methods.size(); ++m) {
+                const Values own = errorsAt(results, s, m, measure, x, axis);
+                const Values base = errorsAt(results, s, baseline, measure, x, axis);
+                const Spread errors = spread(own);
+                table.rows.push_back(
+                    {study.scenes[s].name, name, shortNumber(x), study.methods[m].name, errors,
+                     spread(ratios(own, base)),
+                     errors.low ? referenceFlag(results.references[s], measure, *errors.low) : ""});
+            }
+        }
+    });
+    table.notes = {"\"not reached\": some run ended before, or had no complete iteration yet."};
+    return table;
+}
+
+/// Of a parameter that was varied, the cheapest value for each bound.
+Table knobTable(const Results& results) {
+    const Study& study = results.study;
+    Table table;
+    table.id = "knobs";
+    table.title = "The cheapest setting that reaches a bound";
+    table.columns = {"scene",    "measure", "bound", "method", "setting", "seconds with setup",
+                     "reference"};
+    std::vector<std::string> groups;
+    for (const StudyMethod& m : study.methods) {
+        if (!m.knob.empty() && std::count(groups.begin(), groups.end(), m.knobGroup) == 0) {
+            groups.push_back(m.knobGroup);
+        }
+    }
+    forEachMeasure(results, [&](std::size_t s, const std::string& name) {
+        const auto bounds = study.scenes[s].bounds.find(name);
+        if (bounds == study.scenes[s].bounds.end()) return;
+        for (const double bound : bounds->second) {
+            for (const std::string& group : groups) {
+                std::string setting = "none of them";
+                Spread best;
+                for (std::size_t m = 0; m < study.methods.size(); ++m) {
+                    const StudyMethod& method = study.methods[m];
+                    if (method.knob.empty() || method.knobGroup != group) continue;
+                    const Spread times = spread(
+                        timesTo(results, s, m, measureOf(name), bound, Axis::SecondsWithSetup));
+                    if (times.median && (!best.median || *times.median < *best.median)) {
+                        best = times;
+                        setting = method.knob + "=" + method.knobValue;
+                    }
+                }
+                table.rows.push_back(
+                    {study.scenes[s].name, name, shortNumber(bound), group, setting, best,
+                     referenceFlag(results.references[s], measureOf(name), bound)});
+            }
+        }
+    });
+    return table;
+}
+
+std::string number(const std::optional<double>& value) {
+    if (!value) return "";
+    char text[40];
+    std::snprintf(text, sizeof text, "%.9g", *value);
+    return text;
+}
+
+}  // namespace
+
+double referenceMargin(Measure measure) {
+    constexpr double kTimesBetter = 10.0;
+    return measure == Measure::Relmse ? kTimesBetter * kTimesBetter : kTimesBetter;
+}
+
+std::vector<Table> makeTables(const Results& results) {
+    std::vector<Table> all{timeTable(results),
+                           errorTable(results, Axis::Seconds),
+                           errorTable(results, Axis::SecondsWithSetup),
+                           errorTable(results, Axis::Iterations),
+                           knobTable(results),
+                           referenceTable(results)};
+    std::erase_if(all, [](const Table& table) { return table.rows.empty(); });
+    return all;
+}
+
+std::string cellText(const Table::Cell& cell) {
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    return spreadText(std::get<Spread>(cell));
+}
+
+std::string markdown(const Study& study, const std::vector<Table>& tables) {
+    std::string text = "# " + study.title + "\n\nMedian (lowest to highest) over " +
+                       std::to_string(study.seeds.size()) +
+                       (study.seeds.size() == 1 ? " seed.\n" : " seeds.\n");
+    for (const Table& table : tables) {
+        text.append("\n## ").append(table.title).append("\n\n|");
+        for (const std::string& column : table.columns)
+            text.append(" ").append(column).append(" |");
+        text += "\n|";
+        for (std::size_t i = 0; i < table.columns.size(); ++i) text += "---|";
+        text += "\n";
+        for (const auto& row : table.rows) {
+            text += "|";
+            for (const Table::Cell& cell : row)
+                text.append(" ").append(cellText(cell)).append(" |");
+            text += "\n";
+        }
+        for (const std::string& note : table.notes) text.append("\n").append(note).append("\n");
+    }
+    return text;
+}
+
+std::string csv(const Table& table) {
+    std::string text;
+    const auto append = [&](const std::string& field) {
+        if (!text.empty() && text.back() != '\n') text += ',';
+        text += csvField(field);
+    };
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        append(table.columns[c]);
+        if (!std::holds_alternative<Spread>(table.rows.at(0)[c])) continue;
+        for (const char* part : {" low", " high", " reached", " of"}) {
+            append(table.columns[c] + part);
+        }
+    }
+    text += "\n";
+    for (const auto& row : table.rows) {
+        for (const Table::Cell& cell : row) {
+            if (const auto* plain = std::get_if<std::string>(&cell)) {
+                append(*plain);
+                continue;
+            }
+            const Spread& s = std::get<Spread>(cell);
+            for (const auto& value : {s.median, s.low, s.high}) append(number(value));
+            append(std::to_string(s.reached));
+            append(std::to_string(s.of));
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace lacuna

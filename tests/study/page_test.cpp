@@ -1,0 +1,143 @@
+// index.html in a real browser: headless Chromium, with a script of the test's own in the page.
+#include <cstdlib>
+
+#include "render/study/pictures.h"
+#include "tests/study/study_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+TEST(StudyPictures, Base64AndShrinking) {
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foob\xff"), "Zm9vYv8=");
+    Image image(5, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = Rgb(float(i));
+    const Image small = shrunk(image, 2);
+    ASSERT_EQ(small.width, 2);
+    ASSERT_EQ(small.height, 1);
+    EXPECT_EQ(small.at(0, 0).r, 3.0f);  // 0 1 5 6
+    EXPECT_EQ(small.at(1, 0).b, 5.0f);  // 2 3 7 8
+}
+
+class StudyPageSlow : public StudyTool {
+  protected:
+    /// Before everything else: whatever goes wrong is remembered.
+    static constexpr const char* kBefore = R"(<script>
+        const faults = [];
+        addEventListener('error', e => faults.push('error: ' + e.message));
+        addEventListener('securitypolicyviolation', e => faults.push('asked for ' + e.blockedURI));
+        </script>)";
+
+    /// After everything: uses the page as a reader would and says what it found wrong.
+    static constexpr const char* kAfter = R"(<script>
+        try {
+        const expect = (truth, text) => { if (!truth) faults.push(text); };
+        const key = k => document.body.dispatchEvent(
+            new KeyboardEvent('keydown', {key: k, bubbles: true}));
+        const choose = (id, value) => {
+            const select = document.getElementById(id);
+            select.value = value;
+            select.dispatchEvent(new Event('change'));
+        };
+        const visible = () => [...document.querySelectorAll('#pictures figure')].filter(
+            f => f.offsetParent !== null);
+        const pixels = view => view.getContext('2d').getImageData(0, 0, view.width, view.height)
+            .data.join();
+
+        study.measures.forEach((measure, i) => {
+            choose('measure', i);
+            for (const id of ['plot-time', 'plot-iterations']) {
+                study.methods.forEach((method, m) => {
+                    const chart = charts[id];
+                    const at = chart.data.datasets.findIndex(d => d.method === m && !d.edge);
+                    const marks = chart.getDatasetMeta(at).data;
+                    expect(marks.length > 0 && marks.every(p => isFinite(p.x) && isFinite(p.y)),
+                           `${id}: no marks of ${method.name} for ${measure}`);
+                });
+            }
+            for (const chart of Object.values(charts)) {
+                const marks = chart.data.datasets.flatMap((d, k) => chart.getDatasetMeta(k).data);
+                expect(marks.length > 0, `${chart.canvas.id}: empty for ${measure}`);
+                const image = chart.ctx.getImageData(0, 0, chart.width, chart.height).data;
+                expect(image.some(v => v > 0), `${chart.canvas.id}: nothing drawn`);
+            }
+        });
+        choose('measure', study.measures.indexOf('mape'));
+        expect(document.querySelectorAll('#plot-knob-0').length === 1, 'no knob plot');
+        expect(document.querySelectorAll('#tables table').length >= 4, 'tables are missing');
+        expect(document.querySelector('#tables').textContent.includes('not reached'),
+               'a bound that was not reached is not said to be');
+        expect(document.querySelectorAll('#runs tr').length === study.runs.length + 1, 'runs');
+        expect(document.querySelector('h1').textContent === 'A study <of> tests', 'title');
+
+        expect(visible().length === study.methods.length + 1, 'pictures are not side by side');
+        const shown = visible();
+        expect(pixels(shown[0].querySelector('canvas')) !== pixels(shown[1].querySelector('canvas')),
+               'pictures are all the same');
+        key('ArrowRight');
+        expect(visible().length === 1 && visible()[0] === shown[1], 'right arrow does not flip');
+        key('ArrowLeft');
+        expect(visible()[0] === shown[0], 'left arrow does not flip back');
+        key('3');
+        expect(visible()[0] === shown[2], 'digits do not flip');
+        const view = visible()[0].querySelector('canvas');
+        let last = pixels(view);
+        const changed = text => { const now = pixels(view); expect(now !== last, text); last = now; };
+        view.dispatchEvent(new WheelEvent('wheel', {deltaY: -480, clientX:
+            view.getBoundingClientRect().left + 5, clientY: view.getBoundingClientRect().top + 5}));
+        changed('the wheel does not zoom');
+        view.dispatchEvent(new PointerEvent('pointerdown', {clientX: 100, clientY: 100}));
+        dispatchEvent(new PointerEvent('pointermove', {clientX: 60, clientY: 80}));
+        dispatchEvent(new PointerEvent('pointerup', {}));
+        changed('dragging does not move');
+        const place = `${viewer.x} ${viewer.y} ${viewer.zoom}`;
+        key('1');
+        expect(place === `${viewer.x} ${viewer.y} ${viewer.zoom}`, 'zoom is not linked');
+        key('3');
+        key('+');
+        changed('exposure changes nothing');
+        key('e');
+        changed('no false colours');
+        key('e');
+        key('0');
+        key('f');
+        expect(visible().length === study.methods.length + 1, 'f does not go back');
+        } catch (e) {
+            faults.push(e.stack);
+        }
+        document.title = faults.length ? faults.join('; ') : 'no faults';
+        </script>)";
+
+    static std::string browser() {
+        const char* named = std::getenv("CHROMIUM");
+        return named ? named : "chromium";
+    }
+};
+
+TEST_F(StudyPageSlow, WorksInChromiumWithoutNetwork) {
+    if (std::system(("command -v " + browser() + " > /dev/null 2>&1").c_str()) != 0) {
+        GTEST_SKIP() << browser() << " is not installed (Debian: chromium): the page is not tried";
+    }
+    writeStudy();
+    const Outcome made = study();
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    std::string page = read("out/index.html");
+    EXPECT_LT(page.size(), std::size_t(30) << 20);
+    page.insert(page.find("<meta charset"), kBefore);
+    page.insert(page.rfind("</body>"), kAfter);
+    write("tried.html", page);
+    // Its own profile, and no sandbox: that needs rights that a container does not give to root.
+    const std::string command =
+        browser() + " --headless --no-sandbox --disable-gpu --user-data-dir=" + path("profile") +
+        " --window-size=1400,4000 --dump-dom file://" + path("tried.html") + " > " +
+        path("dom.html") + " 2> " + path("browser.log");
+    ASSERT_EQ(std::system(command.c_str()), 0) << read("browser.log");
+    const std::string dom = read("dom.html");
+    const std::size_t title = dom.find("<title>") + 7;
+    EXPECT_EQ(dom.substr(title, dom.find("</title>") - title), "no faults") << read("browser.log");
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,54 @@
+// Every file of tests/studies/ can be read as it is and with --quick; quick ones use our scenes
+// only and are done within two minutes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "render/options.h"
+#include "render/study/study_file.h"
+
+namespace lacuna {
+namespace {
+
+std::vector<std::string> shipped() {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(LACUNA_STUDIES)) {
+        if (entry.path().extension() == ".json") files.push_back(entry.path().stem());
+    }
+    return files;
+}
+
+class ShippedStudies : public ::testing::TestWithParam<std::string> {
+  protected:
+    std::string path() const { return LACUNA_STUDIES "/" + GetParam() + ".json"; }
+};
+
+TEST_P(ShippedStudies, CanBeRead) {
+    setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
+    const Study study = readStudy(path(), false);
+    EXPECT_GE(study.methods.size(), 2u);
+    EXPECT_GE(study.seeds.size(), 3u) << "medians with ranges";
+}
+
+TEST_P(ShippedStudies, QuickNeedsNoSceneOfOthersAndLittleTime) {
+    unsetenv("LACUNA_SHARED_SCENES");
+    const Study study = readStudy(path(), true);
+    double seconds = 0.0;
+    for (const StudyScene& scene : study.scenes) {
+        EXPECT_TRUE(std::filesystem::exists(scene.file)) << scene.file;
+        const double runs = double(study.methods.size() * study.seeds.size());
+        seconds += runs * (study.effort[0] == "--time" ? parseDuration(study.effort[1]) : 1.0);
+    }
+    EXPECT_LE(seconds, 120.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, ShippedStudies, ::testing::ValuesIn(shipped()),
+                         [](const auto& instance) {
+                             std::string name = instance.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace lacuna

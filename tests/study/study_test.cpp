@@ -1,0 +1,122 @@
+// lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
+#include <algorithm>
+#include <sstream>
+
+#include "tests/study/study_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+class StudyRun : public StudyTool {};
+
+std::size_t lines(const std::string& text) {
+    return std::size_t(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_F(StudyRun, WritesTablesAndGoesOnWhereItStopped) {
+    writeStudy();
+    const Outcome first = study("--json @page.json");
+    ASSERT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_NE(first.out.find("6 runs, 6 of them rendered now"), std::string::npos) << first.out;
+    for (const char* name : {"raw.csv", "runs.csv", "tables.md", "index.html", "time-to-error.csv",
+                             "error-at-iterations.csv", "references.csv"}) {
+        EXPECT_TRUE(exists(std::string("out/") + name)) << name;
+    }
+    EXPECT_EQ(lines(read("out/runs.csv")), 7u);
+    EXPECT_EQ(read("out/raw.csv").substr(0, 40), "scene,name,method,seed,run,iteration,sec");
+    EXPECT_NE(read("out/tables.md").find("not reached"), std::string::npos);
+    // A reference of 64 iterations cannot judge 6 iterations of the same method.
+    EXPECT_NE(read("out/tables.md").find("too noisy"), std::string::npos);
+    EXPECT_EQ(json("page.json").at("runs").size(), 6u);
+
+    const std::string before = read("out/raw.csv");
+    const Outcome again = study();
+    EXPECT_NE(again.out.find("6 runs, 0 of them rendered now"), std::string::npos) << again.out;
+    EXPECT_EQ(read("out/raw.csv"), before);
+
+    // One method changes: only it is rendered again.
+    writeStudy(R"({"methods": [{"method": "pt"},
+                                {"method": "lvcbpt", "vary": {"candidates": [50, 100]}}]})");
+    const Outcome changed = study();
+    EXPECT_NE(changed.out.find("6 runs, 2 of them rendered now"), std::string::npos)
+        << changed.out << changed.err;
+
+    // A larger reference continues the one that is there, and every error is measured again.
+    writeStudy(R"({"seeds": [1],
+        "scenes": [{"file": "room.gltf",
+                    "options": {"width": 24, "height": 16, "max-depth": 5},
+                    "reference": {"method": "bpt", "iterations": 32, "parts": 3}}]})");
+    const Outcome grown = study();
+    EXPECT_NE(grown.out.find("3 runs, 3 of them rendered now"), std::string::npos) << grown.out;
+    EXPECT_NE(read("out/references.csv").find("bpt, 96 iterations"), std::string::npos);
+}
+
+TEST_F(StudyRun, MethodsFollowEachOtherWithinASeed) {
+    writeStudy();
+    ASSERT_EQ(study().exitCode, 0);
+    std::istringstream in(read("out/runs.csv"));
+    std::vector<std::string> order;
+    for (std::string line; std::getline(in, line);) {
+        const std::size_t name = line.find(',') + 1;
+        const std::size_t end = line.find(',', name);
+        order.push_back(line.substr(name, end - name));
+    }
+    EXPECT_EQ(order, (std::vector<std::string>{"name", "pt", "lvcbpt candidates=50",
+                                               "lvcbpt candidates=200", "lvcbpt candidates=50",
+                                               "lvcbpt candidates=200", "pt"}));
+}
+
+TEST_F(StudyRun, AnInterruptKeepsWhatIsFinished) {
+    writeStudy(R"({"iterations": 100000})");
+    const Outcome stopped =
+        runAndSignal("@study.json -o @out --quiet", {SIGTERM}, std::chrono::milliseconds(1500));
+    EXPECT_EQ(stopped.exitCode, 130) << stopped.err;
+    EXPECT_NE(stopped.err.find("goes on from there"), std::string::npos) << stopped.err;
+    EXPECT_FALSE(exists("out/index.html"));
+    writeStudy();
+    EXPECT_EQ(study().exitCode, 0);
+}
+
+TEST_F(StudyRun, RefusesWhatDoesNotFit) {
+    writeStudy(R"({"tittle": "x"})");
+    expectFailure("@study.json -o @out --quiet", 3, "tittle");
+    writeStudy(R"({"methods": [{"method": "nonsense"}]})");
+    expectFailure("@study.json -o @out --quiet", 2, "nonsense");
+    writeStudy(R"({"seeds": [1, 1]})");
+    expectFailure("@study.json -o @out --quiet", 3, "every seed once");
+    writeStudy(R"({"baseline": "bpt"})");
+    expectFailure("@study.json -o @out --quiet", 3, "baseline");
+    write("study.json", "{\"title\": \"a\", \"title\": \"b\"}");
+    expectFailure("@study.json -o @out --quiet", 3, "twice");
+    expectFailure("@none.json -o @out --quiet", 3, "none.json");
+    writeStudy(R"({"scenes": [{"file": "none.gltf", "reference": "reference.exr"}]})");
+    expectFailure("@study.json -o @out --quiet", 3, "none.gltf");
+    writeStudy(R"({"scenes": [{"file": "$LACUNA_SHARED_SCENES/x.glb", "reference": "r.exr"}]})");
+    unsetenv("LACUNA_SHARED_SCENES");
+    expectFailure("@study.json -o @out --quiet", 3, "LACUNA_SHARED_SCENES");
+}
+
+TEST_F(StudyRun, RefusesReferencesOfOtherScenesSizesAndDepths) {
+    const std::string scene = TinyScene{}.text();
+    TinyScene other;
+    other.pointLight = true;
+    writeStudy(R"({"scenes": [{"file": "room.gltf",
+                               "options": {"width": 24, "height": 16, "max-depth": 5},
+                               "reference": "reference.exr"}]})");
+    const auto refused = [&](const std::string& rendered, const std::string& arguments,
+                             const std::string& part) {
+        write("room.gltf", rendered);
+        const std::string command = std::string(LACUNA_RENDER) + " " + path("room.gltf") + " -o " +
+                                    path("reference.exr") + " --method pt --iterations 2 --quiet " +
+                                    arguments + " > " + path("ignored.txt");
+        ASSERT_EQ(std::system(command.c_str()), 0) << command;
+        write("room.gltf", scene);
+        expectFailure("@study.json -o @out --quiet", 3, "reference.exr: expected " + part);
+    };
+    refused(scene, "--width 20 --height 16 --max-depth 5", "24 x 16");
+    refused(scene, "--width 24 --height 16 --max-depth 4", "paths of up to 5");
+    refused(other.text(), "--width 24 --height 16 --max-depth 5", "a picture of the scene");
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,31 @@
+// Runs lacuna-study itself in a directory of the test's own.
+#pragma once
+
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+
+class StudyTool : public RenderTool {
+  protected:
+    std::string tool() const override { return LACUNA_STUDY; }
+
+    /// Two methods, two seeds, a reference of two parts, all tiny. `changes` is JSON that is merged
+    /// into it (RFC 7386). Writes @study.json.
+    void writeStudy(const std::string& changes = "{}") const {
+        nlohmann::json study = nlohmann::json::parse(R"({
+            "title": "A study <of> tests", "iterations": 6, "seeds": [1, 2],
+            "equal_iterations": [4], "bounds": {"mape": [10, 1e-6]},
+            "scenes": [{"file": "room.gltf",
+                        "options": {"width": 24, "height": 16, "max-depth": 5},
+                        "reference": {"method": "bpt", "iterations": 32, "parts": 2}}],
+            "methods": [{"method": "pt"},
+                        {"method": "lvcbpt", "vary": {"candidates": [50, 200]}}]})");
+        study.merge_patch(nlohmann::json::parse(changes));
+        write("study.json", study.dump());
+    }
+    Outcome study(const std::string& more = "") const {
+        return run("@study.json -o @out --quiet " + more);
+    }
+};
+
+}  // namespace lacuna::test
