@@ -21,6 +21,7 @@ namespace lacuna {
 
 class ThreadPool;
 struct Skeleton;
+struct Subspaces;
 
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
 /// prefix of any vertex is the `count` entries that end with it.
@@ -164,6 +165,8 @@ class Method {
 
     /// Rows that need a skeleton get it before anything else; without it they must still work.
     virtual void useSkeleton(std::shared_ptr<const Skeleton> skeleton) { (void)skeleton; }
+    /// Likewise for rows that need subspaces.
+    virtual void useSubspaces(std::shared_ptr<const Subspaces> subspaces) { (void)subspaces; }
     /// Iterations to run and throw away before the first one that counts.
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }

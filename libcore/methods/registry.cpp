@@ -17,7 +17,8 @@ std::span<const MethodRow> methods() {
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
                                                 twoStageResamplingRow(),
-                                                skeletonRow()};
+                                                skeletonRow(),
+                                                subspaceRow()};
     return rows;
 }
 

@@ -112,7 +112,11 @@ std::string cheap(const std::string& method) {
     for (const Parameter& p : row.parameters) {
         if (p.name == "candidates") text += " --set candidates=100";
     }
-    if (row.needsSkeleton) text += " --prepare --cache @cache --set voxels.resolution=32";
+    if (row.needsSkeleton || row.needsSubspaces) text += " --prepare --cache @cache";
+    if (row.needsSkeleton) text += " --set voxels.resolution=32";
+    if (row.needsSubspaces) {
+        text += " --set train.paths=2000 --set train.subspaces=20 --set train.light_paths=2000";
+    }
     return text;
 }
 
