@@ -70,12 +70,31 @@ Image nodeLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
         });
 }
 
+namespace {
+
+std::uint32_t eyeSubspaceOf(const SurfacePoint& hit, const Camera& camera,
+                            const Subspaces& subspaces) {
+    return subspaces.eyeTree(subpathEnd(hit.position, hit.ng, camera.position(), false));
+}
+
+}  // namespace
+
 Image subspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
                     const Subspaces& subspaces, const ThreadPool& pool) {
     return numberLayer(
         scene, camera, crop, pool,
         [&](const SurfacePoint& hit, Vec3) -> std::optional<std::uint32_t> {
-            return subspaces.eyeTree(subpathEnd(hit.position, hit.ng, camera.position(), false));
+            return eyeSubspaceOf(hit, camera, subspaces);
+        });
+}
+
+Image lightSubspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                         const Subspaces& subspaces, const ThreadPool& pool) {
+    return numberLayer(
+        scene, camera, crop, pool,
+        [&](const SurfacePoint& hit, Vec3) -> std::optional<std::uint32_t> {
+            const auto column = subspaces.column(eyeSubspaceOf(hit, camera, subspaces));
+            return std::uint32_t(std::max_element(column.begin(), column.end()) - column.begin());
         });
 }
 

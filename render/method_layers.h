@@ -36,4 +36,8 @@ Image nodeLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
 Image subspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
                     const Subspaces& subspaces, const ThreadPool& pool);
 
+/// Likewise for the light subspace that Gamma picks most often there.
+Image lightSubspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                         const Subspaces& subspaces, const ThreadPool& pool);
+
 }  // namespace lacuna

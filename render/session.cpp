@@ -271,6 +271,9 @@ void Session::save() {
             image.setRgb("subspace",
                          subspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
                                        *caches_.subspaces, pool_));
+            image.setRgb("lightSubspace",
+                         lightSubspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                            *caches_.subspaces, pool_));
         }
         writeImage(options_.output, image, options_.exposure);
     }

@@ -54,15 +54,15 @@ std::string withDirectory(std::string arguments, const std::string& directory) {
 }
 }  // namespace
 
-Outcome RenderTool::run(const std::string& arguments) const {
-    return runAndSignal(arguments, {}, {});
+Outcome RenderTool::run(const std::string& arguments, const char* tool) const {
+    return runAndSignal(arguments, {}, {}, tool);
 }
 
 Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                                 std::chrono::milliseconds delay) const {
+                                 std::chrono::milliseconds delay, const char* tool) const {
     // The shell is replaced by the tool, so that the signals reach it.
     const std::string command =
-        "exec " + std::string(LACUNA_RENDER) + " " + withDirectory(arguments, path(""));
+        "exec " + std::string(tool) + " " + withDirectory(arguments, path(""));
     const std::string out = path("stdout.txt"), err = path("stderr.txt");
     const pid_t child = fork();
     if (child == 0) {
@@ -83,8 +83,8 @@ Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector
 }
 
 void RenderTool::expectFailure(const std::string& arguments, int exitCode,
-                               const std::string& part) const {
-    const Outcome o = run(arguments);
+                               const std::string& part, const char* tool) const {
+    const Outcome o = run(arguments, tool);
     EXPECT_EQ(o.exitCode, exitCode) << arguments << "\n" << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
     EXPECT_NE(o.err.find(part), std::string::npos) << arguments << "\n" << o.err;

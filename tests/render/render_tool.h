@@ -1,4 +1,4 @@
-// Runs lacuna-render itself in a directory of the test's own.
+// Runs lacuna-render (or another tool) itself in a directory of the test's own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,12 +31,14 @@ class RenderTool : public ::testing::Test {
     std::vector<std::string> temporaries() const;
 
     /// `arguments` go through a shell; @ stands for the directory and its slash.
-    Outcome run(const std::string& arguments) const;
+    Outcome run(const std::string& arguments, const char* tool = LACUNA_RENDER) const;
     /// Starts it, sends `signals` one after the other, `delay` before each; waits for the end.
     Outcome runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                         std::chrono::milliseconds delay) const;
+                         std::chrono::milliseconds delay,
+                         const char* tool = LACUNA_RENDER) const;
     /// Must fail with this code, `part` in one line on stderr, nothing on stdout.
-    void expectFailure(const std::string& arguments, int exitCode, const std::string& part) const;
+    void expectFailure(const std::string& arguments, int exitCode, const std::string& part,
+                       const char* tool = LACUNA_RENDER) const;
     nlohmann::json json(const std::string& name) const;
     /// A quick render of @room.gltf (written by SetUp) to @out.exr.
     std::string quick(const std::string& method, const std::string& more = "") const;
