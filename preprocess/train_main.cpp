@@ -26,7 +26,7 @@ std::uint64_t checked(const char* option, std::int64_t value, std::int64_t low, 
 TrainSettings settingsOf(const TrainOptions& o, std::uint64_t seed) {
     TrainSettings s;
     s.paths = checked("--paths", o.paths, 1, 100'000'000);
-    s.subspaces = std::uint32_t(checked("--subspaces", o.subspaces, 1, 20'000));
+    s.subspaces = std::uint32_t(checked("--subspaces", o.subspaces, 1, 4'000));
     s.lightPaths = checked("--light-paths", o.lightPaths, 1, 1'000'000'000);
     s.epochs = int(checked("--epochs", o.epochs, 0, 10'000));
     s.seed = seed;

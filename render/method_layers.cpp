@@ -1,5 +1,8 @@
 #include "render/method_layers.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "libcore/base/parallel.h"
 
 namespace lacuna {

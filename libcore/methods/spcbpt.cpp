@@ -198,7 +198,7 @@ MethodRow subspaceRow() {
          "density that the weights see: resampling-aware, or the target alone (the paper)",
          {"ris", "paper"}},
         {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
-        {"train.subspaces", Kind::Integer, 1000, 1, 20000,
+        {"train.subspaces", Kind::Integer, 1000, 1, 4000,
          "subspaces of light and of eye subpaths"},
         {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
         {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},

@@ -28,7 +28,7 @@ class TrainTool : public RenderTool {
 TEST_F(TrainTool, CommandLinesThatAreWrongExitWith2) {
     EXPECT_EQ(train("--help").exitCode, 0);
     for (const char* wrong :
-         {"--paths 0", "--paths 1e9", "--subspaces 0", "--subspaces 20001", "--light-paths 0",
+         {"--paths 0", "--paths 1e9", "--subspaces 0", "--subspaces 4001", "--light-paths 0",
           "--epochs -1", "--nonsense", "--json @none.glb"}) {
         expectFailure(std::string("@none.glb ") + wrong, 2, std::string(wrong).substr(0, 6),
                       LACUNA_TRAIN);
