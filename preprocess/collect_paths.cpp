@@ -5,6 +5,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/bidir/integrator.h"
+#include "libcore/gltf/gltf.h"
 #include "libcore/methods/registry.h"
 
 namespace lacuna {

@@ -73,9 +73,9 @@ double lookUpNanoseconds(const DecisionTree& tree, std::span<const SubpathEnd> e
 }
 
 /// Everything about one side's classification on its way to a tree.
-class Side {
+class Classification {
   public:
-    Side(const CollectedPaths& paths, bool lightSide)
+    Classification(const CollectedPaths& paths, bool lightSide)
         : train_(endsOf(paths.train, lightSide, kTreeSamples)),
           heldOut_(endsOf(paths.heldOut, lightSide, kJudgedSamples)) {}
 
@@ -183,7 +183,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         result.outliers = paths.outliers;
         result.pathBytes = paths.train.bytes() + paths.heldOut.bytes();
     });
-    Side light(paths, true), eye(paths, false);
+    Classification light(paths, true), eye(paths, false);
     run("centroids", [&] {
         const float sigma2 = std::max(spatialVariance(light.ends()), spatialVariance(eye.ends()));
         Rng lightRng(settings.seed, kTrainingIteration, StreamKind::User, 0);
