@@ -114,21 +114,26 @@ class Classification {
     TreeReport report_;
 };
 
-/// Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19].
-std::vector<double> measureQ(const Scene& scene, const Subspaces& subspaces,
-                             const TrainSettings& settings, const ThreadPool& pool,
-                             const std::atomic<bool>& cancel) {
+/// Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19], and their number / M'.
+void measureQ(const Scene& scene, Subspaces& subspaces, const TrainSettings& settings,
+              const ThreadPool& pool, const std::atomic<bool>& cancel) {
+    struct Sums {
+        std::vector<double> q, count;
+    };
     const Camera camera = trainingCamera(scene, settings.paths);
     const Walker walker(scene, camera, trainingLimits(scene));
     const std::uint64_t tasks = (settings.lightPaths + kLightPathsPerTask - 1) / kLightPathsPerTask;
-    std::vector<double> q(subspaces.lightCount, 0.0);
+    subspaces.lightPaths = settings.lightPaths;
+    subspaces.q.assign(subspaces.lightCount, 0.0);
+    subspaces.population.assign(subspaces.lightCount, 0.0);
     // Batches bound the memory of the sums, which are added in the order of tasks.
     constexpr std::uint64_t kBatch = 64;
     for (std::uint64_t first = 0; first < tasks; first += kBatch) {
-        std::vector<std::vector<double>> sums(std::min(kBatch, tasks - first));
+        std::vector<Sums> sums(std::min(kBatch, tasks - first));
         pool.forEach(sums.size(), [&](std::size_t n) {
             if (cancel) return;
-            sums[n].assign(q.size(), 0.0);
+            sums[n].q.assign(subspaces.lightCount, 0.0);
+            sums[n].count = sums[n].q;
             std::vector<PathVertex> path;
             RayTally tally;
             const std::uint64_t begin = (first + n) * kLightPathsPerTask;
@@ -141,18 +146,21 @@ std::vector<double> measureQ(const Scene& scene, const Subspaces& subspaces,
                     if (int(y.index) > walker.limits().maxDepth - 2 || !y.connectable()) continue;
                     const double beta = double(mean(y.throughput));
                     if (!std::isfinite(beta)) continue;
-                    sums[n][subspaces.lightSubspace(y, s > 1 ? &path[s - 2] : nullptr)] += beta;
+                    const std::uint32_t label =
+                        subspaces.lightSubspace(y, s > 1 ? &path[s - 2] : nullptr);
+                    sums[n].q[label] += beta;
+                    sums[n].count[label] += 1.0;
                 }
             }
         });
         if (cancel) throw Error(130, "interrupted: nothing was written");
-        for (const std::vector<double>& sum : sums) {
-            for (std::size_t i = 0; i < q.size(); ++i) {
-                q[i] += sum[i] / double(settings.lightPaths);
+        for (const Sums& sum : sums) {
+            for (std::size_t i = 0; i < sum.q.size(); ++i) {
+                subspaces.q[i] += sum.q[i] / double(settings.lightPaths);
+                subspaces.population[i] += sum.count[i] / double(settings.lightPaths);
             }
         }
     }
-    return q;
 }
 
 double emptyShareOfEye(const GammaData& data) {
@@ -203,10 +211,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         result.lightTree = light.report(s.lightTree);
         result.eyeTree = eye.report(s.eyeTree);
     });
-    run("light paths", [&] {
-        s.q = measureQ(scene, s, settings, pool, cancel);
-        s.lightPaths = settings.lightPaths;
-    });
+    run("light paths", [&] { measureQ(scene, s, settings, pool, cancel); });
     run("gamma", [&] {
         const GammaData data = gammaData(paths.train, s, kPicks, pool);
         const GammaData heldOut = gammaData(paths.heldOut, s, kPicks, pool);

@@ -23,6 +23,12 @@ class ThreadPool;
 struct Skeleton;
 struct Subspaces;
 
+/// Asks the cache for a vertex that will be looked at soon.
+inline void prefetch(const PathVertex& vertex) {
+    const char* bytes = reinterpret_cast<const char*>(&vertex);
+    for (std::size_t i = 0; i < sizeof(PathVertex); i += 64) __builtin_prefetch(bytes + i);
+}
+
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
 /// prefix of any vertex is the `count` entries that end with it.
 class LightPool {
@@ -58,8 +64,7 @@ class LightPool {
     /// anywhere in some hundred megabytes.
     Subpath prefix(Entry entry) const {
         const PathVertex* last = vertices_.data() + entry.vertex;
-        const char* bytes = reinterpret_cast<const char*>(last);
-        for (std::size_t i = 0; i < sizeof(PathVertex); i += 64) __builtin_prefetch(bytes + i);
+        prefetch(*last);
         return {last + 1 - entry.count, entry.count};
     }
 

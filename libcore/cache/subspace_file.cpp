@@ -32,7 +32,7 @@ struct Section {
 };
 static_assert(sizeof(Section) == 32);
 
-constexpr std::uint32_t kSections = 10;
+constexpr std::uint32_t kSections = 11;
 static_assert(sizeof(LightCells::Block) == 8 && sizeof(DecisionTree::Node) == 8);
 
 /// Calls put(name, array) for every section in the order of the file: the schema, for both ways.
@@ -47,6 +47,7 @@ void forEachSection(Visitor& visit) {
     visit("light_tree", visit.lightNodes);     // float threshold; uint32 code
     visit("eye_tree", visit.eyeNodes);         // likewise
     visit("q", visit.q);                       // double, by light subspace
+    visit("population", visit.population);     // double, by light subspace
     visit("gamma", visit.gamma);               // float, eye subspace by eye subspace
 }
 
@@ -57,7 +58,7 @@ struct Arrays {
     std::vector<std::uint64_t> lightPaths;
     std::vector<LightCells::Block> blocks;
     std::vector<DecisionTree::Node> lightNodes, eyeNodes;
-    std::vector<double> q;
+    std::vector<double> q, population;
     std::vector<float> gamma;
 };
 
@@ -135,6 +136,7 @@ void writeSubspaceFile(const std::string& path, const SubspaceFile& file) {
     w.lightNodes.assign(s.lightTree.nodes().begin(), s.lightTree.nodes().end());
     w.eyeNodes.assign(s.eyeTree.nodes().begin(), s.eyeTree.nodes().end());
     w.q = s.q;
+    w.population = s.population;
     w.gamma = s.gamma;
     forEachSection(w);
     Header header{};
@@ -191,6 +193,7 @@ SubspaceFile readSubspaceFile(const std::string& path, const std::string& sceneH
         s.lightTree = DecisionTree(std::move(r.lightNodes), s.lightCount);
         s.eyeTree = DecisionTree(std::move(r.eyeNodes), s.eyeCount);
         s.q = std::move(r.q);
+        s.population = std::move(r.population);
         s.gamma = std::move(r.gamma);
         s.check();
         file.stamp = {r.sceneHash, r.settings};

@@ -8,6 +8,10 @@
 //   stage 2   y out of LVC_i with probability P_r = mean(beta) / sum of mean(beta) in LVC_i [eq 9]
 //   pick      N per eye vertex; contribution h(y) / (M N Gamma P_r)           [eq 10]
 //             an empty LVC_i is a zero sample that counts among the N
+//   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
+//             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
+//             1/(min(j, W_i) M) in iteration j, and M W_i in r. Unlike a queue of M_0 vertices
+//             [eq 20], which is biased where subpaths have several vertices in one subspace
 //   MIS       paper: r = N Gamma beta / Q(i)                                  [eq 11, 12]
 //             ris:   r = [ (1/(N Gamma)) (1/M + (1 - 1/M) Q(i)/beta) + (1 - 1/N)/M ]^-1, which
 //             knows that one of M subpaths is not always there: the paper's where beta << M Q(i)
@@ -16,6 +20,9 @@
 //
 // Without subspaces there is one of each, Gamma = 1, and Q comes from a warm-up that is thrown
 // away: light vertices are picked in proportion to beta alone.
+#include <algorithm>
+#include <cmath>
+#include <deque>
 #include <numeric>
 
 #include "libcore/base/discrete.h"
@@ -28,18 +35,25 @@ namespace lacuna {
 namespace {
 
 constexpr std::size_t kEntriesPerTask = 4096;
+constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
 struct Options {
     std::uint64_t subpaths;  ///< M
     int picks;               ///< N
     bool resamplingAware;    ///< the weights: ris, or the paper's
+    std::uint64_t reuse;     ///< M_0, 0: none
 };
 
 /// Subspaces made ready to draw from.
 class Classes {
   public:
-    explicit Classes(std::shared_ptr<const Subspaces> subspaces)
-        : subspaces_(std::move(subspaces)), q_(subspaces_->q) {
+    Classes(std::shared_ptr<const Subspaces> subspaces, const Options& options)
+        : subspaces_(std::move(subspaces)), q_(subspaces_->q), windows_(lightCount(), 1) {
+        for (std::size_t i = 0; options.reuse > 0 && i < subspaces_->population.size(); ++i) {
+            const double each = subspaces_->population[i] * double(options.subpaths);
+            windows_[i] = std::uint32_t(std::clamp(std::ceil(double(options.reuse) / each), 1.0,
+                                                   double(kLongestWindow)));
+        }
         std::vector<double> weights;
         for (std::uint32_t j = 0; j < subspaces_->eyeCount; ++j) {
             const auto column = subspaces_->column(j);
@@ -66,11 +80,14 @@ class Classes {
     /// 0 where no light subpath was seen.
     double q(std::uint32_t light) const { return q_.empty() ? 0.0 : q_[light]; }
     double unseen() const { return unseen_; }
+    /// W_i: the whole iterations that the vertices of a light subspace are from.
+    std::uint32_t window(std::uint32_t light) const { return windows_[light]; }
 
   private:
     std::shared_ptr<const Subspaces> subspaces_;
     std::vector<DiscreteDistribution> columns_;  // by eye subspace
     std::vector<double> q_;
+    std::vector<std::uint32_t> windows_;
     double unseen_ = 1.0;
 };
 
@@ -85,7 +102,8 @@ class SubspaceDensity final : public ConnectionDensity {
         const std::uint32_t i = classes_.lightOf(*c.light.vertex, c.light.predecessor);
         const double gamma = classes_.columnOf(*c.eye.vertex, *c.eye.predecessor).pmf(i);
         if (!(gamma > 0.0)) return 0.0;
-        const double q = classes_.q(i), n = options_.picks, m = double(options_.subpaths);
+        const double q = classes_.q(i), n = options_.picks;
+        const double m = double(options_.subpaths) * classes_.window(i);
         if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
         return 1.0 / ((1.0 / m + (1.0 - 1.0 / m) * q / beta) / (n * gamma) + (1.0 - 1.0 / n) / m);
     }
@@ -99,11 +117,12 @@ class SubspaceConnections final : public Method {
   public:
     explicit SubspaceConnections(const Options& options)
         : options_(options),
-          classes_(std::make_shared<const Subspaces>()),
+          classes_(std::make_shared<const Subspaces>(), options_),
           density_(options_, classes_) {}
 
     void useSubspaces(std::shared_ptr<const Subspaces> subspaces) override {
-        classes_ = Classes(std::move(subspaces));
+        classes_ = Classes(std::move(subspaces), options_);
+        kept_.assign(classes_.lightCount(), {});
     }
     int warmupIterations() const override { return classes_.measured() ? 0 : 1; }
     PoolRequest pool() const override { return {options_.subpaths}; }
@@ -111,7 +130,6 @@ class SubspaceConnections final : public Method {
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
 
     void prepare(const LightPool& pool, IterationContext& context) override {
-        pool_ = &pool;
         const auto entries = pool.connectable();
         std::vector<std::uint32_t> labels(entries.size());
         context.threads.forEach(tasksFor(entries.size()), [&](std::size_t task) {
@@ -123,19 +141,26 @@ class SubspaceConnections final : public Method {
             }
         });
         const std::uint32_t count = classes_.lightCount();
-        begin_.assign(std::size_t(count) + 1, 0);
-        for (const std::uint32_t i : labels) ++begin_[i + 1];
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        members_.resize(entries.size());
-        std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-        for (std::size_t n = 0; n < entries.size(); ++n) members_[next[labels[n]]++] = entries[n];
-        within_.assign(count, {});
+        cells_.resize(count);
+        for (Cell& cell : cells_) cell.members.clear();
+        for (std::size_t n = 0; n < entries.size(); ++n) {
+            cells_[labels[n]].members.push_back(pool.prefix(entries[n]));
+        }
         context.threads.forEach(count, [&](std::size_t i) {
-            std::vector<double> weights;
-            for (std::size_t n = begin_[i]; n < begin_[i + 1]; ++n) {
-                weights.push_back(double(mean(pool.prefix(members_[n]).back().throughput)));
+            Cell& cell = cells_[i];
+            cell.fresh = cell.members.size();
+            for (const Kept& kept : kept_[i]) {
+                for (std::size_t end = 0; const std::uint32_t length : kept.lengths) {
+                    end += length;
+                    cell.members.push_back({kept.vertices.data() + end - length, length});
+                }
             }
-            within_[i] = DiscreteDistribution(weights);
+            std::vector<double> weights;
+            for (const Subpath& y : cell.members) {
+                weights.push_back(double(mean(y.back().throughput)));
+            }
+            cell.within = DiscreteDistribution(weights);
+            cell.iterations = double(kept_[i].size() + 1);
         });
     }
 
@@ -145,24 +170,58 @@ class SubspaceConnections final : public Method {
         const double nm = double(options_.picks) * double(options_.subpaths);
         for (int n = 0; n < options_.picks; ++n) {
             const auto subspace = column.sample(rng.uniformDouble());
-            const DiscreteDistribution& within = within_[subspace.index];
-            if (within.empty()) continue;
-            const auto pick = within.sample(subspace.remapped());
-            sink.add({pool_->prefix(members_[begin_[subspace.index] + pick.index]),
-                      1.0 / (nm * subspace.pmf * pick.pmf), 0});
+            const Cell& cell = cells_[subspace.index];
+            if (cell.within.empty()) continue;
+            const auto pick = cell.within.sample(subspace.remapped());
+            const Subpath y = cell.members[pick.index];
+            prefetch(y.back());
+            sink.add({y, 1.0 / (nm * cell.iterations * subspace.pmf * pick.pmf), 0});
         }
     }
 
-    void observe(const LightPool&, IterationContext&) override {
-        if (classes_.measured()) return;
+    bool learns() const override { return options_.reuse > 0; }
+
+    void observe(const LightPool&, IterationContext& context) override {
+        if (classes_.measured()) {
+            if (options_.reuse > 0) keep(context.threads);
+            return;
+        }
         std::vector<double> q;
-        for (const DiscreteDistribution& d : within_) {
-            q.push_back(d.total() / double(options_.subpaths));
+        for (const Cell& cell : cells_) {
+            q.push_back(cell.within.total() / double(options_.subpaths));
         }
         classes_.setQ(std::move(q), options_.subpaths);
     }
 
   private:
+    /// Prefixes of one iteration that end in a subspace, one after the other.
+    struct Kept {
+        std::vector<PathVertex> vertices;
+        std::vector<std::uint32_t> lengths;
+    };
+    /// A light subspace in this iteration: LVC_i.
+    struct Cell {
+        std::vector<Subpath> members;  ///< of the pool first, then the kept ones
+        std::size_t fresh = 0;         ///< those of the pool
+        double iterations = 1.0;       ///< that they are from: min(j, W_i)
+        DiscreteDistribution within;   ///< P_r
+    };
+
+    /// Copies what the coming iterations use again. Iterations without a vertex count as well.
+    void keep(const ThreadPool& threads) {
+        threads.forEach(kept_.size(), [&](std::size_t i) {
+            const std::uint32_t window = classes_.window(std::uint32_t(i));
+            if (window == 1) return;
+            Kept kept;
+            for (const Subpath& y : std::span(cells_[i].members).first(cells_[i].fresh)) {
+                kept.vertices.insert(kept.vertices.end(), y.begin(), y.end());
+                kept.lengths.push_back(std::uint32_t(y.size()));
+            }
+            kept_[i].push_back(std::move(kept));
+            if (kept_[i].size() == window) kept_[i].pop_front();
+        });
+    }
+
     static std::size_t tasksFor(std::size_t entries) {
         return (entries + kEntriesPerTask - 1) / kEntriesPerTask;
     }
@@ -170,10 +229,8 @@ class SubspaceConnections final : public Method {
     Options options_;
     Classes classes_;
     SubspaceDensity density_;
-    const LightPool* pool_ = nullptr;
-    std::vector<LightPool::Entry> members_;     // of the pool, by light subspace
-    std::vector<std::size_t> begin_;            // by light subspace, into members_
-    std::vector<DiscreteDistribution> within_;  // P_r, by light subspace
+    std::vector<Cell> cells_;             // by light subspace
+    std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
 };
 
 }  // namespace
@@ -197,16 +254,19 @@ MethodRow subspaceRow() {
          1,
          "density that the weights see: resampling-aware, or the target alone (the paper)",
          {"ris", "paper"}},
+        {"reuse", Kind::Integer, 0, 0, 1e6,
+         "vertices kept per subspace across iterations, M_0; 0: none"},
         {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
         {"train.subspaces", Kind::Integer, 1000, 1, 4000,
          "subspaces of light and of eye subpaths"},
         {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
         {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},
         presetParameter()};
-    row.paper = {{"weights", 1}};
+    row.paper = {{"weights", 1}, {"reuse", 200}};
     row.create = [](const Settings& s) {
         return std::make_unique<SubspaceConnections>(Options{
-            s.integer("candidates"), int(s.integer("connections")), s.integer("weights") == 0});
+            s.integer("candidates"), int(s.integer("connections")), s.integer("weights") == 0,
+            s.integer("reuse")});
     };
     return row;
 }

@@ -37,6 +37,8 @@ void Subspaces::check() const {
     require(largestLabel(eyeTree) < eyeCount, "labels of the eye tree");
     require(q.empty() || q.size() == lightCount, "number of Q");
     for (const double v : q) require(std::isfinite(v) && v >= 0.0, "values of Q");
+    require(population.size() == q.size(), "number of populations");
+    for (const double v : population) require(std::isfinite(v) && v >= 0.0, "populations");
     require(gamma.size() == std::size_t(lightCount) * eyeCount, "size of Gamma");
     for (std::uint32_t j = 0; j < eyeCount; ++j) {
         double sum = 0.0;
@@ -66,6 +68,7 @@ std::string Subspaces::contentHash() const {
     add(&eyeCount, sizeof(eyeCount));
     add(&lightPaths, sizeof(lightPaths));
     array(q);
+    array(population);
     array(gamma);
     const XXH128_hash_t digest = XXH3_128bits_digest(state);
     XXH3_freeState(state);

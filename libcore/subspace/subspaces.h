@@ -22,6 +22,8 @@ struct Subspaces {
     /// Q(i) = (1/M') sum of mean(beta) over the vertices in i of M' light subpaths [Su22 eq 19];
     /// empty: not measured.
     std::vector<double> q;
+    /// Vertices in i per light subpath, measured with Q; as many as of Q.
+    std::vector<double> population;
     std::uint64_t lightPaths = 0;  ///< M'
     /// Gamma(i given j), the uniform part inside: eye subspace by eye subspace, each sums to one.
     std::vector<float> gamma = {1.0f};

@@ -35,6 +35,7 @@ std::shared_ptr<const Subspaces> randomSubspaces(std::uint64_t seed) {
     s->lightPaths = 1000;
     for (std::uint32_t i = 0; i < s->lightCount; ++i) {
         s->q.push_back(rng.below(4) == 0 ? 0.0 : rng.uniformDouble());
+        s->population.push_back(rng.uniformDouble());
     }
     s->gamma.clear();
     for (std::uint32_t j = 0; j < s->eyeCount; ++j) {

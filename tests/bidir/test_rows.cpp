@@ -136,6 +136,7 @@ std::shared_ptr<const Subspaces> fewSubspaces() {
     s->lightCount = 4;
     s->eyeCount = 3;
     s->q = {2.0, 9.0, 0.0, 1.0};
+    s->population = {0.1, 0.5, 0.0, 0.01};
     s->lightPaths = 100;
     s->gamma = {0.1f, 0.2f, 0.3f, 0.4f, 0.4f, 0.2f, 0.25f, 0.15f, 0.25f, 0.25f, 0.25f, 0.25f};
     s->check();

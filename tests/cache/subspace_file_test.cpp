@@ -60,7 +60,10 @@ SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
     s.lightTree = DecisionTree({{0.5f, 1u << 4 | 3u}, leaf(3), leaf(light - 1)}, light);
     s.eyeTree = DecisionTree({{-2.5f, 1u << 4 | 8u}, leaf(0), leaf(eye - 1)}, eye);
     s.lightPaths = 2000;
-    for (std::uint32_t i = 0; i < light; ++i) s.q.push_back(0.25 * i);
+    for (std::uint32_t i = 0; i < light; ++i) {
+        s.q.push_back(0.25 * i);
+        s.population.push_back(0.5 * i);
+    }
     s.gamma.assign(std::size_t(light) * eye, 1.0f / float(light));
     file.contentHash = s.contentHash();
     return file;
@@ -74,6 +77,7 @@ TEST_F(SubspaceFiles, comeBack) {
     EXPECT_EQ(read.contentHash, written.contentHash);
     EXPECT_EQ(read.stamp, written.stamp);
     EXPECT_EQ(read.subspaces.q, written.subspaces.q);
+    EXPECT_EQ(read.subspaces.population, written.subspaces.population);
     EXPECT_EQ(read.subspaces.cells.count(), 3u);
     EXPECT_NE(example(5, 4).contentHash, written.contentHash);
 }
@@ -119,7 +123,8 @@ TEST_F(SubspaceFiles, wrongOnesAreRefused) {
     refused("a negative Gamma", [](Subspaces& s) { s.gamma[0] = -0.2f, s.gamma[1] = 0.6f; });
     refused("a Gamma of another size", [](Subspaces& s) { s.gamma.pop_back(); });
     refused("Q that is not a number", [](Subspaces& s) { s.q[1] = std::nan(""); });
-    refused("no Q", [](Subspaces& s) { s.q.clear(); });
+    refused("no Q", [](Subspaces& s) { s.q.clear(), s.population.clear(); });
+    refused("too few populations", [](Subspaces& s) { s.population.pop_back(); });
     refused("labels out of range", [](Subspaces& s) {
         s.eyeTree = DecisionTree({{0.0f, 9u << 4 | DecisionTree::kLeaf}}, 10);
     });
