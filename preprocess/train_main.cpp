@@ -63,10 +63,13 @@ void print(const std::string& path, const Trained& t, const Phases& phases, doub
     printTree("eye", t.eyeTree);
     std::printf("empty subspaces: light %.1f %% (no light subpath), eye %.1f %% (no path)\n",
                 100.0 * t.emptyLight, 100.0 * t.emptyEye);
+    std::printf("loss of full contributions: training %.6g, held out %.6g\n", t.gamma.fullTrainLoss,
+                t.gamma.fullHeldOutLoss);
     for (std::size_t n = 0; n < t.gamma.trainLoss.size(); ++n) {
-        std::printf("loss after epoch %zu: training %.6g, held out %.6g%s%s\n", n,
-                    t.gamma.trainLoss[n], t.gamma.heldOutLoss[n],
-                    n == 0 ? " (full contributions)" : "", n == t.gamma.kept ? " (kept)" : "");
+        std::printf("loss after epoch %zu: training %.6g, held out %.6g", n, t.gamma.trainLoss[n],
+                    t.gamma.heldOutLoss[n]);
+        if (n == 0) std::printf(" (%g virtual paths)", t.gamma.virtualPaths);
+        std::puts(n == t.gamma.kept ? " (kept)" : "");
     }
     for (const auto& [name, time] : phases.seconds()) {
         const auto peak = t.peakBytes.find(name);
@@ -123,9 +126,10 @@ int trainTool(int argc, const char* const* argv) {
                                  {"light_tree", treeJson(result.lightTree)},
                                  {"eye_tree", treeJson(result.eyeTree)},
                                  {"gamma",
-                                  {{"train_loss_full", g.trainLoss.front()},
+                                  {{"train_loss_full", g.fullTrainLoss},
                                    {"train_loss", g.trainLoss[g.kept]},
-                                   {"held_out_loss_full", g.heldOutLoss.front()},
+                                   {"held_out_loss_full", g.fullHeldOutLoss},
+                                   {"virtual_paths", g.virtualPaths},
                                    {"held_out_loss", g.heldOutLoss[g.kept]},
                                    {"kept_epoch", g.kept},
                                    {"train_loss_by_epoch", g.trainLoss},

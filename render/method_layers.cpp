@@ -84,11 +84,10 @@ std::uint32_t eyeSubspaceOf(const SurfacePoint& hit, const Camera& camera,
 
 Image subspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
                     const Subspaces& subspaces, const ThreadPool& pool) {
-    return numberLayer(
-        scene, camera, crop, pool,
-        [&](const SurfacePoint& hit, Vec3) -> std::optional<std::uint32_t> {
-            return eyeSubspaceOf(hit, camera, subspaces);
-        });
+    return numberLayer(scene, camera, crop, pool,
+                       [&](const SurfacePoint& hit, Vec3) -> std::optional<std::uint32_t> {
+                           return eyeSubspaceOf(hit, camera, subspaces);
+                       });
 }
 
 Image lightSubspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,

@@ -44,6 +44,24 @@ struct Options {
     std::uint64_t reuse;     ///< M_0, 0: none
 };
 
+/// Both subspaces of a vertex in one tag: that of its own walk's role, and that of the other role,
+/// for which the next vertex of its walk is the predecessor.
+class Labels {
+  public:
+    static constexpr std::uint32_t kUnknown = 0xffff;
+
+    Labels(std::uint32_t own, std::uint32_t other) : tag_(own | other << 16) {}
+    explicit Labels(std::uint32_t tag) : tag_(tag) {}
+
+    std::uint32_t tag() const { return tag_; }
+    std::uint32_t own() const { return tag_ & kUnknown; }
+    std::uint32_t other() const { return tag_ >> 16; }
+
+  private:
+    std::uint32_t tag_;
+};
+static_assert(kNone == (Labels::kUnknown | Labels::kUnknown << 16));
+
 /// Subspaces made ready to draw from.
 class Classes {
   public:
@@ -51,8 +69,8 @@ class Classes {
         : subspaces_(std::move(subspaces)), q_(subspaces_->q), windows_(lightCount(), 1) {
         for (std::size_t i = 0; options.reuse > 0 && i < subspaces_->population.size(); ++i) {
             const double each = subspaces_->population[i] * double(options.subpaths);
-            windows_[i] = std::uint32_t(std::clamp(std::ceil(double(options.reuse) / each), 1.0,
-                                                   double(kLongestWindow)));
+            windows_[i] = std::uint32_t(
+                std::clamp(std::ceil(double(options.reuse) / each), 1.0, double(kLongestWindow)));
         }
         std::vector<double> weights;
         for (std::uint32_t j = 0; j < subspaces_->eyeCount; ++j) {
@@ -70,12 +88,40 @@ class Classes {
     }
 
     std::uint32_t lightCount() const { return subspaces_->lightCount; }
-    std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor) const {
-        return subspaces_->lightSubspace(y, predecessor);
+    /// The subspace of the light vertex y; the edge to its predecessor was made by `maker`.
+    std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor,
+                          EdgeMaker maker) const {
+        const std::uint32_t known = maker == EdgeMaker::LightWalk ? Labels(y.tag).own()
+                                    : maker == EdgeMaker::EyeWalk ? Labels(y.tag).other()
+                                                                  : Labels::kUnknown;
+        return known != Labels::kUnknown ? known : subspaces_->lightSubspace(y, predecessor);
     }
-    /// Gamma's column of an eye vertex.
-    const DiscreteDistribution& columnOf(const PathVertex& z, const PathVertex& predecessor) const {
-        return columns_[subspaces_->eyeSubspace(z, predecessor)];
+    /// The subspace of the eye vertex z, likewise.
+    std::uint32_t eyeOf(const PathVertex& z, const PathVertex& predecessor, EdgeMaker maker) const {
+        const std::uint32_t known = maker == EdgeMaker::EyeWalk     ? Labels(z.tag).own()
+                                    : maker == EdgeMaker::LightWalk ? Labels(z.tag).other()
+                                                                    : Labels::kUnknown;
+        return known != Labels::kUnknown ? known : subspaces_->eyeSubspace(z, predecessor);
+    }
+    /// To draw light subspaces from.
+    const DiscreteDistribution& column(std::uint32_t eye) const { return columns_[eye]; }
+    double gamma(std::uint32_t light, std::uint32_t eye) const {
+        return double(subspaces_->column(eye)[light]);
+    }
+    void tagWalk(std::span<PathVertex> walk) const {
+        if (walk.empty()) return;
+        const bool eye = walk.front().kind == VertexKind::Lens;
+        const auto label = [&](bool ofEye, const PathVertex& v, const PathVertex& predecessor) {
+            return ofEye ? subspaces_->eyeSubspace(v, predecessor)
+                         : subspaces_->lightSubspace(v, &predecessor);
+        };
+        for (std::size_t i = 1; i < walk.size(); ++i) {
+            PathVertex& v = walk[i];
+            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
+            v.tag = Labels(label(eye, v, walk[i - 1]),
+                           i + 1 < walk.size() ? label(!eye, v, walk[i + 1]) : Labels::kUnknown)
+                        .tag();
+        }
     }
     /// 0 where no light subpath was seen.
     double q(std::uint32_t light) const { return q_.empty() ? 0.0 : q_[light]; }
@@ -96,11 +142,16 @@ class SubspaceDensity final : public ConnectionDensity {
     SubspaceDensity(const Options& options, const Classes& classes)
         : options_(options), classes_(classes) {}
 
+    bool tagsVertices() const override { return true; }
+    void tagWalk(std::span<PathVertex> walk) const override { classes_.tagWalk(walk); }
+
     double effectiveSamples(const Connection& c) const override {
         const auto beta = double(mean(c.beta));
         if (!(beta > 0.0)) return 0.0;  // never picked in stage 2
-        const std::uint32_t i = classes_.lightOf(*c.light.vertex, c.light.predecessor);
-        const double gamma = classes_.columnOf(*c.eye.vertex, *c.eye.predecessor).pmf(i);
+        const std::uint32_t i =
+            classes_.lightOf(*c.light.vertex, c.light.predecessor, c.light.maker);
+        const double gamma =
+            classes_.gamma(i, classes_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.maker));
         if (!(gamma > 0.0)) return 0.0;
         const double q = classes_.q(i), n = options_.picks;
         const double m = double(options_.subpaths) * classes_.window(i);
@@ -137,7 +188,8 @@ class SubspaceConnections final : public Method {
             for (std::size_t n = begin; n < std::min(entries.size(), begin + kEntriesPerTask);
                  ++n) {
                 const Subpath y = pool.prefix(entries[n]);
-                labels[n] = classes_.lightOf(y.back(), y.size() > 1 ? &y[y.size() - 2] : nullptr);
+                const PathVertex* predecessor = y.size() > 1 ? &y[y.size() - 2] : nullptr;
+                labels[n] = classes_.lightOf(y.back(), predecessor, EdgeMaker::LightWalk);
             }
         });
         const std::uint32_t count = classes_.lightCount();
@@ -165,8 +217,8 @@ class SubspaceConnections final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        const DiscreteDistribution& column =
-            classes_.columnOf(context.vertex, context.predecessor());
+        const DiscreteDistribution& column = classes_.column(
+            classes_.eyeOf(context.vertex, context.predecessor(), EdgeMaker::EyeWalk));
         const double nm = double(options_.picks) * double(options_.subpaths);
         for (int n = 0; n < options_.picks; ++n) {
             const auto subspace = column.sample(rng.uniformDouble());
@@ -229,7 +281,7 @@ class SubspaceConnections final : public Method {
     Options options_;
     Classes classes_;
     SubspaceDensity density_;
-    std::vector<Cell> cells_;             // by light subspace
+    std::vector<Cell> cells_;                                                // by light subspace
     std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
 };
 
@@ -257,16 +309,15 @@ MethodRow subspaceRow() {
         {"reuse", Kind::Integer, 0, 0, 1e6,
          "vertices kept per subspace across iterations, M_0; 0: none"},
         {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
-        {"train.subspaces", Kind::Integer, 1000, 1, 4000,
-         "subspaces of light and of eye subpaths"},
+        {"train.subspaces", Kind::Integer, 1000, 1, 4000, "subspaces of light and of eye subpaths"},
         {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
         {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},
         presetParameter()};
     row.paper = {{"weights", 1}, {"reuse", 200}};
     row.create = [](const Settings& s) {
-        return std::make_unique<SubspaceConnections>(Options{
-            s.integer("candidates"), int(s.integer("connections")), s.integer("weights") == 0,
-            s.integer("reuse")});
+        return std::make_unique<SubspaceConnections>(
+            Options{s.integer("candidates"), int(s.integer("connections")),
+                    s.integer("weights") == 0, s.integer("reuse")});
     };
     return row;
 }

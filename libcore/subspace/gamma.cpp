@@ -15,6 +15,8 @@ constexpr double kLeast = 1e-6;       // of an entry before the first step
 constexpr double kLargestStep = 1.0;  // exponent a that is tried first
 constexpr double kSafeStep = 0.5;     // the one that never raises the loss
 constexpr double kConverged = 1e-7;   // relative fall of the loss by an epoch
+constexpr int kPatience = 3;          // epochs after the kept one before giving up
+constexpr double kVirtualPaths[] = {1, 3, 10, 30, 100, 300, 1000};
 
 std::size_t place(const GammaData& data, const GammaData::Entry& e) {
     return std::size_t(e.eye) * data.lightCount + e.light;
@@ -32,17 +34,29 @@ void normaliseColumns(SubspaceMatrix& matrix, std::uint32_t lightCount) {
 
 }  // namespace
 
-SubspaceMatrix fullGamma(const GammaData& data) {
-    SubspaceMatrix q(std::size_t(data.lightCount) * data.eyeCount, 0.0);
+FullGamma fullGamma(const GammaData& data) {
+    FullGamma full;
+    full.q.assign(std::size_t(data.lightCount) * data.eyeCount, 0.0);
+    full.mean.assign(data.lightCount, 0.0);
+    std::vector<double> sum(data.eyeCount, 0.0), squares(data.eyeCount, 0.0);
     for (std::size_t p = 0; p < data.paths(); ++p) {
+        const auto c = double(data.contribution[p]);
         for (const GammaData::Entry& e : data.entriesOf(p)) {
-            q[place(data, e)] += double(data.contribution[p]);
+            full.q[place(data, e)] += c;
+            full.mean[e.light] += c;
+            sum[e.eye] += c;
+            squares[e.eye] += c * c;
         }
     }
-    normaliseColumns(q, data.lightCount);
-    for (double& v : q) v = std::max(v, kLeast);
-    normaliseColumns(q, data.lightCount);
-    return q;
+    for (std::size_t j = 0; j < sum.size(); ++j) {
+        full.paths.push_back(squares[j] > 0.0 ? sum[j] * sum[j] / squares[j] : 0.0);
+    }
+    for (SubspaceMatrix* q : {&full.q, &full.mean}) {
+        normaliseColumns(*q, data.lightCount);
+        for (double& v : *q) v = std::max(v, kLeast);
+        normaliseColumns(*q, data.lightCount);
+    }
+    return full;
 }
 
 SubspaceMatrix mixedGamma(const SubspaceMatrix& q, std::uint32_t lightCount) {
@@ -87,19 +101,81 @@ double gammaLoss(const GammaData& data, const SubspaceMatrix& e, const ThreadPoo
     return loss;
 }
 
-GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, SubspaceMatrix start,
+namespace {
+
+/// Gamma^full with `virtualPaths` of m in every column.
+SubspaceMatrix drawnToMean(const FullGamma& full, double virtualPaths) {
+    SubspaceMatrix q = full.q;
+    const std::size_t rows = full.mean.size();
+    for (std::size_t n = 0; n < q.size(); ++n) {
+        const double own = full.paths[n / rows];
+        if (own + virtualPaths > 0.0) {
+            q[n] = (own * q[n] + virtualPaths * full.mean[n % rows]) / (own + virtualPaths);
+        }
+    }
+    return q;
+}
+
+/// sum_j lambda_j sum_i m_i^2 / E_ij.
+class Penalty {
+  public:
+    Penalty(const FullGamma& full, double virtualPaths, const SubspaceMatrix& e,
+            const SubspaceMatrix& derivative)
+        : mean_(full.mean), lambda_(full.paths.size(), 0.0) {
+        for (std::size_t n = 0; n < e.size(); ++n) {
+            const std::size_t j = n / mean_.size();
+            if (full.paths[j] > 0.0) {
+                lambda_[j] -= virtualPaths / full.paths[j] * e[n] * derivative[n];
+            }
+        }
+    }
+
+    /// Its value; adds its derivative.
+    double addTo(SubspaceMatrix& derivative, const SubspaceMatrix& e) const {
+        double value = 0.0;
+        for (std::size_t n = 0; n < e.size(); ++n) {
+            const std::size_t i = n % mean_.size();
+            const double v = lambda_[n / mean_.size()] * mean_[i] * mean_[i] / e[n];
+            value += v;
+            derivative[n] -= v / e[n];
+        }
+        return value;
+    }
+
+  private:
+    std::vector<double> mean_, lambda_;
+};
+
+}  // namespace
+
+GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, const FullGamma& full,
                           int epochs, const ThreadPool& pool, const std::atomic<bool>& cancel) {
     const std::uint32_t rows = train.lightCount;
     GammaResult result;
-    SubspaceMatrix q = std::move(start), derivative, next, nextDerivative;
-    double loss = gammaLoss(train, mixedGamma(q, rows), pool, &derivative);
+    SubspaceMatrix q = full.q, derivative, next, nextDerivative;
     result.gamma = mixedGamma(q, rows);
-    result.trainLoss = {loss};
-    result.heldOutLoss = {gammaLoss(heldOut, result.gamma, pool)};
+    result.fullTrainLoss = gammaLoss(train, result.gamma, pool);
+    result.fullHeldOutLoss = gammaLoss(heldOut, result.gamma, pool);
+    double least = result.fullHeldOutLoss;
+    for (const double virtualPaths : kVirtualPaths) {
+        if (heldOut.paths() == 0) break;
+        SubspaceMatrix drawn = drawnToMean(full, virtualPaths);
+        SubspaceMatrix e = mixedGamma(drawn, rows);
+        const double loss = gammaLoss(heldOut, e, pool);
+        if (!(loss < least)) continue;
+        least = loss;
+        result.virtualPaths = virtualPaths;
+        q = std::move(drawn);
+        result.gamma = std::move(e);
+    }
+    result.trainLoss = {gammaLoss(train, result.gamma, pool, &derivative)};
+    result.heldOutLoss = {least};
+    const Penalty penalty(full, result.virtualPaths, result.gamma, derivative);
+    double loss = result.trainLoss[0] + penalty.addTo(derivative, result.gamma);
 
     double exponent = kLargestStep;
     for (int epoch = 1; epoch <= epochs; ++epoch) {
-        double nextLoss = 0.0;
+        double trainLoss = 0.0, nextLoss = 0.0;
         for (;;) {
             if (cancel) throw Error(130, "interrupted: nothing was written");
             next.resize(q.size());
@@ -115,7 +191,9 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, Subs
                 }
             }
             normaliseColumns(next, rows);
-            nextLoss = gammaLoss(train, mixedGamma(next, rows), pool, &nextDerivative);
+            const SubspaceMatrix e = mixedGamma(next, rows);
+            trainLoss = gammaLoss(train, e, pool, &nextDerivative);
+            nextLoss = trainLoss + penalty.addTo(nextDerivative, e);
             if (nextLoss <= loss || exponent <= kSafeStep) break;
             exponent = std::max(kSafeStep, 0.5 * (exponent + kSafeStep) - 0.05);
         }
@@ -124,7 +202,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, Subs
         std::swap(derivative, nextDerivative);
         loss = nextLoss;
         const SubspaceMatrix e = mixedGamma(q, rows);
-        result.trainLoss.push_back(loss);
+        result.trainLoss.push_back(trainLoss);
         result.heldOutLoss.push_back(gammaLoss(heldOut, e, pool));
         const std::vector<double>& judge =
             heldOut.paths() > 0 ? result.heldOutLoss : result.trainLoss;
@@ -132,7 +210,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, Subs
             result.kept = result.trainLoss.size() - 1;
             result.gamma = e;
         }
-        if (!(fall > kConverged * loss)) break;
+        if (!(fall > kConverged * loss) || epoch >= int(result.kept) + kPatience) break;
     }
     return result;
 }

@@ -15,6 +15,15 @@
 // so a step never raises the loss on the paths that it is made from, keeps columns on the simplex
 // and needs no rate: where the paper descends along logits with Adam. A larger a goes farther; it
 // is tried first and given up when the loss rises.
+//
+// A million entries follow a million heavy-tailed paths too closely: Gamma^full is twice as bad on
+// paths that it was not made from. So columns are drawn towards m, that of all eye subspaces
+// together, by kappa virtual paths each, worth as much as the column's own on average:
+//     + sum_j lambda_j sum_i m_i^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
+//     start,
+// n_j the effective number of the column's paths. This is least at E_j = m, convex, and one more
+// -d_ij in the step above. kappa is the one of a few under which the start,
+// (n_j Gamma^full + kappa m) / (n_j + kappa), has the lowest held-out loss.
 #pragma once
 
 #include <atomic>
@@ -57,10 +66,17 @@ struct GammaData {
 /// A matrix over (eye, light) subspaces, column by column.
 using SubspaceMatrix = std::vector<double>;
 
+/// Gamma^full, its columns' effective numbers of paths n_j, and m.
+struct FullGamma {
+    SubspaceMatrix q;
+    std::vector<double> paths;  ///< by eye subspace: (sum c)^2 / sum c^2 of its contributions
+    std::vector<double> mean;   ///< by light subspace; sums to one
+};
+
 /// Where every column stands before there is anything to learn from: contributions by the subspaces
 /// that connections of D have [Su22 eq 13], columns without any uniform. Sums to one; no entry is
 /// 0, where a step could not take it up again.
-SubspaceMatrix fullGamma(const GammaData& data);
+FullGamma fullGamma(const GammaData& data);
 
 /// (1 - c) q + c / N_S.
 SubspaceMatrix mixedGamma(const SubspaceMatrix& q, std::uint32_t lightCount);
@@ -70,15 +86,18 @@ double gammaLoss(const GammaData& data, const SubspaceMatrix& e, const ThreadPoo
                  SubspaceMatrix* derivative = nullptr);
 
 struct GammaResult {
-    SubspaceMatrix gamma;  ///< E
-    /// Loss on the training and the held-out paths: first that of Gamma^full, then by epoch.
+    SubspaceMatrix gamma;                               ///< E
+    double fullTrainLoss = 0.0, fullHeldOutLoss = 0.0;  ///< of Gamma^full
+    double virtualPaths = 0.0;                          ///< kappa
+    /// Loss on the training and the held-out paths by epoch; first that of the start.
     std::vector<double> trainLoss, heldOutLoss;
     std::size_t kept = 0;  ///< the epoch that `gamma` is of: that of the lowest held-out loss
 };
 
-/// Up to `epochs` passes over all of `train`. Held-out losses choose among the iterates; where
-/// there are no held-out paths, training losses do. Throws Error 130 once `cancel` is set.
-GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, SubspaceMatrix start,
+/// Up to `epochs` passes over all of `train`, fewer once three of them bettered nothing. Held-out
+/// losses choose kappa and among the iterates; where there are no held-out paths, kappa is 0 and
+/// training losses choose. Throws Error 130 once `cancel` is set.
+GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, const FullGamma& full,
                           int epochs, const ThreadPool& pool, const std::atomic<bool>& cancel);
 
 }  // namespace lacuna

@@ -31,7 +31,8 @@ std::uint32_t largestLabel(const DecisionTree& tree) {
 }  // namespace
 
 void Subspaces::check() const {
-    require(lightCount > 0 && eyeCount > 0, "number of subspaces");
+    require(lightCount > 0 && eyeCount > 0 && lightCount <= kMost && eyeCount <= kMost,
+            "number of subspaces");
     require(cells.count() <= lightCount, "cells of the lights");
     require(largestLabel(lightTree) < lightCount, "labels of the light tree");
     require(largestLabel(eyeTree) < eyeCount, "labels of the eye tree");

@@ -16,6 +16,8 @@ namespace lacuna {
 /// whose labels count from there. Positions are the recentred scene's. By default one subspace on
 /// either side and Q unknown.
 struct Subspaces {
+    static constexpr std::uint32_t kMost = 0xfffe;  ///< subspaces of a side: vertices keep 16 bits
+
     LightCells cells;
     DecisionTree lightTree, eyeTree;
     std::uint32_t lightCount = 1, eyeCount = 1;

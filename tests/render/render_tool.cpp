@@ -82,8 +82,8 @@ Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
 }
 
-void RenderTool::expectFailure(const std::string& arguments, int exitCode,
-                               const std::string& part, const char* tool) const {
+void RenderTool::expectFailure(const std::string& arguments, int exitCode, const std::string& part,
+                               const char* tool) const {
     const Outcome o = run(arguments, tool);
     EXPECT_EQ(o.exitCode, exitCode) << arguments << "\n" << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;

@@ -34,8 +34,7 @@ class RenderTool : public ::testing::Test {
     Outcome run(const std::string& arguments, const char* tool = LACUNA_RENDER) const;
     /// Starts it, sends `signals` one after the other, `delay` before each; waits for the end.
     Outcome runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                         std::chrono::milliseconds delay,
-                         const char* tool = LACUNA_RENDER) const;
+                         std::chrono::milliseconds delay, const char* tool = LACUNA_RENDER) const;
     /// Must fail with this code, `part` in one line on stderr, nothing on stdout.
     void expectFailure(const std::string& arguments, int exitCode, const std::string& part,
                        const char* tool = LACUNA_RENDER) const;

@@ -19,17 +19,17 @@ class TrainTool : public RenderTool {
     /// Of what training just wrote to --json @t.json.
     std::string trainedFile() const { return json("t.json").at("file"); }
     std::string render() const {
-        return std::string("@room.gltf -o @out.exr --method spcbpt --width 24 --height 16 "
-                           "--iterations 2 --cache @cache --set candidates=100 ") +
+        return std::string(
+                   "@room.gltf -o @out.exr --method spcbpt --width 24 --height 16 "
+                   "--iterations 2 --cache @cache --set candidates=100 ") +
                kSameSmall;
     }
 };
 
 TEST_F(TrainTool, CommandLinesThatAreWrongExitWith2) {
     EXPECT_EQ(train("--help").exitCode, 0);
-    for (const char* wrong :
-         {"--paths 0", "--paths 1e9", "--subspaces 0", "--subspaces 4001", "--light-paths 0",
-          "--epochs -1", "--nonsense", "--json @none.glb"}) {
+    for (const char* wrong : {"--paths 0", "--paths 1e9", "--subspaces 0", "--subspaces 4001",
+                              "--light-paths 0", "--epochs -1", "--nonsense", "--json @none.glb"}) {
         expectFailure(std::string("@none.glb ") + wrong, 2, std::string(wrong).substr(0, 6),
                       LACUNA_TRAIN);
     }
@@ -125,10 +125,10 @@ TEST_F(TrainTool, CachesThatAreNotThisScenesExitWith3) {
 }
 
 TEST_F(TrainTool, InterruptWritesNothing) {
-    const Outcome o =
-        runAndSignal("@room.gltf --cache @cache --light-paths 1000000000 --paths 1000 "
-                     "--subspaces 10",
-                     {SIGINT}, std::chrono::milliseconds(700), LACUNA_TRAIN);
+    const Outcome o = runAndSignal(
+        "@room.gltf --cache @cache --light-paths 1000000000 --paths 1000 "
+        "--subspaces 10",
+        {SIGINT}, std::chrono::milliseconds(700), LACUNA_TRAIN);
     EXPECT_EQ(o.exitCode, 130) << o.err;
     EXPECT_NE(o.err.find("nothing was written"), std::string::npos) << o.err;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
@@ -142,8 +142,7 @@ TEST_F(TrainTool, DegenerateScenesAndSettings) {
     TinyScene dark;
     dark.lamp = false;
     write("dark.gltf", dark.text());
-    const Outcome nothing =
-        train(std::string("@dark.gltf --cache @cache --json @t.json") + kSmall);
+    const Outcome nothing = train(std::string("@dark.gltf --cache @cache --json @t.json") + kSmall);
     EXPECT_EQ(nothing.exitCode, 0) << nothing.err;
     EXPECT_NE(nothing.err.find("nothing was learned"), std::string::npos) << nothing.err;
     EXPECT_EQ(json("t.json").at("paths"), 0);
@@ -158,13 +157,13 @@ TEST_F(TrainTool, DegenerateScenesAndSettings) {
     for (const std::string setting : degenerate) {
         const std::string key = setting.substr(0, setting.find('='));
         std::string settings = " --set " + setting;
-        for (const char* rest :
-             {"train.paths=500", "train.subspaces=9", "train.light_paths=500"}) {
+        for (const char* rest : {"train.paths=500", "train.subspaces=9", "train.light_paths=500"}) {
             if (std::string(rest).rfind(key, 0) != 0) settings += std::string(" --set ") + rest;
         }
-        const Outcome o = run("@room.gltf -o @out.exr --method spcbpt --prepare --cache @cache "
-                              "--iterations 1000 --set candidates=50" +
-                              settings + size);
+        const Outcome o =
+            run("@room.gltf -o @out.exr --method spcbpt --prepare --cache @cache "
+                "--iterations 1000 --set candidates=50" +
+                settings + size);
         ASSERT_EQ(o.exitCode, 0) << setting << o.err;
         const nlohmann::json j = json("out.json");
         // 5 standard errors: 6e-7 false alarms.

@@ -179,7 +179,9 @@ TEST(LightCells, areSharedOutByPower) {
             const LightCells::Block& block = cells.blocks()[i];
             const std::uint32_t n = std::uint32_t(block.rows) * block.columns;
             // Lights without extent are not divided.
-            if (!isHittable(scene->lights().kind(i))) EXPECT_EQ(n, 1u);
+            if (!isHittable(scene->lights().kind(i))) {
+                EXPECT_EQ(n, 1u);
+            }
             for (std::uint32_t c = 0; c < n; ++c) {
                 worth.at(block.first + c) += scene->lights().pmf(i) / n;
             }

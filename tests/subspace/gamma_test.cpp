@@ -37,7 +37,7 @@ GammaData randomData(std::size_t paths, std::uint32_t n, std::uint64_t seed) {
 
 TEST(Gamma, derivativeMeetsFiniteDifferences) {
     const GammaData data = randomData(400, 5, 1);
-    SubspaceMatrix e = mixedGamma(fullGamma(data), data.lightCount), derivative;
+    SubspaceMatrix e = mixedGamma(fullGamma(data).q, data.lightCount), derivative;
     gammaLoss(data, e, threads(), &derivative);
     double largest = 0.0;
     for (const double d : derivative) largest = std::max(largest, std::fabs(d));
@@ -66,11 +66,13 @@ void expectColumns(const SubspaceMatrix& m, std::uint32_t rows, double least) {
 TEST(Gamma, columnsSumToOneAndHoldTheUniformShare) {
     const GammaData train = randomData(2000, 6, 2), heldOut = randomData(500, 6, 3);
     const GammaResult r = optimiseGamma(train, heldOut, fullGamma(train), 10, threads(), kNever);
-    expectColumns(fullGamma(train), train.lightCount, 1e-7);
+    expectColumns(fullGamma(train).q, train.lightCount, 1e-7);
     expectColumns(r.gamma, train.lightCount, 0.999 * kUniformShare / train.lightCount);
     // A column of which nothing is known is uniform.
+    const GammaResult alone = optimiseGamma(train, {}, fullGamma(train), 10, threads(), kNever);
+    EXPECT_EQ(alone.virtualPaths, 0.0);
     for (std::size_t i = r.gamma.size() - train.lightCount; i < r.gamma.size(); ++i) {
-        EXPECT_NEAR(r.gamma[i], 1.0 / train.lightCount, 1e-12);
+        EXPECT_NEAR(alone.gamma[i], 1.0 / train.lightCount, 1e-12);
     }
 }
 
@@ -79,12 +81,14 @@ TEST(Gamma, stepsNeverRaiseTheLossAndTheKeptOneIsNoWorseThanTheStart) {
         // Few paths: optimised long enough, they are fitted too closely.
         const GammaData train = randomData(60, 6, 10 + seed),
                         heldOut = randomData(60, 6, 50 + seed);
-        const GammaResult r =
-            optimiseGamma(train, heldOut, fullGamma(train), 30, threads(), kNever);
-        for (std::size_t n = 1; n < r.trainLoss.size(); ++n) {
-            EXPECT_LE(r.trainLoss[n], r.trainLoss[n - 1] * (1 + 1e-12)) << seed;
+        const FullGamma full = fullGamma(train);
+        const GammaResult alone = optimiseGamma(train, {}, full, 30, threads(), kNever);
+        for (std::size_t n = 1; n < alone.trainLoss.size(); ++n) {
+            EXPECT_LE(alone.trainLoss[n], alone.trainLoss[n - 1] * (1 + 1e-12)) << seed;
         }
-        EXPECT_LE(r.heldOutLoss[r.kept], r.heldOutLoss[0]) << seed;
+        EXPECT_EQ(alone.trainLoss[0], alone.fullTrainLoss) << seed;
+        const GammaResult r = optimiseGamma(train, heldOut, full, 30, threads(), kNever);
+        EXPECT_LE(r.heldOutLoss[r.kept], r.fullHeldOutLoss) << seed;
         EXPECT_NEAR(gammaLoss(heldOut, r.gamma, threads()), r.heldOutLoss[r.kept], 1e-12) << seed;
     }
 }
@@ -93,7 +97,8 @@ TEST(Gamma, stepsNeverRaiseTheLossAndTheKeptOneIsNoWorseThanTheStart) {
 TEST(Gamma, twoStartsReachOneLoss) {
     const GammaData data = randomData(1000, 6, 4);
     const std::size_t size = std::size_t(data.lightCount) * data.eyeCount;
-    SubspaceMatrix odd(size);
+    FullGamma other = fullGamma(data);
+    SubspaceMatrix& odd = other.q;
     Rng rng(5, 0, StreamKind::User, 0);
     for (std::size_t begin = 0; begin < size; begin += data.lightCount) {
         double sum = 0.0;
@@ -103,7 +108,7 @@ TEST(Gamma, twoStartsReachOneLoss) {
         for (std::size_t i = begin; i < begin + data.lightCount; ++i) odd[i] /= sum;
     }
     const GammaResult a = optimiseGamma(data, {}, fullGamma(data), 3000, threads(), kNever);
-    const GammaResult b = optimiseGamma(data, {}, odd, 3000, threads(), kNever);
+    const GammaResult b = optimiseGamma(data, {}, other, 3000, threads(), kNever);
     EXPECT_LT(a.trainLoss.back(), 0.99 * a.trainLoss.front());
     EXPECT_NEAR(a.trainLoss.back() / b.trainLoss.back(), 1.0, 1e-3);
     EXPECT_EQ(a.kept, a.trainLoss.size() - 1);
