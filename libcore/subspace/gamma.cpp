@@ -11,11 +11,9 @@ namespace lacuna {
 namespace {
 
 constexpr std::size_t kPathsPerTask = 16384;
-constexpr double kLeast = 1e-6;       // of an entry before the first step
-constexpr double kLargestStep = 1.0;  // exponent a that is tried first
-constexpr double kSafeStep = 0.5;     // the one that never raises the loss
-constexpr double kConverged = 1e-7;   // relative fall of the loss by an epoch
-constexpr int kPatience = 3;          // epochs after the kept one before giving up
+constexpr double kLeast = 1e-6;      // of an entry before the first step
+constexpr double kConverged = 1e-7;  // relative fall of the loss by an epoch
+constexpr int kPatience = 3;         // epochs after the kept one before giving up
 constexpr double kVirtualPaths[] = {1, 3, 10, 30, 100, 300, 1000};
 
 std::size_t place(const GammaData& data, const GammaData::Entry& e) {
@@ -173,35 +171,28 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
     const Penalty penalty(full, result.virtualPaths, result.gamma, derivative);
     double loss = result.trainLoss[0] + penalty.addTo(derivative, result.gamma);
 
-    double exponent = kLargestStep;
     for (int epoch = 1; epoch <= epochs; ++epoch) {
-        double trainLoss = 0.0, nextLoss = 0.0;
-        for (;;) {
-            if (cancel) throw Error(130, "interrupted: nothing was written");
-            next.resize(q.size());
-            for (std::size_t n = 0; n < q.size(); ++n) {
-                next[n] = q[n] * std::pow(std::max(-derivative[n], 0.0), exponent);
-            }
-            // A column that nothing depends on stays as it is.
-            for (std::size_t begin = 0; begin < q.size(); begin += rows) {
-                const auto column = derivative.begin() + std::ptrdiff_t(begin);
-                if (std::all_of(column, column + rows, [](double d) { return d == 0.0; })) {
-                    std::copy_n(q.begin() + std::ptrdiff_t(begin), rows,
-                                next.begin() + std::ptrdiff_t(begin));
-                }
-            }
-            normaliseColumns(next, rows);
-            const SubspaceMatrix e = mixedGamma(next, rows);
-            trainLoss = gammaLoss(train, e, pool, &nextDerivative);
-            nextLoss = trainLoss + penalty.addTo(nextDerivative, e);
-            if (nextLoss <= loss || exponent <= kSafeStep) break;
-            exponent = std::max(kSafeStep, 0.5 * (exponent + kSafeStep) - 0.05);
+        if (cancel) throw Error(130, "interrupted: nothing was written");
+        next.resize(q.size());
+        for (std::size_t n = 0; n < q.size(); ++n) {
+            next[n] = q[n] * std::sqrt(std::max(-derivative[n], 0.0));
         }
+        // A column that nothing depends on stays as it is.
+        for (std::size_t begin = 0; begin < q.size(); begin += rows) {
+            const auto column = derivative.begin() + std::ptrdiff_t(begin);
+            if (std::all_of(column, column + rows, [](double d) { return d == 0.0; })) {
+                std::copy_n(q.begin() + std::ptrdiff_t(begin), rows,
+                            next.begin() + std::ptrdiff_t(begin));
+            }
+        }
+        normaliseColumns(next, rows);
+        const SubspaceMatrix e = mixedGamma(next, rows);
+        const double trainLoss = gammaLoss(train, e, pool, &nextDerivative);
+        const double nextLoss = trainLoss + penalty.addTo(nextDerivative, e);
         const double fall = loss - nextLoss;
         std::swap(q, next);
         std::swap(derivative, nextDerivative);
         loss = nextLoss;
-        const SubspaceMatrix e = mixedGamma(q, rows);
         result.trainLoss.push_back(trainLoss);
         result.heldOutLoss.push_back(gammaLoss(heldOut, e, pool));
         const std::vector<double>& judge =

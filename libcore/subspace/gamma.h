@@ -11,10 +11,9 @@
 // Convex in q. With d_ij = dLoss/dE_ij = -(1/|D|) sum f^2 g_ij / (p_D F^2), Jensen's inequality for
 // 1/F bounds the loss by sum_ij q_ij^2 (-d_ij) / q'_ij, column by column, with equality at q' = q.
 // The bound is least for
-//     q'_ij  proportional to  q_ij (-d_ij)^a,   a = 1/2,
+//     q'_ij  proportional to  q_ij sqrt(-d_ij),
 // so a step never raises the loss on the paths that it is made from, keeps columns on the simplex
-// and needs no rate: where the paper descends along logits with Adam. A larger a goes farther; it
-// is tried first and given up when the loss rises.
+// and needs no rate: where the paper descends along logits with Adam.
 //
 // A million entries follow a million heavy-tailed paths too closely: Gamma^full is twice as bad on
 // paths that it was not made from. So columns are drawn towards m, that of all eye subspaces

@@ -31,8 +31,8 @@ class RenderThreads : public RenderTool, public ::testing::WithParamInterface<st
 std::string preparing(const std::string& method) {
     const MethodRow& row = findMethod(method);
     if (row.needsSubspaces) {
-        return " --prepare --cache @cache --set train.paths=20000 --set train.subspaces=100 --set "
-               "train.light_paths=20000";
+        return " --prepare --cache @cache --set train.paths=5000 --set train.subspaces=50 --set "
+               "train.light_paths=5000 --set candidates=5000";
     }
     return row.needsSkeleton ? " --prepare --cache @cache" : "";
 }

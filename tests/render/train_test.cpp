@@ -62,7 +62,8 @@ TEST_F(TrainTool, ReportHasItsKeysAndTheRendererReadsTheFile) {
     EXPECT_EQ(gamma.at("train_loss_by_epoch").size(), gamma.at("held_out_loss_by_epoch").size());
     EXPECT_EQ(j.at("subspaces"), 50);
     EXPECT_LE(j.at("light_subspaces"), 50);
-    EXPECT_NEAR(j.at("paths").get<double>(), 5000, 50);
+    // About: iterations are as many as the first one's number of paths says.
+    EXPECT_NEAR(j.at("paths").get<double>(), 5000, 500);
     EXPECT_GT(j.at("held_out_paths"), 0);
     EXPECT_GE(j.at("empty_light_subspaces"), 0.0);
     for (const char* phase : {"paths", "centroids", "trees", "light paths", "gamma"}) {
@@ -177,7 +178,7 @@ class TrainToolSlow : public TrainTool {};
 
 TEST_F(TrainToolSlow, TreesOfTheDoorAreAccurate) {
     const Outcome o = train(std::string(LACUNA_SCENES "/door.glb --quiet --cache @cache --json ") +
-                            "@t.json --paths 200000 --light-paths 200000");
+                            "@t.json --paths 200000 --light-paths 20000");
     ASSERT_EQ(o.exitCode, 0) << o.err;
     const nlohmann::json j = json("t.json");
     EXPECT_GE(j.at("light_tree").at("held_out_accuracy"), 0.8);
