@@ -70,5 +70,31 @@ TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
     }
 }
 
+/// Reuse across iterations. One that counts vertices instead of iterations is off by percents here:
+/// subpaths have several vertices in one subspace. Iterations share light subpaths, so that only
+/// the last one of each of many renders counts.
+TEST(SubspaceReuse, leavesTheMeanAsItIs) {
+    const auto scene = diffuseBox().builder.build();
+    Shot shot;
+    shot.width = shot.height = 8;
+    shot.maxDepth = 4;
+    shot.iterations = 3000;
+    const Picture reference = render(*scene, pathTracer(), shot);
+    const MethodRow row = rowNamed("spcbpt");
+    const auto subspaces = randomSubspaces(1);
+    Picture picture({0, shot.width, 0, shot.height});
+    for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+        const std::vector<std::string> settings = {"candidates=8", "reuse=16"};
+        const auto method = row.create(resolve(row, settings));
+        EXPECT_TRUE(method->learns());
+        method->useSubspaces(subspaces);
+        shot.seed = 100 + seed;
+        Render last(*scene, row, shot, *method);
+        for (std::uint32_t i = 0; i < 4; ++i) last.iterate(i);
+        picture.pixels.add(last.pixels(), pool());
+    }
+    expectSame(picture, reference, "reuse", Judge::MeanOnly);
+}
+
 }  // namespace
 }  // namespace lacuna::test
