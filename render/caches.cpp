@@ -5,6 +5,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "preprocess/skeletonize.h"
+#include "preprocess/train.h"
 
 namespace lacuna {
 namespace {
@@ -22,13 +23,99 @@ std::optional<File> readOrNothing(const Read& read, const ThreadPool& pool, bool
     }
 }
 
+/// What loading has to do with, and what it reports.
+struct Loading {
+    const RenderOptions& options;
+    const Settings& settings;
+    const Scene& scene;
+    const ThreadPool& pool;
+    const std::atomic<bool>& cancel;
+    Progress& progress;
+    Phases& phases;
+
+    const std::string& hash() const { return scene.description().contentHash; }
+    std::string directory() const {
+        return cacheDirectory(options.scene, options.common.cacheDirectory);
+    }
+    void sayBuilt(const std::string& path) const {
+        if (options.common.verbose) progress.remark("built " + path);
+    }
+};
+
+void loadSkeleton(const Loading& l, Caches& caches) {
+    const VoxelizeSettings voxelSettings{int(l.settings.integer("voxels.resolution")), {}};
+    const std::string& hash = l.hash();
+    const CacheStamp stamp = voxelStamp(hash, voxelSettings.resolution, {});
+    const std::string path = cacheFile(l.directory(), stamp, "skeleton.vdb");
+    const std::string resolution = " --resolution " + std::to_string(voxelSettings.resolution);
+    const std::string remedy = "add --prepare, or run lacuna-voxelize" + resolution + " " +
+                               l.options.scene + " and then lacuna-skeletonize" + resolution + " " +
+                               l.options.scene;
+    std::optional<SkeletonFile> file;
+    l.phases.run("read skeleton", [&] {
+        file = readOrNothing<SkeletonFile>(
+            [&] { return readSkeletonFile(path, hash, l.scene.centre(), remedy); }, l.pool,
+            l.options.prepare);
+    });
+    if (!file) {
+        const std::string voxelPath = cacheFile(l.directory(), stamp, "voxels.vdb");
+        makeCacheDirectory(path);
+        std::optional<VoxelFile> voxels;
+        l.phases.run("read voxels", [&] {
+            voxels = readOrNothing<VoxelFile>(
+                [&] { return readVoxelFile(voxelPath, hash, l.scene.centre(), remedy); }, l.pool,
+                true);
+        });
+        if (!voxels) {
+            voxels = voxelizeScene(l.scene, voxelSettings, l.pool, l.cancel, l.phases).file;
+            l.pool.run([&] { writeVoxelFile(voxelPath, *voxels, l.scene.centre()); });
+        }
+        file = skeletonize(l.scene, *voxels, l.pool, l.cancel, l.phases).file;
+        l.pool.run([&] { writeSkeletonFile(path, *file, l.scene.centre()); });
+        l.sayBuilt(path);
+    }
+    caches.hashes["skeleton"] = file->contentHash;
+    caches.skeleton = std::make_shared<const Skeleton>(std::move(file->skeleton));
+}
+
+void loadSubspaces(const Loading& l, Caches& caches) {
+    TrainSettings t;  // with the default seed, whatever the picture's: the result is one
+    t.paths = l.settings.integer("train.paths");
+    t.subspaces = std::uint32_t(l.settings.integer("train.subspaces"));
+    t.lightPaths = l.settings.integer("train.light_paths");
+    t.epochs = int(l.settings.integer("train.epochs"));
+    const std::string path = cacheFile(l.directory(), t.stamp(l.hash()), "subspaces");
+    const std::string remedy =
+        "add --prepare, or run lacuna-train --paths " + std::to_string(t.paths) + " --subspaces " +
+        std::to_string(t.subspaces) + " --light-paths " + std::to_string(t.lightPaths) +
+        " --epochs " + std::to_string(t.epochs) + " " + l.options.scene;
+    std::optional<SubspaceFile> file;
+    l.phases.run("read subspaces", [&] {
+        file = readOrNothing<SubspaceFile>([&] { return readSubspaceFile(path, l.hash(), remedy); },
+                                           l.pool, l.options.prepare);
+    });
+    if (!file) {
+        makeCacheDirectory(path);
+        file = train(l.scene, t, l.pool, l.cancel, l.phases).file;
+        writeSubspaceFile(path, *file);
+        l.sayBuilt(path);
+    }
+    caches.hashes["subspaces"] = file->contentHash;
+    caches.subspaces = std::make_shared<const Subspaces>(std::move(file->subspaces));
+}
+
 }  // namespace
+
+void Caches::giveTo(Method& method) const {
+    if (skeleton) method.useSkeleton(skeleton);
+    if (subspaces) method.useSubspaces(subspaces);
+}
 
 Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                   const Scene& scene, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress) {
     Caches caches;
-    if (!row.needsSkeleton) {
+    if (!row.needsSkeleton && !row.needsSubspaces) {
         if (options.prepare) {
             progress.remark("--prepare: " + row.name + " needs no caches: nothing to build");
         }
@@ -36,41 +123,10 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
     }
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
+    const Loading loading{options, settings, scene, pool, cancel, progress, phases};
     total.run("all", [&] {
-        const VoxelizeSettings voxelSettings{int(settings.integer("voxels.resolution")), {}};
-        const std::string& hash = scene.description().contentHash;
-        const CacheStamp stamp = voxelStamp(hash, voxelSettings.resolution, {});
-        const std::string directory = cacheDirectory(options.scene, options.common.cacheDirectory);
-        const std::string path = cacheFile(directory, stamp, "skeleton.vdb");
-        const std::string resolution = " --resolution " + std::to_string(voxelSettings.resolution);
-        const std::string remedy = "add --prepare, or run lacuna-voxelize" + resolution + " " +
-                                   options.scene + " and then lacuna-skeletonize" + resolution +
-                                   " " + options.scene;
-        std::optional<SkeletonFile> file;
-        phases.run("read skeleton", [&] {
-            file = readOrNothing<SkeletonFile>(
-                [&] { return readSkeletonFile(path, hash, scene.centre(), remedy); }, pool,
-                options.prepare);
-        });
-        if (!file) {
-            const std::string voxelPath = cacheFile(directory, stamp, "voxels.vdb");
-            makeCacheDirectory(path);
-            std::optional<VoxelFile> voxels;
-            phases.run("read voxels", [&] {
-                voxels = readOrNothing<VoxelFile>(
-                    [&] { return readVoxelFile(voxelPath, hash, scene.centre(), remedy); }, pool,
-                    true);
-            });
-            if (!voxels) {
-                voxels = voxelizeScene(scene, voxelSettings, pool, cancel, phases).file;
-                pool.run([&] { writeVoxelFile(voxelPath, *voxels, scene.centre()); });
-            }
-            file = skeletonize(scene, *voxels, pool, cancel, phases).file;
-            pool.run([&] { writeSkeletonFile(path, *file, scene.centre()); });
-            if (options.common.verbose) progress.remark("built " + path);
-        }
-        caches.hashes["skeleton"] = file->contentHash;
-        caches.skeleton = std::make_shared<const Skeleton>(std::move(file->skeleton));
+        if (row.needsSkeleton) loadSkeleton(loading, caches);
+        if (row.needsSubspaces) loadSubspaces(loading, caches);
     });
     caches.phaseSeconds = phases.seconds();
     caches.seconds = total.seconds().at("all");

@@ -9,16 +9,20 @@
 #include "libcore/methods/registry.h"
 #include "libcore/scene/scene.h"
 #include "libcore/skeleton/node_map.h"
+#include "libcore/subspace/subspaces.h"
 #include "render/options.h"
 #include "render/progress.h"
 
 namespace lacuna {
 
 struct Caches {
-    std::shared_ptr<const Skeleton> skeleton;   ///< null where the method needs none
-    std::map<std::string, std::string> hashes;  ///< of their content, by kind
+    std::shared_ptr<const Skeleton> skeleton;    ///< null where the method needs none
+    std::shared_ptr<const Subspaces> subspaces;  ///< likewise
+    std::map<std::string, std::string> hashes;   ///< of their content, by kind
     std::map<std::string, double> phaseSeconds;
     double seconds = 0.0;
+
+    void giveTo(Method& method) const;
 };
 
 /// Reads what `row` needs from the scene's cache. A missing or stale cache is an InputError that

@@ -1,5 +1,5 @@
 // Layers that show what a method did: the share of each of its distributions, and the skeleton node
-// that visible surfaces belong to.
+// or the eye subspace that visible surfaces belong to.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "libcore/bidir/integrator.h"
 #include "libcore/skeleton/node_map.h"
+#include "libcore/subspace/subspaces.h"
 
 namespace lacuna {
 
@@ -30,5 +31,13 @@ class PartFilm {
 /// there is no node.
 Image nodeLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
                 const Skeleton& skeleton, const ThreadPool& pool);
+
+/// Likewise for the eye subspace, as seen from the camera [Su22 fig 7].
+Image subspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                    const Subspaces& subspaces, const ThreadPool& pool);
+
+/// Likewise for the light subspace that Gamma picks most often there.
+Image lightSubspaceLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                         const Subspaces& subspaces, const ThreadPool& pool);
 
 }  // namespace lacuna

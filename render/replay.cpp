@@ -133,7 +133,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     const std::unique_ptr<Method> method = row.create(settings);
     const Caches caches =
         loadCaches(options, row, settings, *stage.scene, pool, interrupt.requested(), progress);
-    if (caches.skeleton) method->useSkeleton(caches.skeleton);
+    caches.giveTo(*method);
     BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 

@@ -78,7 +78,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
           loadCaches(options, row, settings, *stage_.scene, pool, interrupt.requested(), progress)),
       method_(row.create(settings)),
       film_(makeFilm(options, stage_.settings)) {
-    if (caches_.skeleton) method_->useSkeleton(caches_.skeleton);
+    caches_.giveTo(*method_);
     loadReference();
     integrator_ = std::make_unique<BidirIntegrator>(
         *stage_.scene, *stage_.camera, stage_.techniques, *method_, stage_.settings, pool_);
@@ -266,6 +266,14 @@ void Session::save() {
         if (caches_.skeleton && features) {
             image.setRgb("node", nodeLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
                                            *caches_.skeleton, pool_));
+        }
+        if (caches_.subspaces && features) {
+            image.setRgb("subspace",
+                         subspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                       *caches_.subspaces, pool_));
+            image.setRgb("lightSubspace",
+                         lightSubspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                            *caches_.subspaces, pool_));
         }
         writeImage(options_.output, image, options_.exposure);
     }

@@ -216,6 +216,7 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
     const float jitterX = rng.uniform(), jitterY = rng.uniform();
     walker_.traceEye({float(x) + jitterX, float(y) + jitterY}, rng, chunk.tally, worker.eye);
 
+    techniques_.tag(worker.eye);
     Rng selection(settings_.seed, iteration, StreamKind::Connection, filmIndex);
     for (std::size_t t = 2; t <= worker.eye.size(); ++t) {
         const Subpath eye(worker.eye.data(), t);
@@ -230,7 +231,6 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
             int(t) > settings_.limits.maxDepth) {
             continue;
         }
-        techniques_.tag({&worker.eye[t - 1], 1});
         worker.proposals.clear();
         method_.select({z, eye, worker.light, filmIndex, iteration, walker_}, selection,
                        worker.proposals);
@@ -257,7 +257,7 @@ void BidirIntegrator::splatLightPath(std::span<PathVertex> path, std::uint32_t i
         const int x = int(closed->raster.x), y = int(closed->raster.y);
         const auto pixel =
             std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
-        techniques_.tag(path.first(s));  // here, because most light paths are never seen
+        techniques_.tag(path);  // here, because most light paths are never seen
         deliver(*closed, nullptr, 1.0 / double(lightPaths_), iteration, index, pixel, nullptr,
                 worker, chunk);
     }

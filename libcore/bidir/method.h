@@ -21,6 +21,13 @@ namespace lacuna {
 
 class ThreadPool;
 struct Skeleton;
+struct Subspaces;
+
+/// Asks the cache for a vertex that will be looked at soon.
+inline void prefetch(const PathVertex& vertex) {
+    const char* bytes = reinterpret_cast<const char*>(&vertex);
+    for (std::size_t i = 0; i < sizeof(PathVertex); i += 64) __builtin_prefetch(bytes + i);
+}
 
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
 /// prefix of any vertex is the `count` entries that end with it.
@@ -57,8 +64,7 @@ class LightPool {
     /// anywhere in some hundred megabytes.
     Subpath prefix(Entry entry) const {
         const PathVertex* last = vertices_.data() + entry.vertex;
-        const char* bytes = reinterpret_cast<const char*>(last);
-        for (std::size_t i = 0; i < sizeof(PathVertex); i += 64) __builtin_prefetch(bytes + i);
+        prefetch(*last);
         return {last + 1 - entry.count, entry.count};
     }
 
@@ -164,6 +170,8 @@ class Method {
 
     /// Rows that need a skeleton get it before anything else; without it they must still work.
     virtual void useSkeleton(std::shared_ptr<const Skeleton> skeleton) { (void)skeleton; }
+    /// Likewise for rows that need subspaces.
+    virtual void useSubspaces(std::shared_ptr<const Subspaces> subspaces) { (void)subspaces; }
     /// Iterations to run and throw away before the first one that counts.
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }

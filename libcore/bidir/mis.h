@@ -21,6 +21,9 @@ namespace lacuna {
 /// Longest path in edges that can be asked for.
 inline constexpr int kMaxEdges = 254;
 
+/// Who made an edge of a full path.
+enum class EdgeMaker : std::uint8_t { LightWalk, EyeWalk, Connection };
+
 /// One end of a connection as the density sees it, whichever walk made the vertex.
 struct ConnectionEnd {
     const PathVertex* vertex;
@@ -28,6 +31,8 @@ struct ConnectionEnd {
         predecessor;  ///< in this role: towards the light, or towards the lens; may be null
     int count;        ///< s for the light's end, t for the eye's
     Rgb scatter;      ///< f between predecessor and the other end (y_0: emission profile)
+    /// Of the edge to the predecessor; Connection where it is not known.
+    EdgeMaker maker = EdgeMaker::Connection;
 };
 
 /// The edge that a strategy closes a path by.
@@ -62,6 +67,13 @@ class ConnectionDensity {
         (void)vertex;
         return kNone;
     }
+    /// Tags the surface vertices of a whole walk, z_0 or y_0 first, that have no tag yet. To be
+    /// replaced where a tag depends on the vertex's neighbours.
+    virtual void tagWalk(std::span<PathVertex> walk) const {
+        for (PathVertex& v : walk) {
+            if (v.kind == VertexKind::Surface && v.tag == kNone) v.tag = tagOf(v);
+        }
+    }
 };
 
 /// How many samples each technique has, as seen from every other one: fixed for an iteration.
@@ -84,12 +96,9 @@ struct Techniques {
         constants = density.constants();
         tags = density.tagsVertices();
     }
-    /// Tags those of a walk's vertices that have no tag yet, where the density wants it.
-    void tag(std::span<PathVertex> vertices) const {
-        if (!tags) return;
-        for (PathVertex& v : vertices) {
-            if (v.kind == VertexKind::Surface && v.tag == kNone) v.tag = connections->tagOf(v);
-        }
+    /// Tags a whole walk, where the density wants it.
+    void tag(std::span<PathVertex> walk) const {
+        if (tags) connections->tagWalk(walk);
     }
 };
 
@@ -109,6 +118,12 @@ struct FullPath {
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;
 
+    /// Of the edge x_i, x_{i+1}.
+    EdgeMaker makerOf(int i) const {
+        return i < lightEdges          ? EdgeMaker::LightWalk
+               : i >= edges - eyeEdges ? EdgeMaker::EyeWalk
+                                       : EdgeMaker::Connection;
+    }
     /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
     bool exists(int t) const {
         const int s = edges + 1 - t;

@@ -14,6 +14,13 @@ CacheStamp voxelStamp(const std::string& sceneHash, int resolution, const std::s
                            " domain=" + (domain.empty() ? "auto" : domain)};
 }
 
+CacheStamp subspaceStamp(const std::string& sceneHash, std::uint64_t paths, std::uint32_t subspaces,
+                         std::uint64_t lightPaths, int epochs) {
+    return {sceneHash,
+            "paths=" + std::to_string(paths) + " subspaces=" + std::to_string(subspaces) +
+                " light_paths=" + std::to_string(lightPaths) + " epochs=" + std::to_string(epochs)};
+}
+
 std::string cacheDirectory(const std::string& scene, const std::string& directory) {
     if (!directory.empty()) return directory;
     std::filesystem::path path(scene);

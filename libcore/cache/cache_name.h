@@ -1,6 +1,7 @@
 // Where a scene's caches lie: NAME.cache/KEY.KIND beside the scene, or in --cache DIR.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace lacuna {
@@ -14,6 +15,10 @@ struct CacheStamp {
 
 /// The stamp of voxels and skeleton. `domain` is the text of --domain, or empty.
 CacheStamp voxelStamp(const std::string& sceneHash, int resolution, const std::string& domain);
+
+/// The stamp of subspaces. Not the seed: what is trained with any is good for all renders.
+CacheStamp subspaceStamp(const std::string& sceneHash, std::uint64_t paths, std::uint32_t subspaces,
+                         std::uint64_t lightPaths, int epochs);
 
 /// `directory`, or NAME.cache beside the scene where that is empty.
 std::string cacheDirectory(const std::string& scene, const std::string& directory);

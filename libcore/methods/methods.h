@@ -14,6 +14,7 @@ MethodRow resamplingAwareRow();           // risbpt.cpp
 MethodRow twoStageResamplingRow();        // tsr.cpp
 MethodRow importanceCachingRow();         // icbpt.cpp
 MethodRow skeletonRow();                  // skelbpt.cpp
+MethodRow subspaceRow();                  // spcbpt.cpp
 
 /// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
 Parameter lightPathsParameter();

@@ -18,7 +18,8 @@ std::span<const MethodRow> methods() {
                                                 resamplingAwareRow(),
                                                 twoStageResamplingRow(),
                                                 importanceCachingRow(),
-                                                skeletonRow()};
+                                                skeletonRow(),
+                                                subspaceRow()};
     return rows;
 }
 

@@ -5,6 +5,7 @@
 
 #include "libcore/methods/methods.h"
 #include "libcore/skeleton/node_map.h"
+#include "libcore/subspace/subspaces.h"
 
 namespace lacuna::test {
 
@@ -116,6 +117,32 @@ std::shared_ptr<const Skeleton> threeNodes() {
     return skeleton;
 }
 
+/// spcbpt with subspaces: a cell per emitter and two of subpaths on the light's side, three on the
+/// eye's, by the states' positions on their ring and by incident directions; a Q that is far off,
+/// zero for a subspace that is picked, and uneven columns.
+std::shared_ptr<const Subspaces> fewSubspaces() {
+    auto s = std::make_shared<Subspaces>();
+    s->cells = LightCells({{0}, {1}});
+    const auto leaf = [](std::uint32_t label) {
+        return DecisionTree::Node{0.0f, label << 4 | DecisionTree::kLeaf};
+    };
+    const auto split = [](std::uint32_t attribute, float threshold, std::uint32_t child) {
+        return DecisionTree::Node{threshold, child << 4 | attribute};
+    };
+    s->lightTree =
+        DecisionTree({split(1, 0.5f, 1), split(8, 0.1f, 3), leaf(3), leaf(3), leaf(2)}, 4);
+    s->eyeTree =
+        DecisionTree({split(2, -0.5f, 1), leaf(0), split(7, 0.0f, 3), leaf(1), leaf(2)}, 3);
+    s->lightCount = 4;
+    s->eyeCount = 3;
+    s->q = {2.0, 9.0, 0.0, 1.0};
+    s->population = {0.1, 0.5, 0.0, 0.01};
+    s->lightPaths = 100;
+    s->gamma = {0.1f, 0.2f, 0.3f, 0.4f, 0.4f, 0.2f, 0.25f, 0.15f, 0.25f, 0.25f, 0.25f, 0.25f};
+    s->check();
+    return s;
+}
+
 Parameter candidatesParameter() {
     return {"candidates", Parameter::Kind::Integer, 1000, 1, 1e6, "light subpaths in the pool"};
 }
@@ -159,6 +186,17 @@ MethodRow mappedSkeletonRow() {
     return row;
 }
 
+MethodRow mappedSubspaceRow() {
+    MethodRow row = subspaceRow();
+    row.name = "test-spcbpt-mapped";
+    row.create = [](const Settings& s) {
+        auto method = subspaceRow().create(s);
+        method->useSubspaces(fewSubspaces());
+        return method;
+    };
+    return row;
+}
+
 std::vector<MethodRow> allRows() {
     std::vector<MethodRow> rows;
     for (const MethodRow& row : methods()) {
@@ -167,6 +205,7 @@ std::vector<MethodRow> allRows() {
     rows.push_back(potpourriRow());
     rows.push_back(hashedDensityRow());
     rows.push_back(mappedSkeletonRow());
+    rows.push_back(mappedSubspaceRow());
     return rows;
 }
 

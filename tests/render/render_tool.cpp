@@ -54,14 +54,15 @@ std::string withDirectory(std::string arguments, const std::string& directory) {
 }
 }  // namespace
 
-Outcome RenderTool::run(const std::string& arguments) const {
-    return runAndSignal(arguments, {}, {});
+Outcome RenderTool::run(const std::string& arguments, const char* tool) const {
+    return runAndSignal(arguments, {}, {}, tool);
 }
 
 Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                                 std::chrono::milliseconds delay) const {
+                                 std::chrono::milliseconds delay, const char* tool) const {
     // The shell is replaced by the tool, so that the signals reach it.
-    const std::string command = "exec " + tool() + " " + withDirectory(arguments, path(""));
+    const std::string command =
+        "exec " + (tool ? tool : ownTool()) + " " + withDirectory(arguments, path(""));
     const std::string out = path("stdout.txt"), err = path("stderr.txt");
     const pid_t child = fork();
     if (child == 0) {
@@ -81,9 +82,9 @@ Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
 }
 
-void RenderTool::expectFailure(const std::string& arguments, int exitCode,
-                               const std::string& part) const {
-    const Outcome o = run(arguments);
+void RenderTool::expectFailure(const std::string& arguments, int exitCode, const std::string& part,
+                               const char* tool) const {
+    const Outcome o = run(arguments, tool);
     EXPECT_EQ(o.exitCode, exitCode) << arguments << "\n" << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
     EXPECT_NE(o.err.find(part), std::string::npos) << arguments << "\n" << o.err;
@@ -111,7 +112,11 @@ std::string cheap(const std::string& method) {
     for (const Parameter& p : row.parameters) {
         if (p.name == "candidates") text += " --set candidates=100";
     }
-    if (row.needsSkeleton) text += " --prepare --cache @cache --set voxels.resolution=32";
+    if (row.needsSkeleton || row.needsSubspaces) text += " --prepare --cache @cache";
+    if (row.needsSkeleton) text += " --set voxels.resolution=32";
+    if (row.needsSubspaces) {
+        text += " --set train.paths=2000 --set train.subspaces=20 --set train.light_paths=2000";
+    }
     return text;
 }
 

@@ -22,8 +22,8 @@ class RenderTool : public ::testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
-    /// Path of the program that `run` starts.
-    virtual std::string tool() const { return LACUNA_RENDER; }
+    /// Path of the program that is started where none is named.
+    virtual std::string ownTool() const { return LACUNA_RENDER; }
 
     std::string path(const std::string& name) const { return (directory_ / name).string(); }
     std::string write(const std::string& name, const std::string& text) const;
@@ -33,12 +33,13 @@ class RenderTool : public ::testing::Test {
     std::vector<std::string> temporaries() const;
 
     /// `arguments` go through a shell; @ stands for the directory and its slash.
-    Outcome run(const std::string& arguments) const;
+    Outcome run(const std::string& arguments, const char* tool = nullptr) const;
     /// Starts it, sends `signals` one after the other, `delay` before each; waits for the end.
     Outcome runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                         std::chrono::milliseconds delay) const;
+                         std::chrono::milliseconds delay, const char* tool = nullptr) const;
     /// Must fail with this code, `part` in one line on stderr, nothing on stdout.
-    void expectFailure(const std::string& arguments, int exitCode, const std::string& part) const;
+    void expectFailure(const std::string& arguments, int exitCode, const std::string& part,
+                       const char* tool = nullptr) const;
     nlohmann::json json(const std::string& name) const;
     /// A quick render of @room.gltf (written by SetUp) to @out.exr.
     std::string quick(const std::string& method, const std::string& more = "") const;

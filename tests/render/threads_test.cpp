@@ -27,6 +27,16 @@ class RenderThreads : public RenderTool, public ::testing::WithParamInterface<st
     }
 };
 
+/// What a method needs to build its caches on our scenes.
+std::string preparing(const std::string& method) {
+    const MethodRow& row = findMethod(method);
+    if (row.needsSubspaces) {
+        return " --prepare --cache @cache --set train.paths=5000 --set train.subspaces=50 --set "
+               "train.light_paths=5000 --set candidates=5000";
+    }
+    return row.needsSkeleton ? " --prepare --cache @cache" : "";
+}
+
 class RenderThreadsSlow : public RenderThreads {};
 
 std::vector<std::string> names() {
@@ -46,8 +56,7 @@ TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
         const std::string file = std::string(LACUNA_SCENES) + "/" + scene + ".glb";
         if (!std::filesystem::exists(file)) GTEST_SKIP() << file;
         expectTheSame(file + " -o @out.exr --width 96 --height 54 --iterations 4 --method " +
-                      GetParam() +
-                      (findMethod(GetParam()).needsSkeleton ? " --prepare --cache @cache" : ""));
+                      GetParam() + preparing(GetParam()));
     }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()),

@@ -7,7 +7,7 @@ namespace lacuna::test {
 
 class StudyTool : public RenderTool {
   protected:
-    std::string tool() const override { return LACUNA_STUDY; }
+    std::string ownTool() const override { return LACUNA_STUDY; }
 
     /// Two methods, two seeds, a reference of two parts, all tiny. `changes` is JSON that is merged
     /// into it (RFC 7386). Writes @study.json.

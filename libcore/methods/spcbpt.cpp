@@ -1,0 +1,325 @@
+// Subspace-based probabilistic connections [Su22].
+//
+//   pool      Y, all connectable vertices of M light subpaths, new in every iteration, binned into
+//             light subspaces: LVC_i
+//   classes   i = kappa_L(y), j = kappa_E(z): decision trees on position, normal and incident
+//             direction, cells of the lights for s = 1                        [Su22 6.4, 7.2]
+//   stage 1   i with probability Gamma(i given j)                             [Su22 6.1]
+//   stage 2   y out of LVC_i with probability P_r = mean(beta) / sum of mean(beta) in LVC_i [eq 9]
+//   pick      N per eye vertex; contribution h(y) / (M N Gamma P_r)           [eq 10]
+//             an empty LVC_i is a zero sample that counts among the N
+//   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
+//             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
+//             1/(min(j, W_i) M) in iteration j, and M W_i in r. Unlike a queue of M_0 vertices
+//             [eq 20], which is biased where subpaths have several vertices in one subspace
+//   MIS       paper: r = N Gamma beta / Q(i)                                  [eq 11, 12]
+//             ris:   r = [ (1/(N Gamma)) (1/M + (1 - 1/M) Q(i)/beta) + (1 - 1/N)/M ]^-1, which
+//             knows that one of M subpaths is not always there: the paper's where beta << M Q(i)
+//             Gamma, Q, trees: frozen since lacuna-train; Q = 0: not seen there, see unseenQ
+//   t = 1     never resampled;  s = 0 ordinary
+//
+// Without subspaces there is one of each, Gamma = 1, and Q comes from a warm-up that is thrown
+// away: light vertices are picked in proportion to beta alone.
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numeric>
+
+#include "libcore/base/discrete.h"
+#include "libcore/base/parallel.h"
+#include "libcore/methods/methods.h"
+#include "libcore/subspace/subspaces.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::size_t kEntriesPerTask = 4096;
+constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
+
+struct Options {
+    std::uint64_t subpaths;  ///< M
+    int picks;               ///< N
+    bool resamplingAware;    ///< the weights: ris, or the paper's
+    std::uint64_t reuse;     ///< M_0, 0: none
+};
+
+/// Both subspaces of a vertex in one tag: that of its own walk's role, and that of the other role,
+/// for which the next vertex of its walk is the predecessor.
+class Labels {
+  public:
+    static constexpr std::uint32_t kUnknown = 0xffff;
+
+    Labels(std::uint32_t own, std::uint32_t other) : tag_(own | other << 16) {}
+    explicit Labels(std::uint32_t tag) : tag_(tag) {}
+
+    std::uint32_t tag() const { return tag_; }
+    std::uint32_t own() const { return tag_ & kUnknown; }
+    std::uint32_t other() const { return tag_ >> 16; }
+
+  private:
+    std::uint32_t tag_;
+};
+static_assert(kNone == (Labels::kUnknown | Labels::kUnknown << 16));
+
+/// Subspaces made ready to draw from.
+class Classes {
+  public:
+    Classes(std::shared_ptr<const Subspaces> subspaces, const Options& options)
+        : subspaces_(std::move(subspaces)), q_(subspaces_->q), windows_(lightCount(), 1) {
+        for (std::size_t i = 0; options.reuse > 0 && i < subspaces_->population.size(); ++i) {
+            const double each = subspaces_->population[i] * double(options.subpaths);
+            windows_[i] = std::uint32_t(
+                std::clamp(std::ceil(double(options.reuse) / each), 1.0, double(kLongestWindow)));
+        }
+        std::vector<double> weights;
+        for (std::uint32_t j = 0; j < subspaces_->eyeCount; ++j) {
+            const auto column = subspaces_->column(j);
+            weights.assign(column.begin(), column.end());
+            columns_.emplace_back(weights);
+        }
+        unseen_ = unseenQ(q_, subspaces_->lightPaths);
+    }
+
+    bool measured() const { return !q_.empty(); }
+    void setQ(std::vector<double> q, std::uint64_t lightPaths) {
+        q_ = std::move(q);
+        unseen_ = unseenQ(q_, lightPaths);
+    }
+
+    std::uint32_t lightCount() const { return subspaces_->lightCount; }
+    /// The subspace of the light vertex y; the edge to its predecessor was made by `maker`.
+    std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor,
+                          EdgeMaker maker) const {
+        const std::uint32_t known = maker == EdgeMaker::LightWalk ? Labels(y.tag).own()
+                                    : maker == EdgeMaker::EyeWalk ? Labels(y.tag).other()
+                                                                  : Labels::kUnknown;
+        return known != Labels::kUnknown ? known : subspaces_->lightSubspace(y, predecessor);
+    }
+    /// The subspace of the eye vertex z, likewise.
+    std::uint32_t eyeOf(const PathVertex& z, const PathVertex& predecessor, EdgeMaker maker) const {
+        const std::uint32_t known = maker == EdgeMaker::EyeWalk     ? Labels(z.tag).own()
+                                    : maker == EdgeMaker::LightWalk ? Labels(z.tag).other()
+                                                                    : Labels::kUnknown;
+        return known != Labels::kUnknown ? known : subspaces_->eyeSubspace(z, predecessor);
+    }
+    /// To draw light subspaces from.
+    const DiscreteDistribution& column(std::uint32_t eye) const { return columns_[eye]; }
+    double gamma(std::uint32_t light, std::uint32_t eye) const {
+        return double(subspaces_->column(eye)[light]);
+    }
+    void tagWalk(std::span<PathVertex> walk) const {
+        if (walk.empty()) return;
+        const bool eye = walk.front().kind == VertexKind::Lens;
+        const auto label = [&](bool ofEye, const PathVertex& v, const PathVertex& predecessor) {
+            return ofEye ? subspaces_->eyeSubspace(v, predecessor)
+                         : subspaces_->lightSubspace(v, &predecessor);
+        };
+        for (std::size_t i = 1; i < walk.size(); ++i) {
+            PathVertex& v = walk[i];
+            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
+            v.tag = Labels(label(eye, v, walk[i - 1]),
+                           i + 1 < walk.size() ? label(!eye, v, walk[i + 1]) : Labels::kUnknown)
+                        .tag();
+        }
+    }
+    /// 0 where no light subpath was seen.
+    double q(std::uint32_t light) const { return q_.empty() ? 0.0 : q_[light]; }
+    double unseen() const { return unseen_; }
+    /// W_i: the whole iterations that the vertices of a light subspace are from.
+    std::uint32_t window(std::uint32_t light) const { return windows_[light]; }
+
+  private:
+    std::shared_ptr<const Subspaces> subspaces_;
+    std::vector<DiscreteDistribution> columns_;  // by eye subspace
+    std::vector<double> q_;
+    std::vector<std::uint32_t> windows_;
+    double unseen_ = 1.0;
+};
+
+class SubspaceDensity final : public ConnectionDensity {
+  public:
+    SubspaceDensity(const Options& options, const Classes& classes)
+        : options_(options), classes_(classes) {}
+
+    bool tagsVertices() const override { return true; }
+    void tagWalk(std::span<PathVertex> walk) const override { classes_.tagWalk(walk); }
+
+    double effectiveSamples(const Connection& c) const override {
+        const auto beta = double(mean(c.beta));
+        if (!(beta > 0.0)) return 0.0;  // never picked in stage 2
+        const std::uint32_t i =
+            classes_.lightOf(*c.light.vertex, c.light.predecessor, c.light.maker);
+        const double gamma =
+            classes_.gamma(i, classes_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.maker));
+        if (!(gamma > 0.0)) return 0.0;
+        const double q = classes_.q(i), n = options_.picks;
+        const double m = double(options_.subpaths) * classes_.window(i);
+        if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
+        return 1.0 / ((1.0 / m + (1.0 - 1.0 / m) * q / beta) / (n * gamma) + (1.0 - 1.0 / n) / m);
+    }
+
+  private:
+    const Options& options_;
+    const Classes& classes_;
+};
+
+class SubspaceConnections final : public Method {
+  public:
+    explicit SubspaceConnections(const Options& options)
+        : options_(options),
+          classes_(std::make_shared<const Subspaces>(), options_),
+          density_(options_, classes_) {}
+
+    void useSubspaces(std::shared_ptr<const Subspaces> subspaces) override {
+        classes_ = Classes(std::move(subspaces), options_);
+        kept_.assign(classes_.lightCount(), {});
+    }
+    int warmupIterations() const override { return classes_.measured() ? 0 : 1; }
+    PoolRequest pool() const override { return {options_.subpaths}; }
+
+    const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
+
+    void prepare(const LightPool& pool, IterationContext& context) override {
+        const auto entries = pool.connectable();
+        std::vector<std::uint32_t> labels(entries.size());
+        context.threads.forEach(tasksFor(entries.size()), [&](std::size_t task) {
+            const std::size_t begin = task * kEntriesPerTask;
+            for (std::size_t n = begin; n < std::min(entries.size(), begin + kEntriesPerTask);
+                 ++n) {
+                const Subpath y = pool.prefix(entries[n]);
+                const PathVertex* predecessor = y.size() > 1 ? &y[y.size() - 2] : nullptr;
+                labels[n] = classes_.lightOf(y.back(), predecessor, EdgeMaker::LightWalk);
+            }
+        });
+        const std::uint32_t count = classes_.lightCount();
+        cells_.resize(count);
+        for (Cell& cell : cells_) cell.members.clear();
+        for (std::size_t n = 0; n < entries.size(); ++n) {
+            cells_[labels[n]].members.push_back(pool.prefix(entries[n]));
+        }
+        context.threads.forEach(count, [&](std::size_t i) {
+            Cell& cell = cells_[i];
+            cell.fresh = cell.members.size();
+            for (const Kept& kept : kept_[i]) {
+                for (std::size_t end = 0; const std::uint32_t length : kept.lengths) {
+                    end += length;
+                    cell.members.push_back({kept.vertices.data() + end - length, length});
+                }
+            }
+            std::vector<double> weights;
+            for (const Subpath& y : cell.members) {
+                weights.push_back(double(mean(y.back().throughput)));
+            }
+            cell.within = DiscreteDistribution(weights);
+            cell.iterations = double(kept_[i].size() + 1);
+        });
+    }
+
+    void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
+        const DiscreteDistribution& column = classes_.column(
+            classes_.eyeOf(context.vertex, context.predecessor(), EdgeMaker::EyeWalk));
+        const double nm = double(options_.picks) * double(options_.subpaths);
+        for (int n = 0; n < options_.picks; ++n) {
+            const auto subspace = column.sample(rng.uniformDouble());
+            const Cell& cell = cells_[subspace.index];
+            if (cell.within.empty()) continue;
+            const auto pick = cell.within.sample(subspace.remapped());
+            const Subpath y = cell.members[pick.index];
+            prefetch(y.back());
+            sink.add({y, 1.0 / (nm * cell.iterations * subspace.pmf * pick.pmf), 0});
+        }
+    }
+
+    bool learns() const override { return options_.reuse > 0; }
+
+    void observe(const LightPool&, IterationContext& context) override {
+        if (classes_.measured()) {
+            if (options_.reuse > 0) keep(context.threads);
+            return;
+        }
+        std::vector<double> q;
+        for (const Cell& cell : cells_) {
+            q.push_back(cell.within.total() / double(options_.subpaths));
+        }
+        classes_.setQ(std::move(q), options_.subpaths);
+    }
+
+  private:
+    /// Prefixes of one iteration that end in a subspace, one after the other.
+    struct Kept {
+        std::vector<PathVertex> vertices;
+        std::vector<std::uint32_t> lengths;
+    };
+    /// A light subspace in this iteration: LVC_i.
+    struct Cell {
+        std::vector<Subpath> members;  ///< of the pool first, then the kept ones
+        std::size_t fresh = 0;         ///< those of the pool
+        double iterations = 1.0;       ///< that they are from: min(j, W_i)
+        DiscreteDistribution within;   ///< P_r
+    };
+
+    /// Copies what the coming iterations use again. Iterations without a vertex count as well.
+    void keep(const ThreadPool& threads) {
+        threads.forEach(kept_.size(), [&](std::size_t i) {
+            const std::uint32_t window = classes_.window(std::uint32_t(i));
+            if (window == 1) return;
+            Kept kept;
+            for (const Subpath& y : std::span(cells_[i].members).first(cells_[i].fresh)) {
+                kept.vertices.insert(kept.vertices.end(), y.begin(), y.end());
+                kept.lengths.push_back(std::uint32_t(y.size()));
+            }
+            kept_[i].push_back(std::move(kept));
+            if (kept_[i].size() == window) kept_[i].pop_front();
+        });
+    }
+
+    static std::size_t tasksFor(std::size_t entries) {
+        return (entries + kEntriesPerTask - 1) / kEntriesPerTask;
+    }
+
+    Options options_;
+    Classes classes_;
+    SubspaceDensity density_;
+    std::vector<Cell> cells_;                                                // by light subspace
+    std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
+};
+
+}  // namespace
+
+MethodRow subspaceRow() {
+    using Kind = Parameter::Kind;
+    MethodRow row;
+    row.name = "spcbpt";
+    row.reference = "Su22";
+    row.summary = "light vertices resampled in two stages, by trained subspaces of light subpaths";
+    row.techniques = {.hits = true, .connects = true, .splats = true};
+    row.needsSubspaces = true;
+    row.parameters = {
+        lightPathsParameter(),
+        {"candidates", Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
+        {"connections", Kind::Integer, 3, 1, 64, "picks per eye vertex, N"},
+        {"weights",
+         Kind::Choice,
+         0,
+         0,
+         1,
+         "density that the weights see: resampling-aware, or the target alone (the paper)",
+         {"ris", "paper"}},
+        {"reuse", Kind::Integer, 0, 0, 1e6,
+         "vertices kept per subspace across iterations, M_0; 0: none"},
+        {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
+        {"train.subspaces", Kind::Integer, 1000, 1, 4000, "subspaces of light and of eye subpaths"},
+        {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
+        {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},
+        presetParameter()};
+    row.paper = {{"weights", 1}, {"reuse", 200}};
+    row.create = [](const Settings& s) {
+        return std::make_unique<SubspaceConnections>(
+            Options{s.integer("candidates"), int(s.integer("connections")),
+                    s.integer("weights") == 0, s.integer("reuse")});
+    };
+    return row;
+}
+
+}  // namespace lacuna

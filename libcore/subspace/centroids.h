@@ -1,0 +1,48 @@
+// Centroids of subspaces and the distance that a subpath's subspace is the nearest one by.
+//
+//     kappa(y) = argmin_i d(C_i, y)                                                [Su22 eq 17]
+//     d = d_s^2 + sigma^2 (1 - cos theta_n) + k_d sigma^2 (1 - cos theta_d)        [Su22 eq 18]
+//
+// d_s: distance of the last vertices; theta_n, theta_d: between their normals and between their
+// incident directions; sigma^2: largest of the three variances of the vertices' coordinates.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/base/rng.h"
+#include "libcore/subspace/subpath_end.h"
+
+namespace lacuna {
+
+class Centroids {
+  public:
+    static constexpr float kDirectionWeight = 0.05f;  ///< k_d
+
+    /// No centroid: nearest() is 0 for everything.
+    Centroids() = default;
+    Centroids(std::span<const SubpathEnd> centres, float sigma2);
+
+    std::size_t size() const { return size_; }
+    /// Index of the nearest; of equally near ones the first.
+    std::uint32_t nearest(const SubpathEnd& end) const;
+    float distance(std::uint32_t index, const SubpathEnd& end) const;
+
+  private:
+    std::size_t size_ = 0;
+    float sigma2_ = 0.0f;
+    std::vector<float> value_;  // attribute by attribute, so that a loop over centroids is a vector
+};
+
+/// Largest of the three variances of the ends' coordinates; 0 for none.
+float spatialVariance(std::span<const SubpathEnd> ends);
+
+/// Up to `count` different ones of `ends`, drawn with a probability proportional to the weight:
+/// the end of a subpath stands for the contribution of the paths that it is part of [Su22 7.2.2].
+/// One draw out of each `count`-th of the sum of weights; weights that are not positive and finite
+/// count as zero.
+std::vector<SubpathEnd> drawCentroids(std::span<const SubpathEnd> ends,
+                                      std::span<const float> weights, std::size_t count, Rng& rng);
+
+}  // namespace lacuna

@@ -1,0 +1,157 @@
+#include "libcore/subspace/decision_tree.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace lacuna {
+
+namespace {
+constexpr std::size_t kSamplesJudged = 2048;  // per node, when attributes are compared
+}
+
+DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
+    : nodes_(std::move(nodes)) {
+    if (nodes_.empty()) throw std::invalid_argument("decision tree: no node");
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const std::uint32_t attribute = nodes_[i].code & kLeaf, index = nodes_[i].code >> 4;
+        const bool good = attribute == kLeaf ? index < labels
+                                             : attribute < SubpathEnd::kAttributes && index > i &&
+                                                   std::size_t(index) + 1 < nodes_.size();
+        if (!good) throw std::invalid_argument("decision tree: node " + std::to_string(i));
+    }
+}
+
+int DecisionTree::depth() const {
+    std::vector<int> depth(nodes_.size(), 0);
+    int deepest = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        deepest = std::max(deepest, depth[i]);
+        if ((nodes_[i].code & kLeaf) == kLeaf) continue;
+        const std::size_t child = nodes_[i].code >> 4;
+        depth[child] = depth[child + 1] = depth[i] + 1;
+    }
+    return deepest;
+}
+
+class TreeGrower {
+  public:
+    TreeGrower(std::span<const SubpathEnd> samples, std::span<const std::uint32_t> labels,
+               std::uint32_t labelCount, double purity)
+        : samples_(samples),
+          labels_(labels),
+          purity_(purity),
+          counts_{std::vector<std::uint32_t>(labelCount, 0),
+                  std::vector<std::uint32_t>(labelCount, 0)},
+          order_(samples.size()) {
+        std::iota(order_.begin(), order_.end(), 0u);
+    }
+
+    DecisionTree grow() {
+        DecisionTree tree;
+        if (!samples_.empty()) fill(tree.nodes_, 0, order_, 0);
+        return tree;
+    }
+
+  private:
+    using Range = std::span<std::uint32_t>;  // of order_
+
+    float at(std::uint32_t sample, std::size_t attribute) const {
+        return samples_[sample].value[attribute];
+    }
+
+    struct Majority {
+        std::uint32_t label = 0;
+        std::size_t count = 0;
+    };
+    Majority majority(Range range) {
+        std::vector<std::uint32_t>& counts = counts_[0];
+        Majority most;
+        for (const std::uint32_t i : range) {
+            const std::uint32_t n = ++counts[labels_[i]];
+            if (n > most.count || (n == most.count && labels_[i] < most.label)) {
+                most = {labels_[i], n};
+            }
+        }
+        for (const std::uint32_t i : range) counts[labels_[i]] = 0;
+        return most;
+    }
+
+    /// Sum over both children of sum_l n_l^2 / n: the larger, the purer.
+    double score(Range range, std::size_t step, std::size_t attribute, float threshold) {
+        double n[2] = {0, 0}, squares[2] = {0, 0};
+        for (std::size_t k = 0; k < range.size(); k += step) {
+            const std::uint32_t i = range[k];
+            const std::size_t side = at(i, attribute) < threshold ? 0 : 1;
+            squares[side] += 2.0 * counts_[side][labels_[i]]++ + 1.0;
+            n[side] += 1.0;
+        }
+        for (std::size_t k = 0; k < range.size(); k += step) {
+            counts_[0][labels_[range[k]]] = counts_[1][labels_[range[k]]] = 0;
+        }
+        return (n[0] > 0 ? squares[0] / n[0] : 0.0) + (n[1] > 0 ? squares[1] / n[1] : 0.0);
+    }
+
+    void fill(std::vector<DecisionTree::Node>& nodes, std::size_t node, Range range, int depth) {
+        const Majority most = majority(range);
+        nodes[node] = {0.0f, most.label << 4 | DecisionTree::kLeaf};
+        if (double(most.count) >= purity_ * double(range.size()) ||
+            depth >= DecisionTree::kMaxDepth || nodes.size() + 2 > DecisionTree::kMaxIndex) {
+            return;
+        }
+        const std::size_t step = (range.size() + kSamplesJudged - 1) / kSamplesJudged;
+        double best = -1.0;
+        std::size_t attribute = 0;
+        float threshold = 0.0f;
+        for (std::size_t a = 0; a < SubpathEnd::kAttributes; ++a) {
+            float low = at(range[0], a), high = low;
+            for (const std::uint32_t i : range) {
+                low = std::min(low, at(i, a));
+                high = std::max(high, at(i, a));
+            }
+            if (!(low < high)) continue;
+            // The centre may round to `low`, and then parts nothing.
+            float centre = 0.5f * low + 0.5f * high;
+            if (!(centre > low)) centre = high;
+            const double s = score(range, step, a, centre);
+            if (s > best) {
+                best = s;
+                attribute = a;
+                threshold = centre;
+            }
+        }
+        if (best < 0.0) return;  // coincident samples of different labels
+        const auto middle = std::stable_partition(range.begin(), range.end(), [&](std::uint32_t i) {
+            return at(i, attribute) < threshold;
+        });
+        const auto first = std::size_t(middle - range.begin());
+        if (first == 0 || first == range.size()) return;  // NaN among the samples
+        const auto child = std::uint32_t(nodes.size());
+        nodes[node] = {threshold, child << 4 | std::uint32_t(attribute)};
+        nodes.resize(nodes.size() + 2);
+        fill(nodes, child, range.first(first), depth + 1);
+        fill(nodes, child + 1, range.subspan(first), depth + 1);
+    }
+
+    std::span<const SubpathEnd> samples_;
+    std::span<const std::uint32_t> labels_;
+    double purity_;
+    std::vector<std::uint32_t> counts_[2];  // by label; zero between uses
+    std::vector<std::uint32_t> order_;
+};
+
+DecisionTree growTree(std::span<const SubpathEnd> samples, std::span<const std::uint32_t> labels,
+                      std::uint32_t labelCount, double purity) {
+    return TreeGrower(samples, labels, labelCount, purity).grow();
+}
+
+double treeAccuracy(const DecisionTree& tree, std::span<const SubpathEnd> samples,
+                    std::span<const std::uint32_t> labels) {
+    if (samples.empty()) return 1.0;
+    std::size_t right = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) right += tree(samples[i]) == labels[i];
+    return double(right) / double(samples.size());
+}
+
+}  // namespace lacuna

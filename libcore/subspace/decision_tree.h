@@ -1,0 +1,63 @@
+// A decision tree from a subpath's end to its subspace: the practical kappa [Su22 6.4, 7.2.2],
+// which stands in for the search of the nearest centroid.
+//
+// A node asks one attribute (a coordinate of position, normal or incident direction) for one
+// threshold; children lie side by side in one array, 8 bytes per node. Splits as in the paper:
+// while less than 99 % of a node's samples bear its most frequent label, at the centre of the
+// bounds of what it contains. Which attribute: the one that leaves the labels purest by Gini's
+// measure (the paper draws it at random).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/subspace/subpath_end.h"
+
+namespace lacuna {
+
+class DecisionTree {
+  public:
+    struct Node {
+        float threshold;     ///< below it: first child; else (NaN too) the second
+        std::uint32_t code;  ///< attribute in the low 4 bits, above them the first child's index;
+                             ///< or kLeaf and the label
+    };
+    static constexpr std::uint32_t kLeaf = 15;
+    static constexpr std::uint32_t kMaxIndex = (1u << 28) - 1;
+    static constexpr int kMaxDepth = 32;
+
+    /// One leaf with the label 0.
+    DecisionTree() : nodes_{{0.0f, kLeaf}} {}
+    /// Throws std::invalid_argument unless every child lies behind its parent, inside the array,
+    /// with labels below `labels`.
+    DecisionTree(std::vector<Node> nodes, std::uint32_t labels);
+
+    std::uint32_t operator()(const SubpathEnd& end) const {
+        Node n = nodes_[0];
+        for (std::uint32_t attribute; (attribute = n.code & kLeaf) != kLeaf;) {
+            const std::uint32_t second = end.value[attribute] < n.threshold ? 0u : 1u;
+            n = nodes_[(n.code >> 4) + second];
+        }
+        return n.code >> 4;
+    }
+
+    std::span<const Node> nodes() const { return nodes_; }
+    std::size_t leaves() const { return (nodes_.size() + 1) / 2; }
+    int depth() const;
+
+  private:
+    friend class TreeGrower;  // decision_tree.cpp
+    std::vector<Node> nodes_;
+};
+
+/// Grows a tree from labelled samples; labels are below `labels`. Samples that no attribute tells
+/// apart end in one leaf under their most frequent label; no samples give one leaf, label 0.
+DecisionTree growTree(std::span<const SubpathEnd> samples, std::span<const std::uint32_t> labels,
+                      std::uint32_t labelCount, double purity = 0.99);
+
+/// Share of the samples that the tree labels as given; 1 for none.
+double treeAccuracy(const DecisionTree& tree, std::span<const SubpathEnd> samples,
+                    std::span<const std::uint32_t> labels);
+
+}  // namespace lacuna

@@ -1,0 +1,102 @@
+// Gamma(i given j), the probability of light subspace i for an eye vertex in subspace j, that
+// minimises an upper bound of the variance [Su22 6.3, 7.3].
+//
+//     Loss(E) = (1/|D|) sum over X in D of f^2(X) / (p_D(X) F(X))               [Su22 eq 15, 7.3]
+//     F(X)    = g_0(X) + sum_ij g_ij(X) E_ij                                      [Su22 eq 16]
+//     E       = (1 - c) q + c / N_S,  every column of q sums to one,  c = 0.1
+//
+// g_0: what t = 1 and s = 0 add to n p; g_ij: what the connections of subspaces (i, j) add per unit
+// of E. A path brings f / p_D, and F over p_D (training_paths.h says where it has them from).
+//
+// Convex in q. With d_ij = dLoss/dE_ij = -(1/|D|) sum f^2 g_ij / (p_D F^2), Jensen's inequality for
+// 1/F bounds the loss by sum_ij q_ij^2 (-d_ij) / q'_ij, column by column, with equality at q' = q.
+// The bound is least for
+//     q'_ij  proportional to  q_ij sqrt(-d_ij),
+// so a step never raises the loss on the paths that it is made from, keeps columns on the simplex
+// and needs no rate: where the paper descends along logits with Adam.
+//
+// A million entries follow a million heavy-tailed paths too closely: Gamma^full is twice as bad on
+// paths that it was not made from. So columns are drawn towards m, that of all eye subspaces
+// together, by kappa virtual paths each, worth as much as the column's own on average:
+//     + sum_j lambda_j sum_i m_i^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
+//     start,
+// n_j the effective number of the column's paths. This is least at E_j = m, convex, and one more
+// -d_ij in the step above. kappa is the one of a few under which the start,
+// (n_j Gamma^full + kappa m) / (n_j + kappa), has the lowest held-out loss.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace lacuna {
+
+class ThreadPool;
+
+/// Share of every column that is uniform: no subspace is ever out of reach.
+inline constexpr double kUniformShare = 0.1;
+
+/// The paths of D as the loss sees them.
+struct GammaData {
+    struct Entry {
+        std::uint32_t light, eye;  ///< i, j
+        float g;                   ///< g_ij / p_D > 0
+    };
+    std::uint32_t lightCount = 1, eyeCount = 1;
+    std::vector<float> contribution;      ///< by path: f / p_D, relative to the pixel
+    std::vector<float> fixed;             ///< by path: g_0 / p_D
+    std::vector<std::uint64_t> begin{0};  ///< by path: its first entry; one more than paths
+    std::vector<Entry> entries;
+
+    std::size_t paths() const { return contribution.size(); }
+    std::span<const Entry> entriesOf(std::size_t path) const {
+        return std::span(entries).subspan(begin[path], begin[path + 1] - begin[path]);
+    }
+    /// The path's entries are what was pushed to `entries` since the last one.
+    void endPath(float relativeContribution, float fixedDensity) {
+        contribution.push_back(relativeContribution);
+        fixed.push_back(fixedDensity);
+        begin.push_back(entries.size());
+    }
+};
+
+/// A matrix over (eye, light) subspaces, column by column.
+using SubspaceMatrix = std::vector<double>;
+
+/// Gamma^full, its columns' effective numbers of paths n_j, and m.
+struct FullGamma {
+    SubspaceMatrix q;
+    std::vector<double> paths;  ///< by eye subspace: (sum c)^2 / sum c^2 of its contributions
+    std::vector<double> mean;   ///< by light subspace; sums to one
+};
+
+/// Where every column stands before there is anything to learn from: contributions by the subspaces
+/// that connections of D have [Su22 eq 13], columns without any uniform. Sums to one; no entry is
+/// 0, where a step could not take it up again.
+FullGamma fullGamma(const GammaData& data);
+
+/// (1 - c) q + c / N_S.
+SubspaceMatrix mixedGamma(const SubspaceMatrix& q, std::uint32_t lightCount);
+
+/// Loss(E) of data; 0 without paths. `derivative`: dLoss/dE as well, where not null.
+double gammaLoss(const GammaData& data, const SubspaceMatrix& e, const ThreadPool& pool,
+                 SubspaceMatrix* derivative = nullptr);
+
+struct GammaResult {
+    SubspaceMatrix gamma;                               ///< E
+    double fullTrainLoss = 0.0, fullHeldOutLoss = 0.0;  ///< of Gamma^full
+    double virtualPaths = 0.0;                          ///< kappa
+    /// Loss on the training and the held-out paths by epoch; first that of the start.
+    std::vector<double> trainLoss, heldOutLoss;
+    std::size_t kept = 0;  ///< the epoch that `gamma` is of: that of the lowest held-out loss
+};
+
+/// Up to `epochs` passes over all of `train`, fewer once three of them bettered nothing. Held-out
+/// losses choose kappa and among the iterates; where there are no held-out paths, kappa is 0 and
+/// training losses choose. Throws Error 130 once `cancel` is set.
+GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, const FullGamma& full,
+                          int epochs, const ThreadPool& pool, const std::atomic<bool>& cancel);
+
+}  // namespace lacuna

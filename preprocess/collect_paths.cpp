@@ -1,0 +1,129 @@
+#include "preprocess/collect_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/bidir/integrator.h"
+#include "libcore/gltf/gltf.h"
+#include "libcore/methods/registry.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr std::uint64_t kMostIterations = 100;
+constexpr int kBlocksAcross = 128;  // of the picture that contributions are relative to
+
+bool isHeldOut(std::uint32_t pixel) {
+    // By pixel: paths of one pixel share eye subpaths.
+    return (pixel * 2654435761u >> 16) % 10 == 0;
+}
+
+/// A path of one worker's set and the sample that it came from.
+struct Found {
+    std::uint64_t sample;
+    std::size_t worker, index;
+};
+
+struct Worker {
+    TrainingPaths paths;
+    std::vector<std::uint64_t> samples;  // by path
+};
+
+}  // namespace
+
+Camera trainingCamera(const Scene& scene, std::uint64_t paths) {
+    const SceneDescription& d = scene.description();
+    requireCamera(d);
+    double aspect = d.cameras[0].aspectRatio > 0.0 ? d.cameras[0].aspectRatio : 16.0 / 9.0;
+    if (d.width && d.height) aspect = double(*d.width) / double(*d.height);
+    aspect = std::clamp(aspect, 0.05, 20.0);
+    // Some paths per pixel and iteration; more pixels for more paths, up to 256 x 144.
+    const double pixels = std::clamp(double(paths) / 16.0, 256.0, 36864.0);
+    const int width = std::max(1, int(std::lround(std::sqrt(pixels * aspect))));
+    const int height = std::max(1, int(std::lround(pixels / width)));
+    Camera::Lens lens;
+    if (d.aperture.value_or(0.0) > 0.0 && d.focus.value_or(0.0) > 0.0) {
+        lens = {float(*d.aperture), float(*d.focus)};
+    }
+    return scene.makeCamera("", {width, height}, lens);
+}
+
+WalkLimits trainingLimits(const Scene& scene) {
+    WalkLimits limits;
+    if (scene.description().maxDepth) {
+        limits.maxDepth = std::min(*scene.description().maxDepth, kMaxEdges);
+    }
+    return limits;
+}
+
+CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::uint64_t paths,
+                            std::uint64_t seed, const ThreadPool& pool,
+                            const std::atomic<bool>& cancel) {
+    const Camera camera = trainingCamera(scene, paths);
+    const Camera::Film film = camera.film();
+    const MethodRow& row = findMethod("bpt");
+    const std::unique_ptr<Method> method = row.create(resolve(row, {}));
+    RenderSettings settings;
+    settings.limits = trainingLimits(scene);
+    settings.seed = seed;
+    settings.crop = {0, film.width, 0, film.height};
+    BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
+
+    std::vector<Worker> workers(std::size_t(pool.threads()));
+    integrator.setObserver([&](const PathEvent& event) {
+        Worker& w = workers[std::size_t(pool.workerIndex())];
+        w.paths.add(event.path, event.techniques, cells, mean(event.contribution), event.pixel);
+        if (w.paths.size() > w.samples.size()) w.samples.push_back(event.sample);
+    });
+
+    CollectedPaths result;
+    std::vector<Rgb> pixels(std::size_t(film.width) * std::size_t(film.height)), sum(pixels.size());
+    IterationStatistics statistics;
+    std::uint64_t iterations = 1;
+    double share = 1.0;  // of an iteration's paths that is kept, so that there are about `paths`
+    for (std::uint64_t n = 0; n < iterations; ++n) {
+        if (!integrator.render(kTrainingIteration + std::uint32_t(n), pixels, cancel, statistics)) {
+            throw Error(130, "interrupted: nothing was written");
+        }
+        for (std::size_t p = 0; p < pixels.size(); ++p) sum[p] += pixels[p];
+
+        // In the order of samples, whatever the threads.
+        std::vector<Found> found;
+        for (std::size_t w = 0; w < workers.size(); ++w) {
+            for (std::size_t i = 0; i < workers[w].samples.size(); ++i) {
+                found.push_back({workers[w].samples[i], w, i});
+            }
+        }
+        std::stable_sort(found.begin(), found.end(),
+                         [](const Found& a, const Found& b) { return a.sample < b.sample; });
+        if (n == 0) {
+            const double each = std::max(1.0, double(found.size()));
+            iterations = std::uint64_t(
+                std::clamp(std::ceil(double(paths) / each), 1.0, double(kMostIterations)));
+            share = std::min(1.0, double(paths) / (each * double(iterations)));
+        }
+        double due = 0.0;
+        for (const Found& f : found) {
+            due += share;
+            if (due < 1.0) continue;
+            due -= 1.0;
+            const TrainingPaths& from = workers[f.worker].paths;
+            const bool out = isHeldOut(from.path(f.index).pixel);
+            (out ? result.heldOut : result.train).append(from, f.index);
+        }
+        result.traced += found.size();
+        for (Worker& w : workers) w = {};
+    }
+    result.iterations = iterations;
+    for (Rgb& p : sum) p *= 1.0f / float(iterations);
+    const int block = std::max(1, film.width / kBlocksAcross);
+    result.train.relate(sum, film.width, block);
+    result.heldOut.relate(sum, film.width, block);
+    const float limit = result.train.outlierLimit();
+    result.outliers = result.train.lowerTo(limit) + result.heldOut.lowerTo(limit);
+    return result;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,228 @@
+#include "preprocess/train.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/subspace/centroids.h"
+#include "preprocess/collect_paths.h"
+#include "preprocess/tool_stage.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr double kLightShare = 0.2;  // of the subspaces that divide the lights [Su22 7.2.1]
+constexpr int kPicks = 3;            // N that Gamma is optimised for
+constexpr std::size_t kTreeSamples = 400'000, kJudgedSamples = 100'000;
+constexpr std::size_t kSamplesPerTask = 4096;
+constexpr std::uint64_t kLightPathsPerTask = 8192;
+constexpr std::uint32_t kLightPathIteration = 0xc0000000u;
+
+/// Ends of subpaths and the contributions of the paths that they are from.
+struct Ends {
+    std::vector<SubpathEnd> end;
+    std::vector<float> weight;
+};
+
+/// Every `step`-th end of one side, so that there are at most about `most`.
+Ends endsOf(const TrainingPaths& paths, bool lightSide, std::size_t most) {
+    const auto forEach = [&](const auto& body) {
+        for (std::size_t n = 0; n < paths.size(); ++n) {
+            const TrainingPaths::Path& p = paths.path(n);
+            for (int s = lightSide ? 2 : 1; s < int(p.edges); ++s) {
+                if (paths.strength(p, s) > 0.0f) body(p, s);
+            }
+        }
+    };
+    std::size_t count = 0;
+    forEach([&](const TrainingPaths::Path&, int) { ++count; });
+    const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
+    Ends ends;
+    std::size_t n = 0;
+    forEach([&](const TrainingPaths::Path& p, int s) {
+        if (n++ % step != 0) return;
+        ends.end.push_back(lightSide ? paths.lightEnd(p, s) : paths.eyeEnd(p, s));
+        ends.weight.push_back(p.contribution);
+    });
+    return ends;
+}
+
+std::vector<std::uint32_t> labelsOf(const Centroids& centroids, std::span<const SubpathEnd> ends,
+                                    std::uint32_t first, const ThreadPool& pool) {
+    std::vector<std::uint32_t> labels(ends.size());
+    pool.forEach((ends.size() + kSamplesPerTask - 1) / kSamplesPerTask, [&](std::size_t task) {
+        const std::size_t begin = task * kSamplesPerTask;
+        for (std::size_t i = begin; i < std::min(ends.size(), begin + kSamplesPerTask); ++i) {
+            labels[i] = first + centroids.nearest(ends[i]);
+        }
+    });
+    return labels;
+}
+
+double lookUpNanoseconds(const DecisionTree& tree, std::span<const SubpathEnd> ends) {
+    if (ends.empty()) return 0.0;
+    using Clock = std::chrono::steady_clock;
+    std::uint64_t sum = 0;
+    const Clock::time_point start = Clock::now();
+    for (const SubpathEnd& e : ends) sum += tree(e);
+    const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+    // The sum is never so large: it only keeps the loop from being left out.
+    return sum == ~std::uint64_t(0) ? 0.0 : ns / double(ends.size());
+}
+
+/// Everything about one side's classification on its way to a tree.
+class Classification {
+  public:
+    Classification(const CollectedPaths& paths, bool lightSide)
+        : train_(endsOf(paths.train, lightSide, kTreeSamples)),
+          heldOut_(endsOf(paths.heldOut, lightSide, kJudgedSamples)) {}
+
+    std::span<const SubpathEnd> ends() const { return train_.end; }
+
+    /// Labels count from `first`; at most `count` different ones, at least one.
+    void label(std::uint32_t first, std::size_t count, float sigma2, Rng& rng,
+               const ThreadPool& pool) {
+        const Centroids centroids(drawCentroids(train_.end, train_.weight, count, rng), sigma2);
+        report_.centroids = centroids.size();
+        labelCount_ = first + std::max<std::uint32_t>(1, std::uint32_t(centroids.size()));
+        labels_ = labelsOf(centroids, train_.end, first, pool);
+        heldOutLabels_ = labelsOf(centroids, heldOut_.end, first, pool);
+        if (labels_.empty()) labels_ = {first}, train_.end = {SubpathEnd{}};
+    }
+    std::uint32_t labelCount() const { return labelCount_; }
+
+    DecisionTree grow() {
+        DecisionTree tree = growTree(train_.end, labels_, labelCount_);
+        report_.samples = train_.end.size();
+        report_.accuracy = treeAccuracy(tree, train_.end, labels_);
+        report_.heldOutAccuracy = treeAccuracy(tree, heldOut_.end, heldOutLabels_);
+        report_.depth = tree.depth();
+        report_.leaves = tree.leaves();
+        return tree;
+    }
+    TreeReport report(const DecisionTree& tree) {
+        report_.nanoseconds = lookUpNanoseconds(tree, heldOut_.end);
+        return report_;
+    }
+
+  private:
+    Ends train_, heldOut_;
+    std::vector<std::uint32_t> labels_, heldOutLabels_;
+    std::uint32_t labelCount_ = 1;
+    TreeReport report_;
+};
+
+/// Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19], and their number / M'.
+void measureQ(const Scene& scene, Subspaces& subspaces, const TrainSettings& settings,
+              const ThreadPool& pool, const std::atomic<bool>& cancel) {
+    struct Sums {
+        std::vector<double> q, count;
+    };
+    const Camera camera = trainingCamera(scene, settings.paths);
+    const Walker walker(scene, camera, trainingLimits(scene));
+    const std::uint64_t tasks = (settings.lightPaths + kLightPathsPerTask - 1) / kLightPathsPerTask;
+    subspaces.lightPaths = settings.lightPaths;
+    subspaces.q.assign(subspaces.lightCount, 0.0);
+    subspaces.population.assign(subspaces.lightCount, 0.0);
+    // Batches bound the memory of the sums, which are added in the order of tasks.
+    constexpr std::uint64_t kBatch = 64;
+    for (std::uint64_t first = 0; first < tasks; first += kBatch) {
+        std::vector<Sums> sums(std::min(kBatch, tasks - first));
+        pool.forEach(sums.size(), [&](std::size_t n) {
+            if (cancel) return;
+            sums[n].q.assign(subspaces.lightCount, 0.0);
+            sums[n].count = sums[n].q;
+            std::vector<PathVertex> path;
+            RayTally tally;
+            const std::uint64_t begin = (first + n) * kLightPathsPerTask;
+            for (std::uint64_t i = begin;
+                 i < std::min(settings.lightPaths, begin + kLightPathsPerTask); ++i) {
+                Rng rng(settings.seed, kLightPathIteration, StreamKind::LightPath, i);
+                walker.traceLight(rng, tally, path);
+                for (std::size_t s = 1; s <= path.size(); ++s) {
+                    const PathVertex& y = path[s - 1];
+                    if (int(y.index) > walker.limits().maxDepth - 2 || !y.connectable()) continue;
+                    const double beta = double(mean(y.throughput));
+                    if (!std::isfinite(beta)) continue;
+                    const std::uint32_t label =
+                        subspaces.lightSubspace(y, s > 1 ? &path[s - 2] : nullptr);
+                    sums[n].q[label] += beta;
+                    sums[n].count[label] += 1.0;
+                }
+            }
+        });
+        if (cancel) throw Error(130, "interrupted: nothing was written");
+        for (const Sums& sum : sums) {
+            for (std::size_t i = 0; i < sum.q.size(); ++i) {
+                subspaces.q[i] += sum.q[i] / double(settings.lightPaths);
+                subspaces.population[i] += sum.count[i] / double(settings.lightPaths);
+            }
+        }
+    }
+}
+
+double emptyShareOfEye(const GammaData& data) {
+    std::vector<bool> used(data.eyeCount, false);
+    for (const GammaData::Entry& e : data.entries) used[e.eye] = true;
+    return double(std::count(used.begin(), used.end(), false)) / double(used.size());
+}
+
+}  // namespace
+
+Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPool& pool,
+              const std::atomic<bool>& cancel, Phases& phases) {
+    Trained result;
+    Subspaces& s = result.file.subspaces;
+    const auto run = [&](const char* name, const auto& work) {
+        if (cancel) throw Error(130, "interrupted: nothing was written");
+        phases.run(name, work);
+        result.peakBytes[name] = peakBytes();
+    };
+    CollectedPaths paths;
+    run("paths", [&] {
+        const auto cells = std::uint32_t(std::lround(kLightShare * double(settings.subspaces)));
+        s.cells = LightCells(scene.lights(), std::max(1u, cells));
+        paths = collectPaths(scene, s.cells, settings.paths, settings.seed, pool, cancel);
+        result.trainPaths = paths.train.size();
+        result.heldOutPaths = paths.heldOut.size();
+        result.traced = paths.traced;
+        result.outliers = paths.outliers;
+        result.pathBytes = paths.train.bytes() + paths.heldOut.bytes();
+    });
+    Classification light(paths, true), eye(paths, false);
+    run("centroids", [&] {
+        const float sigma2 = std::max(spatialVariance(light.ends()), spatialVariance(eye.ends()));
+        Rng lightRng(settings.seed, kTrainingIteration, StreamKind::User, 0);
+        Rng eyeRng(settings.seed, kTrainingIteration, StreamKind::User, 1);
+        // One subspace in all: the lights' cell is the subpaths' as well.
+        const std::uint32_t first = settings.subspaces == 1 ? 0 : s.cells.count();
+        const std::uint32_t rest = settings.subspaces > first ? settings.subspaces - first : 1;
+        light.label(first, rest, sigma2, lightRng, pool);
+        eye.label(0, settings.subspaces, sigma2, eyeRng, pool);
+        s.lightCount = std::max(light.labelCount(), s.cells.count());
+        s.eyeCount = eye.labelCount();
+    });
+    run("trees", [&] {
+        pool.forEach(2, [&](std::size_t n) {
+            (n == 0 ? s.lightTree : s.eyeTree) = (n == 0 ? light : eye).grow();
+        });
+        result.lightTree = light.report(s.lightTree);
+        result.eyeTree = eye.report(s.eyeTree);
+    });
+    run("light paths", [&] { measureQ(scene, s, settings, pool, cancel); });
+    run("gamma", [&] {
+        const GammaData data = gammaData(paths.train, s, kPicks, pool);
+        const GammaData heldOut = gammaData(paths.heldOut, s, kPicks, pool);
+        result.gamma = optimiseGamma(data, heldOut, fullGamma(data), settings.epochs, pool, cancel);
+        s.gamma.assign(result.gamma.gamma.begin(), result.gamma.gamma.end());
+        result.emptyEye = emptyShareOfEye(data);
+    });
+    result.emptyLight = double(std::count(s.q.begin(), s.q.end(), 0.0)) / double(s.q.size());
+    result.file.stamp = settings.stamp(scene.description().contentHash);
+    result.file.contentHash = s.contentHash();
+    return result;
+}
+
+}  // namespace lacuna

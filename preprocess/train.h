@@ -1,0 +1,47 @@
+// What lacuna-train does, for it and for lacuna-render --prepare: classification, Q and Gamma of
+// subspace-based connections [Su22 7].
+#pragma once
+
+#include "libcore/cache/subspace_file.h"
+#include "libcore/subspace/gamma.h"
+#include "preprocess/voxelize.h"
+
+namespace lacuna {
+
+struct TrainSettings {
+    std::uint64_t paths = 1'000'000;
+    std::uint32_t subspaces = 1000;
+    std::uint64_t lightPaths = 2'000'000;
+    int epochs = 20;
+    std::uint64_t seed = 1;  ///< not part of the stamp
+
+    CacheStamp stamp(const std::string& sceneHash) const {
+        return subspaceStamp(sceneHash, paths, subspaces, lightPaths, epochs);
+    }
+};
+
+/// One of the two trees against the nearest centroid.
+struct TreeReport {
+    std::size_t centroids = 0, samples = 0;
+    double accuracy = 1.0, heldOutAccuracy = 1.0;
+    int depth = 0;
+    std::size_t leaves = 0;
+    double nanoseconds = 0.0;  ///< of a look-up
+};
+
+struct Trained {
+    SubspaceFile file;
+    TreeReport lightTree, eyeTree;
+    GammaResult gamma;
+    std::size_t trainPaths = 0, heldOutPaths = 0;
+    std::uint64_t traced = 0, outliers = 0, pathBytes = 0;
+    double emptyLight = 0.0;                         ///< share of light subspaces with Q = 0
+    double emptyEye = 0.0;                           ///< share of eye subspaces without a path
+    std::map<std::string, std::uint64_t> peakBytes;  ///< of the process, at each phase's end
+};
+
+/// Throws InputError for a scene without a camera, Error 130 once `cancel` is set.
+Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPool& pool,
+              const std::atomic<bool>& cancel, Phases& phases);
+
+}  // namespace lacuna

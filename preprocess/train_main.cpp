@@ -1,0 +1,162 @@
+// lacuna-train: subspaces of light and eye subpaths, Q and Gamma, for the method spcbpt.
+#include <cstdio>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "preprocess/tool_stage.h"
+#include "preprocess/train.h"
+#include "render/interrupt.h"
+#include "render/progress.h"
+
+namespace lacuna {
+namespace {
+
+struct TrainOptions {
+    std::int64_t paths = 1'000'000, subspaces = 1000, lightPaths = 2'000'000, epochs = 20;
+};
+
+std::uint64_t checked(const char* option, std::int64_t value, std::int64_t low, std::int64_t high) {
+    if (value < low || value > high) {
+        throw UsageError(std::string(option) + ": expected an integer from " + std::to_string(low) +
+                         " to " + std::to_string(high) + ", found " + std::to_string(value));
+    }
+    return std::uint64_t(value);
+}
+
+TrainSettings settingsOf(const TrainOptions& o, std::uint64_t seed) {
+    TrainSettings s;
+    s.paths = checked("--paths", o.paths, 1, 100'000'000);
+    s.subspaces = std::uint32_t(checked("--subspaces", o.subspaces, 1, 4'000));
+    s.lightPaths = checked("--light-paths", o.lightPaths, 1, 1'000'000'000);
+    s.epochs = int(checked("--epochs", o.epochs, 0, 10'000));
+    s.seed = seed;
+    return s;
+}
+
+nlohmann::json treeJson(const TreeReport& r) {
+    return {{"held_out_accuracy", r.heldOutAccuracy},
+            {"accuracy", r.accuracy},
+            {"depth", r.depth},
+            {"leaves", r.leaves},
+            {"centroids", r.centroids},
+            {"samples", r.samples},
+            {"lookup_nanoseconds", r.nanoseconds}};
+}
+
+void printTree(const char* name, const TreeReport& r) {
+    std::printf(
+        "%s tree: %zu centroids, held-out accuracy %.4f (grown on %zu: %.4f), depth %d, %zu "
+        "leaves, %.0f ns per look-up\n",
+        name, r.centroids, r.heldOutAccuracy, r.samples, r.accuracy, r.depth, r.leaves,
+        r.nanoseconds);
+}
+
+void print(const std::string& path, const Trained& t, const Phases& phases, double seconds) {
+    const Subspaces& s = t.file.subspaces;
+    std::printf("%s: %u light subspaces, %u of them on the lights, %u eye subspaces, %.3g s\n",
+                path.c_str(), s.lightCount, s.cells.count(), s.eyeCount, seconds);
+    std::printf(
+        "paths: %zu to train with, %zu held out, of %llu traced; %llu outliers lowered; %.0f MB\n",
+        t.trainPaths, t.heldOutPaths, (unsigned long long)t.traced, (unsigned long long)t.outliers,
+        double(t.pathBytes) * 1e-6);
+    printTree("light", t.lightTree);
+    printTree("eye", t.eyeTree);
+    std::printf("empty subspaces: light %.1f %% (no light subpath), eye %.1f %% (no path)\n",
+                100.0 * t.emptyLight, 100.0 * t.emptyEye);
+    std::printf("loss of full contributions: training %.6g, held out %.6g\n", t.gamma.fullTrainLoss,
+                t.gamma.fullHeldOutLoss);
+    for (std::size_t n = 0; n < t.gamma.trainLoss.size(); ++n) {
+        std::printf("loss after epoch %zu: training %.6g, held out %.6g", n, t.gamma.trainLoss[n],
+                    t.gamma.heldOutLoss[n]);
+        if (n == 0) std::printf(" (%g virtual paths)", t.gamma.virtualPaths);
+        std::puts(n == t.gamma.kept ? " (kept)" : "");
+    }
+    for (const auto& [name, time] : phases.seconds()) {
+        const auto peak = t.peakBytes.find(name);
+        if (peak == t.peakBytes.end()) continue;
+        std::printf("%s: %.3g s, up to %.0f MB\n", name.c_str(), time, double(peak->second) * 1e-6);
+    }
+}
+
+int trainTool(int argc, const char* const* argv) {
+    CLI::App app("Trains the subspaces of a scene's light and eye subpaths", "lacuna-train");
+    BuildOptions options;
+    TrainOptions o;
+    addBuildOptions(app, options);
+    app.add_option("--paths", o.paths, "Full paths to train with (default: 1000000)")
+        ->type_name("N");
+    app.add_option("--subspaces", o.subspaces,
+                   "Subspaces of light and of eye subpaths (default: 1000)")
+        ->type_name("N");
+    app.add_option("--light-paths", o.lightPaths, "Light subpaths for Q (default: 2000000)")
+        ->type_name("N");
+    app.add_option("--epochs", o.epochs, "Passes over the paths for Gamma (default: 20)")
+        ->type_name("N");
+    app.footer(
+        "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt. Exit\n"
+        "codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
+        "interrupted (nothing is written then).");
+    if (const auto done = parseCommandLine(app, argc, argv)) return *done;
+    const TrainSettings settings = settingsOf(o, options.common.seed);
+    checkedSettings(options);
+
+    const ThreadPool pool(options.common.threads);
+    const InterruptGuard interrupt;
+    Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
+    Phases phases([&](const std::string& name) { progress.phase(name); });
+    Phases total;
+    std::unique_ptr<Scene> scene;
+    Trained result;
+    std::string path;
+    total.run("all", [&] {
+        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
+        path = resultFile(options, settings.stamp(scene->description().contentHash), "subspaces");
+        result = train(*scene, settings, pool, interrupt.requested(), phases);
+        phases.run("write", [&] { writeSubspaceFile(path, result.file); });
+    });
+    if (result.trainPaths == 0) {
+        progress.warning("warning: " + options.scene +
+                         ": no path was found that a connection can make: nothing was learned");
+    }
+
+    const double seconds = total.seconds().at("all");
+    print(path, result, phases, seconds);
+    const GammaResult& g = result.gamma;
+    writeReport(options.common, {{"file", path},
+                                 {"light_tree", treeJson(result.lightTree)},
+                                 {"eye_tree", treeJson(result.eyeTree)},
+                                 {"gamma",
+                                  {{"train_loss_full", g.fullTrainLoss},
+                                   {"train_loss", g.trainLoss[g.kept]},
+                                   {"held_out_loss_full", g.fullHeldOutLoss},
+                                   {"virtual_paths", g.virtualPaths},
+                                   {"held_out_loss", g.heldOutLoss[g.kept]},
+                                   {"kept_epoch", g.kept},
+                                   {"train_loss_by_epoch", g.trainLoss},
+                                   {"held_out_loss_by_epoch", g.heldOutLoss}}},
+                                 {"subspaces", settings.subspaces},
+                                 {"light_subspaces", result.file.subspaces.lightCount},
+                                 {"light_source_cells", result.file.subspaces.cells.count()},
+                                 {"eye_subspaces", result.file.subspaces.eyeCount},
+                                 {"empty_light_subspaces", result.emptyLight},
+                                 {"empty_eye_subspaces", result.emptyEye},
+                                 {"paths", result.trainPaths + result.heldOutPaths},
+                                 {"held_out_paths", result.heldOutPaths},
+                                 {"traced_paths", result.traced},
+                                 {"outliers_lowered", result.outliers},
+                                 {"path_bytes", result.pathBytes},
+                                 {"content_hash", result.file.contentHash},
+                                 {"scene_hash", scene->description().contentHash},
+                                 {"phases", phases.seconds()},
+                                 {"phase_peak_bytes", result.peakBytes},
+                                 {"seconds", seconds},
+                                 {"peak_bytes", peakBytes()}});
+    return 0;
+}
+
+}  // namespace
+}  // namespace lacuna
+
+int main(int argc, char** argv) {
+    return lacuna::runTool([&] { return lacuna::trainTool(argc, argv); });
+}

@@ -1,0 +1,100 @@
+// Acceptance 9: subspaces of nonsense (random trees, Q and Gamma) make a noisier picture with the
+// same mean, in both forms of the weights.
+#include <gtest/gtest.h>
+
+#include "libcore/subspace/subspaces.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+/// Every leaf bears a random label; thresholds lie anywhere in the room and on the sphere.
+DecisionTree randomTree(int splits, std::uint32_t first, std::uint32_t labels, Rng& rng) {
+    std::vector<DecisionTree::Node> nodes(1);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (splits-- > 0) {
+            const auto child = std::uint32_t(nodes.size());
+            nodes[n] = {2.0f * rng.uniform() - 1.0f, child << 4 | rng.below(9)};
+            nodes.resize(nodes.size() + 2);
+        } else {
+            nodes[n] = {0.0f, (first + rng.below(labels)) << 4 | DecisionTree::kLeaf};
+        }
+    }
+    return DecisionTree(std::move(nodes), first + labels);
+}
+
+std::shared_ptr<const Subspaces> randomSubspaces(std::uint64_t seed) {
+    Rng rng(seed, 0, StreamKind::User, 0);
+    auto s = std::make_shared<Subspaces>();
+    s->cells = LightCells({{0, 2, 2}, {4, 1, 3}});
+    s->lightTree = randomTree(60, 7, 20, rng);
+    s->eyeTree = randomTree(60, 0, 20, rng);
+    s->lightCount = 27;
+    s->eyeCount = 20;
+    s->lightPaths = 1000;
+    for (std::uint32_t i = 0; i < s->lightCount; ++i) {
+        s->q.push_back(rng.below(4) == 0 ? 0.0 : rng.uniformDouble());
+        s->population.push_back(rng.uniformDouble());
+    }
+    s->gamma.clear();
+    for (std::uint32_t j = 0; j < s->eyeCount; ++j) {
+        std::vector<float> column(s->lightCount);
+        float sum = 0.0f;
+        for (float& g : column) sum += g = 0.05f + rng.uniform();
+        for (const float g : column) s->gamma.push_back(g / sum);
+    }
+    s->check();
+    return s;
+}
+
+TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
+    const auto scene = diffuseBox().builder.build();
+    Shot shot;
+    shot.width = shot.height = 12;
+    shot.maxDepth = 4;
+    shot.iterations = 600;
+    shot.seed = 100;
+    const Picture reference = render(*scene, pathTracer(), shot);
+    shot.seed = 1;
+    shot.iterations = 300;
+    const MethodRow row = rowNamed("spcbpt");
+    for (const char* weights : {"weights=ris", "weights=paper"}) {
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            const std::vector<std::string> settings = {"candidates=144", weights};
+            const auto method = row.create(resolve(row, settings));
+            method->useSubspaces(randomSubspaces(seed));
+            const Picture picture = Render(*scene, row, shot, *method).run();
+            expectSame(picture, reference, weights);
+        }
+    }
+}
+
+/// Reuse across iterations. One that counts vertices instead of iterations is off by percents here:
+/// subpaths have several vertices in one subspace. Iterations share light subpaths, so that only
+/// the last one of each of many renders counts.
+TEST(SubspaceReuse, leavesTheMeanAsItIs) {
+    const auto scene = diffuseBox().builder.build();
+    Shot shot;
+    shot.width = shot.height = 8;
+    shot.maxDepth = 4;
+    shot.iterations = 3000;
+    const Picture reference = render(*scene, pathTracer(), shot);
+    const MethodRow row = rowNamed("spcbpt");
+    const auto subspaces = randomSubspaces(1);
+    Picture picture({0, shot.width, 0, shot.height});
+    for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+        const std::vector<std::string> settings = {"candidates=8", "reuse=16"};
+        const auto method = row.create(resolve(row, settings));
+        EXPECT_TRUE(method->learns());
+        method->useSubspaces(subspaces);
+        shot.seed = 100 + seed;
+        Render last(*scene, row, shot, *method);
+        for (std::uint32_t i = 0; i < 4; ++i) last.iterate(i);
+        picture.pixels.add(last.pixels(), pool());
+    }
+    expectSame(picture, reference, "reuse", Judge::MeanOnly);
+}
+
+}  // namespace
+}  // namespace lacuna::test

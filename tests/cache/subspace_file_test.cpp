@@ -1,0 +1,147 @@
+// A file of subspaces comes back as it was written, and is refused when anything about it is wrong.
+#include "libcore/cache/subspace_file.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "libcore/base/error.h"
+#include "libcore/base/rng.h"
+
+namespace lacuna::test {
+namespace {
+
+class SubspaceFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        directory_ = std::filesystem::temp_directory_path() /
+                     (std::string("lacuna-subspaces-test-") +
+                      testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::create_directories(directory_);
+    }
+    void TearDown() override { std::filesystem::remove_all(directory_); }
+
+    std::string path() const { return (directory_ / "s.subspaces").string(); }
+    std::string content() const {
+        std::ostringstream bytes;
+        bytes << std::ifstream(path(), std::ios::binary).rdbuf();
+        return bytes.str();
+    }
+    void replace(const std::string& bytes) const {
+        std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
+    }
+    void expectRefused(const std::string& what, const std::string& scene = "0123abc") const {
+        try {
+            readSubspaceFile(path(), scene, "train again");
+            ADD_FAILURE() << what << " was accepted";
+        } catch (const InputError& e) {
+            EXPECT_NE(std::string(e.what()).find("train again"), std::string::npos) << e.what();
+            EXPECT_EQ(e.exitCode(), 3);
+        }
+    }
+
+  private:
+    std::filesystem::path directory_;
+};
+
+SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
+    SubspaceFile file;
+    file.stamp = subspaceStamp("0123abc", 1000, light, 2000, 2);
+    Subspaces& s = file.subspaces;
+    s.lightCount = light;
+    s.eyeCount = eye;
+    s.cells = LightCells({{0, 1, 2}, {2}});
+    const auto leaf = [](std::uint32_t label) {
+        return DecisionTree::Node{0.0f, label << 4 | DecisionTree::kLeaf};
+    };
+    s.lightTree = DecisionTree({{0.5f, 1u << 4 | 3u}, leaf(3), leaf(light - 1)}, light);
+    s.eyeTree = DecisionTree({{-2.5f, 1u << 4 | 8u}, leaf(0), leaf(eye - 1)}, eye);
+    s.lightPaths = 2000;
+    for (std::uint32_t i = 0; i < light; ++i) {
+        s.q.push_back(0.25 * i);
+        s.population.push_back(0.5 * i);
+    }
+    s.gamma.assign(std::size_t(light) * eye, 1.0f / float(light));
+    file.contentHash = s.contentHash();
+    return file;
+}
+
+TEST_F(SubspaceFiles, comeBack) {
+    const SubspaceFile written = example(5, 3);
+    writeSubspaceFile(path(), written);
+    const SubspaceFile read = readSubspaceFile(path(), "0123abc", "train again");
+    EXPECT_EQ(read.subspaces.contentHash(), written.subspaces.contentHash());
+    EXPECT_EQ(read.contentHash, written.contentHash);
+    EXPECT_EQ(read.stamp, written.stamp);
+    EXPECT_EQ(read.subspaces.q, written.subspaces.q);
+    EXPECT_EQ(read.subspaces.population, written.subspaces.population);
+    EXPECT_EQ(read.subspaces.cells.count(), 3u);
+    EXPECT_NE(example(5, 4).contentHash, written.contentHash);
+}
+
+TEST_F(SubspaceFiles, damagedOnesAreRefused) {
+    writeSubspaceFile(path(), example(5, 3));
+    const std::string good = content();
+    Rng rng(5, 0, StreamKind::User, 0);
+    for (int n = 0; n < 200; ++n) {
+        std::string bad = good;
+        // Every byte of the header, and others.
+        const std::uint32_t at = n < 64 ? std::uint32_t(n) : rng.below(std::uint32_t(bad.size()));
+        bad[at] = char(bad[at] ^ (1 << rng.below(8)));
+        replace(bad);
+        expectRefused("a flipped bit");
+        replace(good.substr(0, rng.below(std::uint32_t(good.size()))));
+        expectRefused("a truncated file");
+    }
+    replace(good + std::string(8, '\0'));
+    expectRefused("a longer file");
+    replace(good);
+    readSubspaceFile(path(), "0123abc", "train again");
+    std::filesystem::remove(path());
+    expectRefused("no file");
+}
+
+TEST_F(SubspaceFiles, foreignOnesAreRefused) {
+    writeSubspaceFile(path(), example(5, 3));
+    expectRefused("another scene's", "another");
+    EXPECT_NE(cacheFile("d", subspaceStamp("a", 1, 2, 3, 4), "x"),
+              cacheFile("d", subspaceStamp("a", 1, 2, 3, 5), "x"));
+}
+
+/// A good checksum over numbers that do not fit together.
+TEST_F(SubspaceFiles, wrongOnesAreRefused) {
+    const auto refused = [&](const std::string& what, const auto& spoil) {
+        SubspaceFile file = example(5, 3);
+        spoil(file.subspaces);
+        writeSubspaceFile(path(), file);
+        expectRefused(what);
+    };
+    refused("a column that does not sum to one", [](Subspaces& s) { s.gamma[2] = 0.9f; });
+    refused("a negative Gamma", [](Subspaces& s) { s.gamma[0] = -0.2f, s.gamma[1] = 0.6f; });
+    refused("a Gamma of another size", [](Subspaces& s) { s.gamma.pop_back(); });
+    refused("Q that is not a number", [](Subspaces& s) { s.q[1] = std::nan(""); });
+    refused("no Q", [](Subspaces& s) { s.q.clear(), s.population.clear(); });
+    refused("too few populations", [](Subspaces& s) { s.population.pop_back(); });
+    refused("labels out of range", [](Subspaces& s) {
+        s.eyeTree = DecisionTree({{0.0f, 9u << 4 | DecisionTree::kLeaf}}, 10);
+    });
+    refused("cells out of range", [](Subspaces& s) { s.cells = LightCells({{7, 1, 1}}); });
+}
+
+TEST_F(SubspaceFiles, areReadInMilliseconds) {
+    writeSubspaceFile(path(), example(1000, 1000));
+    using Clock = std::chrono::steady_clock;
+    double best = 1.0;
+    for (int n = 0; n < 5; ++n) {
+        const Clock::time_point start = Clock::now();
+        readSubspaceFile(path(), "0123abc", "train again");
+        best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count());
+    }
+    EXPECT_LT(best, 0.1);
+}
+
+}  // namespace
+}  // namespace lacuna::test
