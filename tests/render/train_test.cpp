@@ -19,10 +19,9 @@ class TrainTool : public RenderTool {
     /// Of what training just wrote to --json @t.json.
     std::string trainedFile() const { return json("t.json").at("file"); }
     std::string render() const {
-        return std::string(
-                   "@room.gltf -o @out.exr --method spcbpt --width 24 --height 16 "
-                   "--iterations 2 --cache @cache --set candidates=100 ") +
-               kSameSmall;
+        std::string arguments = "@room.gltf -o @out.exr --method spcbpt --width 24 --height 16 ";
+        arguments += "--iterations 2 --cache @cache --set candidates=100 ";
+        return arguments += kSameSmall;
     }
 };
 
