@@ -48,10 +48,16 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
     const MethodRow row = rowNamed(GetParam());
     Shot shot;
     shot.maxDepth = 4;
-    // The same view on a larger film: a pool of 10^4 is worth more eye paths, the mean is the same.
-    shot.width = shot.height = 48;
+    // The same view on a larger film, the same mean: a pool of 10^4, which is weighed at every
+    // cache point, is worth more eye paths, and no more cache points.
+    shot.width = shot.height = 96;
     shot.candidates = 10000;
+    for (const Parameter& p : row.parameters) {
+        if (p.name != "cache_density" && p.name != "record_density") continue;
+        shot.settings.push_back(p.name + "=" + std::to_string(0.25 * p.defaultValue));
+    }
     const Picture large = renderUntilKnown(*scene, row, shot, kLargeError, 1000);
+    shot.settings.clear();
     shot.width = shot.height = 8;
     for (const int candidates : {1, 2, 4}) {
         shot.candidates = candidates;
