@@ -115,7 +115,7 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
                   const Scene& scene, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress) {
     Caches caches;
-    if (!row.needsSkeleton && !row.needsSubspaces) {
+    if (!row.needsCaches()) {
         if (options.prepare) {
             progress.remark("--prepare: " + row.name + " needs no caches: nothing to build");
         }

@@ -45,8 +45,9 @@ struct MethodRow {
     std::string reference;  ///< key in REFERENCES.md
     std::string summary;    ///< one line
     TechniqueSet techniques;
-    bool needsSkeleton = false;           ///< of the empty space (Method::useSkeleton)
-    bool needsSubspaces = false;          ///< of light and eye subpaths (Method::useSubspaces)
+    bool needsSkeleton = false;   ///< of the empty space (Method::useSkeleton)
+    bool needsSubspaces = false;  ///< of light and eye subpaths (Method::useSubspaces)
+    bool needsCaches() const { return needsSkeleton || needsSubspaces; }
     std::vector<std::string> parts = {};  ///< names of proposals' labels, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     std::vector<Parameter> parameters;

@@ -35,7 +35,7 @@ void renderRun(const Results& results, const PlannedRun& run, const RunDirectory
                const std::string& renderer, const std::atomic<bool>& cancel) {
     std::vector<std::string> arguments = run.arguments;
     arguments.insert(arguments.end(), {"--reference", results.references[run.scene].path});
-    if (findMethod(results.study.methods[run.method].method).needsSkeleton) {
+    if (findMethod(results.study.methods[run.method].method).needsCaches()) {
         arguments.insert(arguments.end(), {"--prepare", "--cache", directory.cache()});
     }
     directory.render(renderer, results.study.scenes[run.scene].file, arguments, cancel);
