@@ -22,6 +22,7 @@ struct Scene::WorldMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
+    bool plain = true;  ///< neither vertex colours nor a normal map
 };
 
 struct Scene::Object {
@@ -170,6 +171,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         }
         to.uvs = std::move(from.uvs);
         to.colors = std::move(from.colors);
+        to.plain =
+            to.colors.empty() && !(d.materials[from.material].normalTexture && !to.uvs.empty());
         to.triangles = std::move(from.triangles);
         if (mirroredMesh[m]) {
             for (auto& t : to.triangles) std::swap(t[1], t[2]);
@@ -364,6 +367,8 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     }
     s.uv = uvAt(mesh, t, hit.u, hit.v);
     s.material = mesh.material;
+    if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
+    if (mesh.plain) return;
     if (!mesh.colors.empty()) {
         const auto color = [&](std::uint32_t corner) {
             const auto& c = mesh.colors[corner];
@@ -376,7 +381,6 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
         s.ns = bumped(s, material.normalTexture, material.normalScale, {p0, p1, p2},
                       {mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]});
     }
-    if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
 }
 
 /// Shading normal by a normal map. The tangents are the directions in which the triangle's texture
