@@ -1,12 +1,10 @@
 #include "libcore/cache/guarded_file.h"
 
-#include <xxhash.h>
-
-#include <cstdio>
 #include <fstream>
 #include <sstream>
 
 #include "libcore/base/atomic_file.h"
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 
 namespace lacuna {
@@ -14,12 +12,10 @@ namespace lacuna {
 namespace {
 
 std::string sidecarText(std::string_view bytes) {
-    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-    char text[96];
-    std::snprintf(text, sizeof(text), "lacuna-guard 1\nbytes %zu\nxxh3-128 %016llx%016llx\n",
-                  bytes.size(), (unsigned long long)(hash.high64),
-                  (unsigned long long)(hash.low64));
-    return text;
+    ContentHash hash;
+    hash.addValues(std::span(bytes));
+    return "lacuna-guard 1\nbytes " + std::to_string(bytes.size()) + "\nxxh3-128 " + hash.hex() +
+           "\n";
 }
 
 bool readAll(const std::string& path, std::string& bytes) {

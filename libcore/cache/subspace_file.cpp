@@ -1,13 +1,13 @@
 #include "libcore/cache/subspace_file.h"
 
-#include <xxhash.h>
-
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "libcore/base/atomic_file.h"
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 
 namespace lacuna {
@@ -111,15 +111,12 @@ struct Reader : Arrays {
 };
 
 /// Of everything but the hash itself.
-XXH128_hash_t hashOf(Header header, const std::string& bytes) {
+std::array<std::uint64_t, 2> hashOf(Header header, const std::string& bytes) {
     header.hash[0] = header.hash[1] = 0;
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_128bits_reset(state);
-    XXH3_128bits_update(state, &header, sizeof(header));
-    XXH3_128bits_update(state, bytes.data() + sizeof(header), bytes.size() - sizeof(header));
-    const XXH128_hash_t hash = XXH3_128bits_digest(state);
-    XXH3_freeState(state);
-    return hash;
+    ContentHash hash;
+    hash.addValue(header);
+    hash.addValues(std::span(bytes).subspan(sizeof(header)));
+    return hash.digest();
 }
 
 }  // namespace
@@ -144,9 +141,9 @@ void writeSubspaceFile(const std::string& path, const SubspaceFile& file) {
     header.version = kVersion;
     header.sections = kSections;
     header.bytes = w.bytes.size();
-    const XXH128_hash_t hash = hashOf(header, w.bytes);
-    header.hash[0] = hash.low64;
-    header.hash[1] = hash.high64;
+    const auto hash = hashOf(header, w.bytes);
+    header.hash[0] = hash[0];
+    header.hash[1] = hash[1];
     std::memcpy(w.bytes.data(), &header, sizeof(header));
     writeFileAtomically(path, w.bytes);
 }
@@ -172,9 +169,9 @@ SubspaceFile readSubspaceFile(const std::string& path, const std::string& sceneH
     if (header.version != kVersion) {
         refuse("format " + std::to_string(kVersion), std::to_string(header.version));
     }
-    const XXH128_hash_t hash = hashOf(header, bytes);
-    if (header.bytes != bytes.size() || header.sections != kSections ||
-        header.hash[0] != hash.low64 || header.hash[1] != hash.high64) {
+    const auto hash = hashOf(header, bytes);
+    if (header.bytes != bytes.size() || header.sections != kSections || header.hash[0] != hash[0] ||
+        header.hash[1] != hash[1]) {
         refuse("what its checksum says", "other bytes");
     }
 

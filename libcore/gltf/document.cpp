@@ -125,7 +125,7 @@ Bytes Document::readExternal(const std::filesystem::path& path, const std::strin
     Bytes read =
         readFile(path, std::min(Limits::kFileBytes, Limits::kTotalBytes - bytesRead), place);
     bytesRead += read.size;
-    hash.add(read.span());
+    hash.addValues(read.span());
     return read;
 }
 
@@ -133,7 +133,7 @@ void loadDocument(const std::string& file, Document& document, Warnings& warning
     document.file = file;
     document.bytes = readFile(file, Limits::kFileBytes);
     document.bytesRead = document.bytes.size;
-    document.hash.add(document.bytes.span());
+    document.hash.addValues(document.bytes.span());
 
     const Chunks chunks = splitContainer(file, document.bytes.span());
     document.json = parseJson(file, chunks.json);

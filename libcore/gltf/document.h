@@ -29,7 +29,7 @@ struct Document {
     std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
     nlohmann::json json;
     tinygltf::Model model;
-    ContentHash hash;
+    ContentHash hash;  ///< of everything that was read, in order
     std::uint64_t bytesRead = 0;
     std::size_t scene = 0;  ///< the default scene; model.scenes may be empty
 

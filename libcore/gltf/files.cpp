@@ -1,7 +1,5 @@
 #include "libcore/gltf/files.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -77,33 +75,6 @@ bool leavesFolder(std::string_view name) {
 
 }  // namespace
 
-struct ContentHash::State {
-    XXH3_state_t* xxh = XXH3_createState();
-    ~State() { XXH3_freeState(xxh); }
-};
-
-ContentHash::ContentHash() : state_(std::make_unique<State>()) {
-    if (!state_->xxh) throw std::bad_alloc();
-    XXH3_128bits_reset(state_->xxh);
-}
-
-ContentHash::~ContentHash() = default;
-
-void ContentHash::add(std::span<const std::uint8_t> bytes) {
-    if (!bytes.empty()) XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
-}
-
-std::string ContentHash::hex() const {
-    const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
-    std::string text;
-    for (const std::uint64_t half : {hash.high64, hash.low64}) {
-        for (int shift = 60; shift >= 0; shift -= 4) {
-            text += "0123456789abcdef"[(half >> shift) & 15u];
-        }
-    }
-    return text;
-}
-
 Bytes readFile(const fs::path& path, std::uint64_t mostBytes, const std::string& askedBy) {
     const std::string by = byClause(askedBy);
     const std::uint64_t size = regularFileSize(path, by);
@@ -128,7 +99,7 @@ void hashFile(const fs::path& path, ContentHash& hash, const std::string& askedB
     std::vector<std::uint8_t> block(1u << 20);
     while (stream) {
         stream.read(reinterpret_cast<char*>(block.data()), std::streamsize(block.size()));
-        hash.add({block.data(), std::size_t(stream.gcount())});
+        hash.addValues(std::span<const std::uint8_t>(block.data(), std::size_t(stream.gcount())));
     }
     if (!stream.eof()) {
         refuse(path.string(), "", "a readable file" + by, "a read error", "copy the file again");

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "libcore/base/content_hash.h"
+
 namespace lacuna::gltf {
 
 /// Owned bytes, not initialised before they are read into (a scene can be gigabytes).
@@ -16,22 +18,6 @@ struct Bytes {
     std::unique_ptr<std::uint8_t[]> data;
     std::size_t size = 0;
     std::span<const std::uint8_t> span() const { return {data.get(), size}; }
-};
-
-/// Running XXH3-128 of everything that was read, in order.
-class ContentHash {
-  public:
-    ContentHash();
-    ~ContentHash();
-    ContentHash(const ContentHash&) = delete;
-    ContentHash& operator=(const ContentHash&) = delete;
-    void add(std::span<const std::uint8_t> bytes);
-    /// 32 hexadecimal digits, high half first.
-    std::string hex() const;
-
-  private:
-    struct State;
-    std::unique_ptr<State> state_;
 };
 
 /// All bytes of the regular file `path`. `askedBy` is named in the message when the file is not the

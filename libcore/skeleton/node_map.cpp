@@ -1,13 +1,11 @@
 #include "libcore/skeleton/node_map.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/voxel/voxelize.h"
@@ -194,9 +192,8 @@ NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
 }
 
 std::string Skeleton::contentHash() const {
-    XXH3_state_t* hash = XXH3_createState();
-    XXH3_128bits_reset(hash);
-    const auto add = [&](const auto& value) { XXH3_128bits_update(hash, &value, sizeof(value)); };
+    ContentHash hash;
+    const auto add = [&](const auto& value) { hash.addValue(value); };
     const auto addPoint = [&](const Vec3d& p) {
         add(p.x);
         add(p.y);
@@ -214,13 +211,8 @@ std::string Skeleton::contentHash() const {
     add(map.shape().size);
     addPoint(map.shape().origin);
     add(map.shape().voxel);
-    XXH3_128bits_update(hash, map.entries().data(), map.entries().size_bytes());
-    const XXH128_hash_t digest = XXH3_128bits_digest(hash);
-    XXH3_freeState(hash);
-    char text[33];
-    std::snprintf(text, sizeof(text), "%016llx%016llx", (unsigned long long)(digest.high64),
-                  (unsigned long long)(digest.low64));
-    return text;
+    hash.addValues(map.entries());
+    return hash.hex();
 }
 
 }  // namespace lacuna

@@ -1,11 +1,10 @@
 #include "libcore/subspace/subspaces.h"
 
-#include <xxhash.h>
-
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <stdexcept>
+
+#include "libcore/base/content_hash.h"
 
 namespace lacuna {
 
@@ -52,31 +51,21 @@ void Subspaces::check() const {
 }
 
 std::string Subspaces::contentHash() const {
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_128bits_reset(state);
-    const auto add = [&](const void* data, std::size_t bytes) {
-        XXH3_128bits_update(state, data, bytes);
-    };
+    ContentHash hash;
     const auto array = [&](const auto& values) {
-        const std::uint64_t n = values.size();
-        add(&n, sizeof(n));
-        add(values.data(), values.size() * sizeof(values[0]));
+        hash.addValue(std::uint64_t(values.size()));
+        hash.addValues(std::span(values.data(), values.size()));
     };
     array(cells.blocks());
     array(lightTree.nodes());
     array(eyeTree.nodes());
-    add(&lightCount, sizeof(lightCount));
-    add(&eyeCount, sizeof(eyeCount));
-    add(&lightPaths, sizeof(lightPaths));
+    hash.addValue(lightCount);
+    hash.addValue(eyeCount);
+    hash.addValue(lightPaths);
     array(q);
     array(population);
     array(gamma);
-    const XXH128_hash_t digest = XXH3_128bits_digest(state);
-    XXH3_freeState(state);
-    char text[33];
-    std::snprintf(text, sizeof(text), "%016llx%016llx", (unsigned long long)(digest.high64),
-                  (unsigned long long)(digest.low64));
-    return text;
+    return hash.hex();
 }
 
 double unseenQ(std::span<const double> q, std::uint64_t lightPaths) {

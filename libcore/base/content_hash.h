@@ -1,0 +1,42 @@
+// Names for content: the same bytes have the same name, whatever they are called or lie in.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace lacuna {
+
+/// XXH3-128 of bytes that are given piece by piece.
+class ContentHash {
+  public:
+    ContentHash();
+    ~ContentHash();
+    ContentHash(const ContentHash&) = delete;
+    ContentHash& operator=(const ContentHash&) = delete;
+
+    void add(std::span<const std::byte> bytes);
+    /// The bytes of trivially copyable values, which must have no padding.
+    template <class T>
+    void addValues(std::span<const T> values) {
+        add(std::as_bytes(values));
+    }
+    template <class T>
+    void addValue(const T& value) {
+        addValues(std::span(&value, 1));
+    }
+
+    /// Low half first.
+    std::array<std::uint64_t, 2> digest() const;
+    /// 32 hexadecimal digits, high half first.
+    std::string hex() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace lacuna
