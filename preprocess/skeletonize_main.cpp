@@ -1,5 +1,7 @@
 // lacuna-skeletonize: the curve skeleton of a scene's empty space and the map of its nodes.
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"

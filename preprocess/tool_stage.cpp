@@ -1,6 +1,8 @@
 #include "preprocess/tool_stage.h"
 
 #include <sys/resource.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 // What the preprocessing tools share: the scene, the place of their result, what they report.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "libcore/scene/scene.h"
 #include "preprocess/voxelize.h"

@@ -1,5 +1,7 @@
 // lacuna-train: subspaces of light and eye subpaths, Q and Gamma, for the method spcbpt.
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"

@@ -1,5 +1,7 @@
 // lacuna-voxelize: the solid voxels of a scene, its empty space and the distances in it.
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/parallel.h"
 #include "preprocess/tool_stage.h"

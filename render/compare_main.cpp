@@ -1,4 +1,5 @@
 // lacuna-compare: the four error measures of interface.md between an image and a reference.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/atomic_file.h"
 #include "render/method_help.h"

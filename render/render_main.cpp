@@ -1,5 +1,7 @@
 // lacuna-render: a picture of a glTF scene by any row of the registry of methods.
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"

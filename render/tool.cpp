@@ -1,5 +1,6 @@
 #include "render/tool.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <iostream>

@@ -1,11 +1,14 @@
 // What every command-line tool of ours shares: options, exit codes, one line per error.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace lacuna {
 

@@ -1,6 +1,7 @@
 #include "render/study/page.h"
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
 #include "libcore/image/file_bytes.h"

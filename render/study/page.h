@@ -1,7 +1,7 @@
 // index.html: everything that a study found, in one file that opens without server or network.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace lacuna {

@@ -1,7 +1,7 @@
 // What the page shows besides pictures, as JSON; the same goes to --json.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "render/study/pictures.h"
 
 #include <Imath/half.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The pictures of a page: radiance that a browser can expose anew, small enough to be embedded.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "render/study/results.h"

@@ -1,5 +1,7 @@
 #include "render/study/report.h"
 
+#include <nlohmann/json.hpp>
+
 #include "libcore/base/atomic_file.h"
 #include "render/output.h"
 #include "render/study/page.h"

@@ -1,6 +1,7 @@
 #include "render/study/results.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace lacuna {
 

@@ -1,8 +1,10 @@
 #include "render/study/study_file.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "libcore/base/error.h"

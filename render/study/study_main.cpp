@@ -1,5 +1,6 @@
 // lacuna-study: what accuracy costs in time. Runs lacuna-render for every scene, method, setting
 // and seed, and makes tables and a page of what it logs.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 

@@ -1,6 +1,7 @@
 // --set effects.NAME=on|off: what is forced on changes no picture, what is forced off is missing
 // and said to be.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

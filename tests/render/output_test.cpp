@@ -1,5 +1,6 @@
 // What lacuna-render writes: image, layers, header, JSON, curve.
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libcore/image/exr.h"

@@ -1,5 +1,6 @@
 // Limits of time, and interrupts.
 #include <signal.h>
+#include <nlohmann/json.hpp>
 
 #include "libcore/image/exr.h"
 #include "tests/render/render_tool.h"

@@ -1,5 +1,6 @@
 // What lacuna-train says, writes and returns, and what lacuna-render makes of its file.
 #include <signal.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <fstream>

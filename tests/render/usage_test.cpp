@@ -1,6 +1,8 @@
 // What lacuna-render says and returns for command lines and scenes, good and bad.
 #include <sys/stat.h>
 
+#include <nlohmann/json.hpp>
+
 #include "libcore/methods/registry.h"
 #include "tests/render/render_tool.h"
 

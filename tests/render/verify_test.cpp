@@ -1,6 +1,7 @@
 // --verify and --replay: the second way to every weight, and one sample run alone.
 #include <cmath>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libcore/base/parallel.h"

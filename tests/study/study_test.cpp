@@ -1,5 +1,6 @@
 // lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/study/study_tool.h"
