@@ -1,6 +1,7 @@
 #include "render/study/execute.h"
 
 #include "libcore/base/error.h"
+#include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
 #include "render/study/content_hash.h"
 #include "render/study/machine.h"
@@ -8,6 +9,25 @@
 
 namespace lacuna {
 namespace {
+
+std::string rangeText(const char* axis, int low, int high) {
+    return std::string(axis) + " " + std::to_string(low) + " to " + std::to_string(high);
+}
+
+/// What the study's file alone could not tell.
+void requireCropsInside(const Study& study, std::size_t s, const SceneFacts& facts) {
+    const StudyScene& scene = study.scenes[s];
+    const int width = facts.crop.width(), height = facts.crop.height();
+    for (const StudyCrop& crop : scene.crops) {
+        const PixelRect& r = crop.rect;
+        if (r.x1 <= width && r.y1 <= height) continue;
+        throw InputError(study.file + ": scenes[" + std::to_string(s) + "]: crop '" + crop.name +
+                         "': expected a part of the " + std::to_string(width) + " x " +
+                         std::to_string(height) + " pixels that are rendered, found " +
+                         rangeText("x", r.x0, r.x1) + ", " + rangeText("y", r.y0, r.y1) +
+                         "; move it or change width and height");
+    }
+}
 
 /// Scenes and the references that are there first; then the references that take long.
 void findReferences(Results& results, const std::string& directory, const std::string& renderer,
@@ -17,9 +37,11 @@ void findReferences(Results& results, const std::string& directory, const std::s
     {
         const ThreadPool pool(study.threads);
         for (std::size_t s = 0; s < study.scenes.size(); ++s) {
-            results.facts.push_back(inspectScene(study.scenes[s], pool));
-            if (study.scenes[s].recipe) continue;
-            results.references[s] = openReference(study.scenes[s].reference, results.facts[s]);
+            const StudyScene& scene = study.scenes[s];
+            results.facts.push_back(inspectScene(scene, pool));
+            requireCropsInside(study, s, results.facts[s]);
+            if (scene.recipe) continue;
+            results.references[s] = openReference(scene.reference, results.facts[s], scene.crops);
         }
     }
     for (std::size_t s = 0; s < study.scenes.size(); ++s) {
@@ -27,18 +49,58 @@ void findReferences(Results& results, const std::string& directory, const std::s
         const std::string path =
             renderReference(study.scenes[s], results.facts[s], study.threads,
                             directory + "/references", renderer, cancel, progress);
-        results.references[s] = openReference(path, results.facts[s]);
+        results.references[s] = openReference(path, results.facts[s], study.scenes[s].crops);
     }
 }
 
+/// `more`: arguments beside those of the plan.
 void renderRun(const Results& results, const PlannedRun& run, const RunDirectory& directory,
-               const std::string& renderer, const std::atomic<bool>& cancel) {
+               const std::vector<std::string>& more, const std::string& renderer,
+               const std::atomic<bool>& cancel) {
     std::vector<std::string> arguments = run.arguments;
-    arguments.insert(arguments.end(), {"--reference", results.references[run.scene].path});
+    arguments.insert(arguments.end(), more.begin(), more.end());
     if (findMethod(results.study.methods[run.method].method).needsCaches()) {
         arguments.insert(arguments.end(), {"--prepare", "--cache", directory.cache()});
     }
     directory.render(renderer, results.study.scenes[run.scene].file, arguments, cancel);
+}
+
+std::string describe(const Study& study, const PlannedRun& run) {
+    return study.scenes[run.scene].name + ", " + study.methods[run.method].name + ", seed " +
+           std::to_string(run.seed);
+}
+
+/// Errors of a finished run's picture inside the scene's crops.
+std::vector<ErrorMeasures> errorsInCrops(const Results& results, const PlannedRun& run,
+                                         const std::string& path) {
+    std::vector<ErrorMeasures> errors;
+    const std::vector<StudyCrop>& crops = results.study.scenes[run.scene].crops;
+    if (crops.empty()) return errors;
+    const Image image = readImage(path);
+    const PixelRect& rendered = results.facts[run.scene].crop;
+    if (image.width != rendered.width() || image.height != rendered.height()) {
+        throw InputError(path + ": expected a picture as large as the scene's others, for its " +
+                         "crops, found another size; remove crops, or the method's own size");
+    }
+    for (std::size_t c = 0; c < crops.size(); ++c) {
+        const ErrorReference& reference = results.references[run.scene].crops[c].picture;
+        errors.push_back(reference.compare(cropped(image, crops[c].rect), path));
+    }
+    return errors;
+}
+
+/// Renders the layers per technique that are missing.
+void renderTechniques(Results& results, const std::string& directory, const std::string& renderer,
+                      const std::atomic<bool>& cancel, Progress& progress) {
+    for (const PlannedRun& run :
+         planTechniques(results.study, results.facts, results.rendererHash)) {
+        const RunDirectory folder(directory + "/techniques/" + run.id);
+        if (!folder.complete()) {
+            progress.phase("techniques: " + describe(results.study, run));
+            renderRun(results, run, folder, {}, renderer, cancel);
+        }
+        results.techniques.push_back({run, folder.report(), folder.image()});
+    }
 }
 
 }  // namespace
@@ -61,18 +123,20 @@ Execution execute(const Study& study, const std::string& directory, const std::s
         const RunDirectory folder(directory + "/runs/" + run.id);
         if (!folder.complete()) {
             progress.phase("run " + std::to_string(i + 1) + " of " + std::to_string(plan.size()) +
-                           ": " + study.scenes[run.scene].name + ", " +
-                           study.methods[run.method].name + ", seed " + std::to_string(run.seed));
-            renderRun(results, run, folder, renderer, cancel);
+                           ": " + describe(study, run));
+            renderRun(results, run, folder, {"--reference", results.references[run.scene].path},
+                      renderer, cancel);
             ++execution.rendered;
         }
-        results.runs.push_back({run, readCurve(folder.curve()), folder.report(), folder.image()});
+        results.runs.push_back({run, readCurve(folder.curve()), folder.report(), folder.image(),
+                                errorsInCrops(results, run, folder.image())});
         if (results.runs.back().report.at("scene_hash") != results.facts[run.scene].contentHash) {
             throw InputError(study.scenes[run.scene].file +
                              ": expected it to stay as it is while the study runs, found it "
                              "changed; run the study again");
         }
     }
+    renderTechniques(results, directory, renderer, cancel, progress);
     return execution;
 }
 

@@ -37,6 +37,27 @@ std::string runId(const std::vector<std::string>& arguments,
     return contentHash(text).substr(0, 16);
 }
 
+namespace {
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+}
+
+/// All but the id; `effort` limits it.
+PlannedRun planRun(const Study& study, std::size_t scene, std::size_t method, std::uint64_t seed,
+                   const std::vector<std::string>& effort) {
+    const StudyMethod& m = study.methods[method];
+    PlannedRun run{scene, method, seed, {"--method", m.method, "--seed", std::to_string(seed)}, ""};
+    for (const std::string& assignment : m.assignments)
+        append(run.arguments, {"--set", assignment});
+    append(run.arguments, mergedOptions(study.scenes[scene], m));
+    append(run.arguments, effort);
+    if (study.threads > 0) append(run.arguments, {"--threads", std::to_string(study.threads)});
+    return run;
+}
+
+}  // namespace
+
 std::vector<PlannedRun> planRuns(const Study& study, const std::vector<SceneFacts>& facts,
                                  const std::vector<std::string>& referenceHashes,
                                  const std::string& renderer, const std::string& machine) {
@@ -45,25 +66,28 @@ std::vector<PlannedRun> planRuns(const Study& study, const std::vector<SceneFact
     for (std::size_t s = 0; s < study.scenes.size(); ++s) {
         for (std::size_t k = 0; k < study.seeds.size(); ++k) {
             for (std::size_t m = 0; m < methodCount; ++m) {
-                PlannedRun run;
-                run.scene = s;
-                run.method = (m + k) % methodCount;
-                run.seed = study.seeds[k];
-                const StudyMethod& method = study.methods[run.method];
-                run.arguments = {"--method", method.method, "--seed", std::to_string(run.seed)};
-                const auto append = [&](const std::vector<std::string>& more) {
-                    run.arguments.insert(run.arguments.end(), more.begin(), more.end());
-                };
-                for (const std::string& assignment : method.assignments) {
-                    append({"--set", assignment});
-                }
-                append(mergedOptions(study.scenes[s], method));
-                append(study.effort);
-                if (study.threads > 0) append({"--threads", std::to_string(study.threads)});
+                PlannedRun run =
+                    planRun(study, s, (m + k) % methodCount, study.seeds[k], study.effort);
                 run.id =
                     runId(run.arguments, {renderer, machine, facts[s].hash, referenceHashes[s]});
                 runs.push_back(std::move(run));
             }
+        }
+    }
+    return runs;
+}
+
+std::vector<PlannedRun> planTechniques(const Study& study, const std::vector<SceneFacts>& facts,
+                                       const std::string& renderer) {
+    std::vector<PlannedRun> runs;
+    if (!study.techniques) return runs;
+    const std::vector<std::string> effort{
+        "--iterations", std::to_string(study.techniques->iterations), "--techniques"};
+    for (std::size_t s = 0; s < study.scenes.size(); ++s) {
+        for (std::size_t m = 0; m < study.methods.size(); ++m) {
+            PlannedRun run = planRun(study, s, m, study.seeds.front(), effort);
+            run.id = runId(run.arguments, {renderer, facts[s].hash});
+            runs.push_back(std::move(run));
         }
     }
     return runs;

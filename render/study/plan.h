@@ -37,6 +37,11 @@ std::vector<PlannedRun> planRuns(const Study& study, const std::vector<SceneFact
                                  const std::vector<std::string>& referenceHashes,
                                  const std::string& renderer, const std::string& machine);
 
+/// A run with --techniques per scene and method, of the first seed; none where the study asks for
+/// none. Their pictures are looked at, not timed: no matter on which machine they were made.
+std::vector<PlannedRun> planTechniques(const Study& study, const std::vector<SceneFacts>& facts,
+                                       const std::string& renderer);
+
 /// An id from the arguments and everything else that a run depends on.
 std::string runId(const std::vector<std::string>& arguments,
                   const std::vector<std::string>& dependencies);

@@ -35,30 +35,23 @@ std::string attributeText(const LayeredImage& image, const std::string& name) {
 
 /// Expected measures of a picture whose pixels scatter normally about R with this variance:
 /// E |x| = sqrt(2 / pi) sigma.
-ErrorMeasures expectedError(const Image& mean, const Image& variance, const PixelRect& rect) {
+ErrorMeasures expectedError(const Image& mean, const Image& variance) {
     double sum = 0.0;
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        for (int x = rect.x0; x < rect.x1; ++x) {
-            const Rgb& r = mean.at(x, y);
-            sum += double(r.r) + double(r.g) + double(r.b);
-        }
-    }
+    for (const Rgb& r : mean.pixels) sum += double(r.r) + double(r.g) + double(r.b);
     ErrorMeasures e;
-    e.pixels = std::size_t(rect.width()) * std::size_t(rect.height());
+    e.pixels = mean.pixels.size();
     const double n = 3.0 * double(e.pixels), epsilon = 0.01 * sum / n;
     const double meanDeviation = std::sqrt(2.0 / M_PI);
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        for (int x = rect.x0; x < rect.x1; ++x) {
-            const Rgb &r = mean.at(x, y), &v = variance.at(x, y);
-            const double values[] = {r.r, r.g, r.b}, variances[] = {v.r, v.g, v.b};
-            for (int c = 0; c < 3; ++c) {
-                const double deviation = meanDeviation * std::sqrt(variances[c]);
-                e.mae += deviation / n;
-                e.rmse += variances[c] / n;
-                if (epsilon <= 0.0) continue;  // black: relative measures have no scale
-                e.mape += deviation / (values[c] + epsilon) / n;
-                e.relmse += variances[c] / (values[c] * values[c] + epsilon * epsilon) / n;
-            }
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+        const Rgb &r = mean.pixels[i], &v = variance.pixels[i];
+        const double values[] = {r.r, r.g, r.b}, variances[] = {v.r, v.g, v.b};
+        for (int c = 0; c < 3; ++c) {
+            const double deviation = meanDeviation * std::sqrt(variances[c]);
+            e.mae += deviation / n;
+            e.rmse += variances[c] / n;
+            if (epsilon <= 0.0) continue;  // black: relative measures have no scale
+            e.mape += deviation / (values[c] + epsilon) / n;
+            e.relmse += variances[c] / (values[c] * values[c] + epsilon * epsilon) / n;
         }
     }
     e.rmse = std::sqrt(e.rmse);
@@ -99,6 +92,20 @@ class Average {
 };
 
 }  // namespace
+
+Image cropped(const Image& image, const PixelRect& rect) {
+    Image part(rect.width(), rect.height());
+    for (int y = 0; y < part.height; ++y) {
+        for (int x = 0; x < part.width; ++x) part.at(x, y) = image.at(rect.x0 + x, rect.y0 + y);
+    }
+    return part;
+}
+
+Image renderedPart(const Image& image, const SceneFacts& facts) {
+    const PixelRect& crop = facts.crop;
+    if (image.width == crop.width() && image.height == crop.height()) return image;
+    return cropped(image, crop);
+}
 
 std::string renderReference(const StudyScene& scene, const SceneFacts& facts, int threads,
                             const std::string& directory, const std::string& renderer,
@@ -145,7 +152,8 @@ std::string renderReference(const StudyScene& scene, const SceneFacts& facts, in
     return path;
 }
 
-Reference openReference(const std::string& path, const SceneFacts& facts) {
+Reference openReference(const std::string& path, const SceneFacts& facts,
+                        const std::vector<StudyCrop>& crops) {
     Reference reference;
     reference.path = path;
     LayeredImage image;
@@ -179,9 +187,18 @@ Reference openReference(const std::string& path, const SceneFacts& facts) {
                          "; render it again or set max-depth in the study");
     }
     const ErrorReference usable(image.rgb(""), path);
+    const Image picture = renderedPart(usable.image(), facts);
+    std::optional<Image> variance;
     if (image.hasRgb("variance")) {
-        const PixelRect rect = whole ? crop : PixelRect{0, crop.width(), 0, crop.height()};
-        reference.ownError = expectedError(usable.image(), image.rgb("variance"), rect);
+        variance = renderedPart(image.rgb("variance"), facts);
+        reference.ownError = expectedError(picture, *variance);
+    }
+    for (const StudyCrop& c : crops) {
+        CropReference part{ErrorReference(cropped(picture, c.rect), path), std::nullopt};
+        if (variance) {
+            part.ownError = expectedError(part.picture.image(), cropped(*variance, c.rect));
+        }
+        reference.crops.push_back(std::move(part));
     }
     reference.hash = fileHash(path);
     const std::string method = attributeText(image, "method");

@@ -14,17 +14,26 @@ namespace lacuna {
 struct RunResult {
     PlannedRun run;
     Curve curve;
+    nlohmann::json report;                  ///< lacuna-render's --json
+    std::string image;                      ///< path
+    std::vector<ErrorMeasures> cropErrors;  ///< of `image` inside each of the scene's crops
+};
+
+/// A render with a layer per technique (see planTechniques).
+struct TechniqueResult {
+    PlannedRun run;
     nlohmann::json report;  ///< lacuna-render's --json
     std::string image;      ///< path
 };
 
 struct Results {
     Study study;
-    std::string machine;                ///< see machineText
-    std::string rendererHash;           ///< of lacuna-render's file
-    std::vector<SceneFacts> facts;      ///< by scene
-    std::vector<Reference> references;  ///< by scene
-    std::vector<RunResult> runs;        ///< in the order of the plan
+    std::string machine;                      ///< see machineText
+    std::string rendererHash;                 ///< of lacuna-render's file
+    std::vector<SceneFacts> facts;            ///< by scene
+    std::vector<Reference> references;        ///< by scene
+    std::vector<RunResult> runs;              ///< in the order of the plan
+    std::vector<TechniqueResult> techniques;  ///< likewise; empty where the study asks for none
 
     /// The runs of one scene and method, in the order of study.seeds.
     std::vector<const RunResult*> of(std::size_t scene, std::size_t method) const;

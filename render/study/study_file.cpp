@@ -86,6 +86,30 @@ std::map<std::string, std::vector<double>> readBounds(JsonObject object) {
     return bounds;
 }
 
+std::vector<StudyCrop> readCrops(JsonObject& scene) {
+    std::vector<StudyCrop> crops;
+    std::set<std::string> names;
+    for (JsonObject& object : scene.objects("crops")) {
+        const std::string name = object.text("name");
+        requireUnique(object, names, name);
+        const auto pixels = [&](const char* key, int low) {
+            return int(object.integer(key, low, kMaxImageSide));
+        };
+        const int x = pixels("x", 0), y = pixels("y", 0);
+        crops.push_back({name, {x, x + pixels("width", 1), y, y + pixels("height", 1)}});
+        object.finish();
+    }
+    return crops;
+}
+
+TechniqueRequest readTechniques(JsonObject object) {
+    constexpr int kEdges = 5, kMostEdges = 12;
+    TechniqueRequest request{object.integer("iterations", 1, 1'000'000'000), kEdges};
+    if (object.has("edges")) request.edges = int(object.integer("edges", 1, kMostEdges));
+    object.finish();
+    return request;
+}
+
 StudyScene readScene(JsonObject& object, const Study& study) {
     StudyScene scene;
     scene.file = resolvePath(study.file, object.text("file"));
@@ -108,6 +132,7 @@ StudyScene readScene(JsonObject& object, const Study& study) {
         recipe.finish();
     }
     if (object.has("bounds")) scene.bounds = readBounds(object.object("bounds"));
+    if (object.has("crops")) scene.crops = readCrops(object);
     object.finish();
     return scene;
 }
@@ -247,6 +272,7 @@ Study readStudy(const std::string& path, bool quick) {
     }
     if (object.has("times")) study.times = object.positives("times");
     if (object.has("equal_iterations")) study.iterations = object.positives("equal_iterations");
+    if (object.has("techniques")) study.techniques = readTechniques(object.object("techniques"));
     const auto bounds = object.has("bounds") ? readBounds(object.object("bounds"))
                                              : std::map<std::string, std::vector<double>>{};
 

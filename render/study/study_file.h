@@ -19,6 +19,19 @@ struct ReferenceRecipe {
     std::int64_t parts = 0;
 };
 
+/// A part of a scene's picture that the page shows enlarged.
+struct StudyCrop {
+    std::string name;
+    PixelRect rect;  ///< of what is rendered: (0, 0) is its upper left pixel
+};
+
+/// Renders beside the measured ones, with a layer per technique: writing layers costs time, so that
+/// no measured run does.
+struct TechniqueRequest {
+    std::int64_t iterations = 0;
+    int edges = 0;  ///< longest paths whose layers the page shows
+};
+
 struct StudyScene {
     std::string name;
     std::string file;                  ///< path that can be opened
@@ -26,6 +39,7 @@ struct StudyScene {
     std::string reference;             ///< path; empty: by recipe
     std::optional<ReferenceRecipe> recipe;
     std::map<std::string, std::vector<double>> bounds;  ///< by measure
+    std::vector<StudyCrop> crops;
 };
 
 /// One setting of one method: a curve of each plot, a row of each table.
@@ -49,6 +63,7 @@ struct Study {
     std::vector<std::string> measures;
     std::vector<double> times;       ///< seconds; empty: the longest that all runs have
     std::vector<double> iterations;  ///< empty: the most that all runs have
+    std::optional<TechniqueRequest> techniques;
     std::vector<StudyScene> scenes;
     std::vector<StudyMethod> methods;
 };

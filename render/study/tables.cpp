@@ -1,6 +1,7 @@
 #include "render/study/tables.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/study/band.h"
 
@@ -9,12 +10,15 @@ namespace {
 
 using Values = std::vector<std::optional<double>>;
 
-/// "" or why the reference cannot judge an error of this size.
-std::string referenceFlag(const Reference& reference, Measure measure, double error) {
-    if (!reference.ownError) return "its error is not known";
-    const ErrorMeasures& own = *reference.ownError;
-    const double values[] = {own.mae, own.rmse, own.mape, own.relmse};
-    const double value = values[std::size_t(measure)];
+double valueOf(const ErrorMeasures& e, Measure measure) {
+    const double values[] = {e.mae, e.rmse, e.mape, e.relmse};
+    return values[std::size_t(measure)];
+}
+
+/// "" or why a reference with this error of its own cannot judge an error of this size.
+std::string referenceFlag(const std::optional<ErrorMeasures>& own, Measure measure, double error) {
+    if (!own) return "its error is not known";
+    const double value = valueOf(*own, measure);
     return value * referenceMargin(measure) <= error ? "" : "too noisy: " + shortNumber(value);
 }
 
@@ -75,7 +79,7 @@ Table timeTable(const Results& results) {
                         spread(ratios(timesTo(results, s, baseline, measure, bound, axis), own)));
                 }
                 row.insert(row.end(), speedups.begin(), speedups.end());
-                row.push_back(referenceFlag(results.references[s], measure, bound));
+                row.push_back(referenceFlag(results.references[s].ownError, measure, bound));
                 table.rows.push_back(std::move(row));
             }
         }
@@ -142,14 +146,53 @@ Table errorTable(const Results& results, Axis axis) {
                 const Values own = errorsAt(results, s, m, measure, x, axis);
                 const Values base = errorsAt(results, s, baseline, measure, x, axis);
                 const Spread errors = spread(own);
-                table.rows.push_back(
-                    {study.scenes[s].name, name, shortNumber(x), study.methods[m].name, errors,
-                     spread(ratios(own, base)),
-                     errors.low ? referenceFlag(results.references[s], measure, *errors.low) : ""});
+                table.rows.push_back({study.scenes[s].name, name, shortNumber(x),
+                                      study.methods[m].name, errors, spread(ratios(own, base)),
+                                      errors.low ? referenceFlag(results.references[s].ownError,
+                                                                 measure, *errors.low)
+                                                 : ""});
             }
         }
     });
     table.notes = {"\"not reached\": some run ended before, or had no complete iteration yet."};
+    return table;
+}
+
+/// Of the pictures that the page shows: those at the end of the runs.
+Table cropTable(const Results& results) {
+    const Study& study = results.study;
+    Table table;
+    table.id = "error-in-crops";
+    table.title = "Error inside the crops, at the end of the runs";
+    table.columns = {"scene",    "measure", "crop", "method", "error", "ratio to " + study.baseline,
+                     "reference"};
+    const std::size_t baseline = baselineOf(study);
+    forEachMeasure(results, [&](std::size_t s, const std::string& name) {
+        const Measure measure = measureOf(name);
+        const auto errorsOf = [&](std::size_t method, std::size_t crop) {
+            Values values;
+            for (const RunResult* r : results.of(s, method)) {
+                const double error = valueOf(r->cropErrors[crop], measure);
+                values.push_back(std::isfinite(error) ? std::optional(error) : std::nullopt);
+            }
+            return values;
+        };
+        for (std::size_t c = 0; c < study.scenes[s].crops.size(); ++c) {
+            const Values base = errorsOf(baseline, c);
+            for (std::size_t m = 0; m < study.methods.size(); ++m) {
+                const Values own = errorsOf(m, c);
+                const Spread errors = spread(own);
+                const std::optional<ErrorMeasures>& judge = results.references[s].crops[c].ownError;
+                table.rows.push_back(
+                    {study.scenes[s].name, name, study.scenes[s].crops[c].name,
+                     study.methods[m].name, errors, spread(ratios(own, base)),
+                     errors.low ? referenceFlag(judge, measure, *errors.low) : ""});
+            }
+        }
+    });
+    table.notes = {
+        "As if the crop were the whole picture: e of mape and relmse is a hundredth of the "
+        "crop's own mean. \"not reached\": black in the reference, and not in the picture."};
     return table;
 }
 
@@ -186,7 +229,7 @@ Table knobTable(const Results& results) {
                 }
                 table.rows.push_back(
                     {study.scenes[s].name, name, shortNumber(bound), group, setting, best,
-                     referenceFlag(results.references[s], measureOf(name), bound)});
+                     referenceFlag(results.references[s].ownError, measureOf(name), bound)});
             }
         }
     });
@@ -212,6 +255,7 @@ std::vector<Table> makeTables(const Results& results) {
                            errorTable(results, Axis::Seconds),
                            errorTable(results, Axis::SecondsWithSetup),
                            errorTable(results, Axis::Iterations),
+                           cropTable(results),
                            knobTable(results),
                            referenceTable(results)};
     std::erase_if(all, [](const Table& table) { return table.rows.empty(); });

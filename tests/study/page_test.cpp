@@ -1,7 +1,7 @@
 // index.html in a real browser: headless Chromium, with a script of the test's own in the page.
 #include <cstdlib>
 
-#include "render/study/pictures.h"
+#include "render/study/embed.h"
 #include "tests/study/study_tool.h"
 
 namespace lacuna::test {
@@ -19,6 +19,18 @@ TEST(StudyPictures, Base64AndShrinking) {
     ASSERT_EQ(small.height, 1);
     EXPECT_EQ(small.at(0, 0).r, 3.0f);  // 0 1 5 6
     EXPECT_EQ(small.at(1, 0).b, 5.0f);  // 2 3 7 8
+}
+
+TEST(StudyPictures, PixelsAreHalvesTimesAPowerOfTwo) {
+    Image image(1, 1);
+    image.pixels[0] = {0.25f, -1.0f, 1e30f};
+    // 1.0, -4.0 and the largest half: 3c00, c400, 7bff, low bytes first.
+    EXPECT_EQ(pixelsText(image, 2), base64(std::string("\x00\x3c\x00\xc4\xff\x7b", 6)));
+    EXPECT_EQ(stopsFor(0.25), 1);
+    EXPECT_EQ(stopsFor(0.0), 0);
+    EXPECT_EQ(shrinkFactor(1000.0, 8000.0), 1);
+    EXPECT_EQ(shrinkFactor(1001.0, 8000.0), 2);
+    EXPECT_EQ(shrinkFactor(1000.0, 801.0), 4);
 }
 
 class StudyPageSlow : public StudyTool {
@@ -76,6 +88,55 @@ class StudyPageSlow : public StudyTool {
         const shown = visible();
         expect(pixels(shown[0].querySelector('canvas')) !== pixels(shown[1].querySelector('canvas')),
                'pictures are all the same');
+        expect(pixels(shown[1].querySelector('canvas')) !== pixels(shown[2].querySelector('canvas')),
+               'pictures of methods are all the same');
+
+        // The crop "part" is the picture's own pixels, enlarged.
+        const scene = pictureData[0], [whole, part] = scene.crops;
+        expect(document.querySelectorAll('.crop-row').length === 2, 'rows of crops');
+        expect(document.querySelectorAll('.crop-row figure').length ===
+               2 * (study.methods.length + 1), 'crops are not side by side');
+        part.pictures.forEach((crop, i) => {
+            const [x, y, width, height] = part.rect, rows = [];
+            for (let row = y; row < y + height; ++row) {
+                const at = 3 * (row * scene.width + x);
+                rows.push(...scene.pictures[i].halves.slice(at, at + 3 * width));
+            }
+            expect(rows.join() === crop.halves.join(), `crop of ${crop.name}: other pixels`);
+            expect(crop.view.offsetWidth > width, 'crops are not enlarged');
+        });
+        const mape = study.runs.find(r => r.method === 0 && r.seed === study.seeds[0]).error.mape;
+        expect(document.querySelector('#crops').textContent.includes(
+               `pt: ${errorsText(whole.pictures[1].errors)}`), 'errors beneath crops');
+        expect(Math.abs(whole.pictures[1].errors.mape / mape - 1) < 1e-6,
+               'error of a crop that is the whole picture');
+        expect(document.querySelector('#tables').textContent.includes('inside the crops'),
+               'no table of crops');
+
+        // Techniques: a row per length; of pt only those that are not connections of light vertices.
+        const pyramid = document.getElementById('pyramid');
+        const cells = () => [...pyramid.querySelectorAll('figure:not(.none)')];
+        expect(pyramid.querySelectorAll('.pyramid-row').length === 4, 'rows of the pyramid');
+        expect(pyramid.querySelectorAll('figure').length === 2 + 3 + 4 + 5, 'cells of the pyramid');
+        const ofPt = cells().length;
+        expect(ofPt > 0 && cells().every(f => /s = [01], /.test(f.textContent)), 'layers of pt');
+        choose('pyramid-method', 1);
+        expect(cells().length > ofPt && cells().some(f => f.textContent.includes('s = 2, t = 2')),
+               'layers of lvcbpt');
+        expect(document.querySelector('#pyramid-command').textContent.includes('lvcbpt'),
+               'command line of the pyramid');
+        for (const p of scene.techniques.pyramids) {
+            const sum = p.layers.reduce((total, layer) => total + layer.share, p.longer);
+            expect(Math.abs(sum - 1) < 1e-6 && p.longer > -1e-6, `shares of ${p.name}: ${sum}`);
+        }
+        const bright = cells().find(f => f.textContent.includes('s = 1, t = 2'))
+            .querySelector('canvas');
+        const before = [pixels(bright), pixels(part.pictures[1].view)];
+        key('-');
+        expect(pixels(bright) !== before[0], 'exposure of layers');
+        expect(pixels(part.pictures[1].view) !== before[1], 'exposure of crops');
+        key('0');
+        expect(pixels(bright) === before[0], 'exposure of layers does not go back');
         key('ArrowRight');
         expect(visible().length === 1 && visible()[0] === shown[1], 'right arrow does not flip');
         key('ArrowLeft');
@@ -120,7 +181,12 @@ TEST_F(StudyPageSlow, WorksInChromiumWithoutNetwork) {
     if (std::system(("command -v " + browser() + " > /dev/null 2>&1").c_str()) != 0) {
         GTEST_SKIP() << browser() << " is not installed (Debian: chromium): the page is not tried";
     }
-    writeStudy();
+    writeStudy(R"({"techniques": {"iterations": 3, "edges": 4},
+        "scenes": [{"file": "room.gltf",
+                    "options": {"width": 24, "height": 16, "max-depth": 5},
+                    "reference": {"method": "bpt", "iterations": 32, "parts": 2},
+                    "crops": [{"name": "all", "x": 0, "y": 0, "width": 24, "height": 16},
+                              {"name": "part", "x": 5, "y": 3, "width": 8, "height": 6}]}]})");
     const Outcome made = study();
     ASSERT_EQ(made.exitCode, 0) << made.err;
     std::string page = read("out/index.html");

@@ -1,5 +1,6 @@
 // lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -95,6 +96,89 @@ TEST_F(StudyRun, RefusesWhatDoesNotFit) {
     writeStudy(R"({"scenes": [{"file": "$LACUNA_SHARED_SCENES/x.glb", "reference": "r.exr"}]})");
     unsetenv("LACUNA_SHARED_SCENES");
     expectFailure("@study.json -o @out --quiet", 3, "LACUNA_SHARED_SCENES");
+}
+
+/// The tests' scene with these crops.
+std::string withCrops(const std::string& crops) {
+    return R"({"scenes": [{"file": "room.gltf",
+                           "options": {"width": 24, "height": 16, "max-depth": 5},
+                           "reference": {"method": "bpt", "iterations": 32, "parts": 2},
+                           "crops": )" +
+           crops + "}]}";
+}
+
+TEST_F(StudyRun, CropsHaveErrorsOfTheirOwn) {
+    writeStudy(withCrops(R"([{"name": "all", "x": 0, "y": 0, "width": 24, "height": 16},
+                             {"name": "floor", "x": 4, "y": 10, "width": 6, "height": 5}])"));
+    const Outcome made = study("--json @page.json");
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    const nlohmann::json page = json("page.json");
+    std::map<std::string, std::vector<std::string>> columns;  // by crop, mape of pt
+    std::istringstream in(read("out/error-in-crops.csv"));
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream fields(line);
+        std::vector<std::string> row;
+        for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+        ASSERT_GE(row.size(), 8u) << line;
+        if (row[1] == "mape" && row[3] == "pt") columns[row[2]] = row;
+    }
+    ASSERT_EQ(columns.size(), 2u);
+    // The crop that is the whole picture has the run's own error: lowest and highest over seeds.
+    std::vector<double> errors;
+    for (const nlohmann::json& run : page.at("runs")) {
+        if (run.at("method") == 0) errors.push_back(run.at("error").at("mape"));
+    }
+    ASSERT_EQ(errors.size(), 2u);
+    std::sort(errors.begin(), errors.end());
+    EXPECT_NEAR(std::stod(columns["all"][5]) / errors[0], 1.0, 1e-6);
+    EXPECT_NEAR(std::stod(columns["all"][6]) / errors[1], 1.0, 1e-6);
+    EXPECT_NE(columns["floor"][5], columns["all"][5]);
+    EXPECT_NE(read("out/tables.md").find("| floor | pt |"), std::string::npos);
+}
+
+TEST_F(StudyRun, RefusesCropsThatDoNotFit) {
+    const auto refused = [&](const std::string& crops, const std::string& part) {
+        writeStudy(withCrops(crops));
+        expectFailure("@study.json -o @out --quiet", 3, part);
+        EXPECT_FALSE(exists("out/references")) << "refused before anything is rendered";
+    };
+    refused(R"([{"name": "a", "x": 20, "y": 0, "width": 5, "height": 4}])", "crop 'a'");
+    refused(R"([{"name": "a", "x": 0, "y": 13, "width": 5, "height": 4}])", "y 13 to 17");
+    refused(R"([{"name": "a", "x": -1, "y": 0, "width": 5, "height": 4}])", "crops[0]: x");
+    refused(R"([{"name": "a", "x": 0, "y": 0, "width": 0, "height": 4}])", "crops[0]: width");
+    refused(R"([{"x": 0, "y": 0, "width": 5, "height": 4}])", "crops[0]: name");
+    refused(R"([{"name": "a", "x": 0, "y": 0, "width": 5, "height": 4, "depth": 3}])", "depth");
+    refused(R"([{"name": "a", "x": 0, "y": 0, "width": 5, "height": 4},
+                {"name": "a", "x": 1, "y": 0, "width": 5, "height": 4}])",
+            "'a' is there twice");
+    refused("[]", "at least one");
+}
+
+TEST_F(StudyRun, TechniquesAreRenderedApartAndOnce) {
+    writeStudy(R"({"techniques": {"iterations": 2}, "seeds": [3]})");
+    const Outcome made = study();
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_NE(made.out.find("3 runs, 3 of them rendered now"), std::string::npos) << made.out;
+    EXPECT_EQ(read("out/runs.csv").find("--techniques"), std::string::npos)
+        << "layers cost time, which no measured run may pay";
+    const auto images = [&] {
+        std::vector<std::filesystem::file_time_type> times;
+        for (const auto& run : std::filesystem::directory_iterator(path("out/techniques"))) {
+            times.push_back(std::filesystem::last_write_time(run.path() / "image.exr"));
+        }
+        return times;
+    };
+    const auto first = images();
+    EXPECT_EQ(first.size(), 3u);
+    ASSERT_EQ(study().exitCode, 0);
+    EXPECT_EQ(images(), first);
+
+    writeStudy(R"({"techniques": {"edges": 3}})");
+    expectFailure("@study.json -o @out --quiet", 3, "techniques: iterations");
+    writeStudy(R"({"techniques": {"iterations": 2, "edges": 0}})");
+    expectFailure("@study.json -o @out --quiet", 3, "techniques: edges");
+    writeStudy(R"({"techniques": {"iterations": 2, "depth": 3}})");
+    expectFailure("@study.json -o @out --quiet", 3, "depth");
 }
 
 TEST_F(StudyRun, RefusesReferencesOfOtherScenesSizesAndDepths) {

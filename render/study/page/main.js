@@ -25,6 +25,11 @@ fillSelect('scene', study.scenes.map(s => s.name), i => {
   view.scene = i;
   showPictures(i);
 });
+study.methods.forEach((method, i) => {
+  element('option', method.name, document.getElementById('pyramid-method')).value = i;
+});
+document.getElementById('pyramid-method').addEventListener('change',
+  event => choosePyramid(Number(event.target.value)));
 fillSelect('measure', study.measures, i => { view.measure = study.measures[i]; });
 document.getElementById('setup').addEventListener('change', event => {
   view.setup = event.target.checked;

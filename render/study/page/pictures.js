@@ -19,6 +19,8 @@ const viewer = {
   exposure: 0, error: false, flip: false, shown: 0,
 };
 
+const kWholePicture = {zoom: 1, x: 0.5, y: 0.5};
+
 /// The halves of a picture, decoded once.
 function halvesOf(picture) {
   if (!picture.halves) {
@@ -28,39 +30,52 @@ function halvesOf(picture) {
   return picture.halves;
 }
 
-/// Index into the false colours by pixel: mean of |I - R| / (R + e), e = 0.01 mean R.
-function errorsOf(picture, scene) {
-  if (picture.errors) return picture.errors;
-  const image = halvesOf(picture), reference = halvesOf(scene.pictures[0]);
+// Pictures of one size stand together in a group {width, height, stops, pictures}: a scene, a crop
+// of it, a method's techniques.
+
+/// Index into the false colours by pixel: mean of |I - R| / (R + e), e = 0.01 mean R. R is the
+/// group's first picture.
+function errorsOf(picture, group) {
+  if (picture.falseColours) return picture.falseColours;
+  const image = halvesOf(picture), reference = halvesOf(group.pictures[0]);
   const e = 0.01 * reference.reduce((sum, h) => sum + kHalf[h], 0) / reference.length;
   const {low, high, colours} = study.error_map;
   const perIndex = (colours.length - 1) / Math.log(high / low);
-  picture.errors = new Uint8Array(image.length / 3);
-  for (let i = 0; i < picture.errors.length; ++i) {
+  const indices = picture.falseColours = new Uint8Array(image.length / 3);
+  for (let i = 0; i < indices.length; ++i) {
     let sum = 0;
     for (let c = 3 * i; c < 3 * i + 3; ++c) {
       const r = kHalf[reference[c]], difference = Math.abs(kHalf[image[c]] - r);
       sum += difference > 0 ? difference / (r + e) / 3 : 0;
     }
-    picture.errors[i] = Math.round(perIndex * Math.log(Math.min(Math.max(sum, low), high) / low));
+    indices[i] = Math.round(perIndex * Math.log(Math.min(Math.max(sum, low), high) / low));
   }
-  return picture.errors;
+  return indices;
 }
 
-/// Fills the picture's own canvas, one pixel per pixel.
-function develop(picture, scene) {
-  const canvas = picture.canvas;
-  const context = canvas.getContext('2d');
-  const data = context.createImageData(scene.width, scene.height), out = data.data;
-  if (viewer.error) {
-    errorsOf(picture, scene).forEach((index, i) => {
+/// sRGB by half, for pictures that all have the same stops.
+const exposed = {factor: 0, bytes: null};
+
+function exposedBytes(stops) {
+  const factor = 2 ** (viewer.exposure - stops);
+  if (exposed.factor !== factor) {
+    exposed.factor = factor;
+    exposed.bytes = Uint8Array.from(kHalf, value => srgbByte(value * factor));
+  }
+  return exposed.bytes;
+}
+
+/// Fills the picture's own canvas, one pixel per pixel: radiance, or errors in false colour.
+function develop(picture, group, error) {
+  const context = picture.canvas.getContext('2d');
+  const data = context.createImageData(group.width, group.height), out = data.data;
+  if (error) {
+    errorsOf(picture, group).forEach((index, i) => {
       out.set(study.error_map.colours[index], 4 * i);
       out[4 * i + 3] = 255;
     });
   } else {
-    const factor = 2 ** (viewer.exposure - scene.stops);
-    const bytes = Uint8Array.from(kHalf, value => srgbByte(value * factor));
-    const halves = halvesOf(picture);
+    const bytes = exposedBytes(group.stops), halves = halvesOf(picture);
     for (let i = 0, j = 0; i < halves.length; i += 3, j += 4) {
       for (let c = 0; c < 3; ++c) out[j + c] = bytes[halves[i + c]];
       out[j + 3] = 255;
@@ -69,18 +84,30 @@ function develop(picture, scene) {
   context.putImageData(data, 0, 0);
 }
 
-/// From the picture's own canvas to what is seen of it.
-function paint(picture, scene) {
+/// From the picture's own canvas to what is seen of it through `shown` {zoom, x, y}. Returns the
+/// view's context, in units of the picture's pixels; null where the view is hidden.
+function paint(picture, group, shown) {
   const view = picture.view;
-  if (!view.clientWidth) return;  // hidden by flipping
+  if (!view.clientWidth) return null;
   view.width = Math.round(view.clientWidth * devicePixelRatio);
-  view.height = Math.round(view.width * scene.height / scene.width);
-  const scale = view.width / scene.width * viewer.zoom;
+  view.height = Math.round(view.width * group.height / group.width);
+  const scale = view.width / group.width * shown.zoom;
   const context = view.getContext('2d');
   context.imageSmoothingEnabled = false;
-  context.setTransform(scale, 0, 0, scale, view.width / 2 - viewer.x * scene.width * scale,
-                       view.height / 2 - viewer.y * scene.height * scale);
+  context.setTransform(scale, 0, 0, scale, view.width / 2 - shown.x * group.width * scale,
+                       view.height / 2 - shown.y * group.height * scale);
   context.drawImage(picture.canvas, 0, 0);
+  return context;
+}
+
+/// A figure with what `paint` draws on and what `develop` fills.
+function addFigure(place, picture, group, caption) {
+  picture.figure = element('figure', null, place);
+  picture.view = element('canvas', null, picture.figure);
+  element('figcaption', caption, picture.figure);
+  picture.canvas = document.createElement('canvas');
+  picture.canvas.width = group.width;
+  picture.canvas.height = group.height;
 }
 
 function eachPicture(action) {
@@ -91,24 +118,35 @@ function eachPicture(action) {
 function repaint() {
   document.getElementById('pictures').classList.toggle('flip', viewer.flip);
   eachPicture((p, scene, i) => p.figure.classList.toggle('shown', i === viewer.shown));
-  eachPicture(paint);
+  eachPicture((p, scene) => {
+    const context = paint(p, scene, viewer);
+    if (context && p.method < 0 && !viewer.flip) frameCrops(context, scene);
+  });
+  paintCrops();
+  paintPyramid();
 }
 
 function redevelop() {
   document.getElementById('error-scale').classList.toggle('on', viewer.error);
   document.getElementById('exposure').value = viewer.exposure;
   document.getElementById('exposure-text').textContent = viewer.exposure.toFixed(2) + ' stops';
-  eachPicture(develop);
+  eachPicture((p, scene) => develop(p, scene, viewer.error));
+  developCrops();
+  developPyramid();
   repaint();
+}
+
+function errorsText(errors) {
+  return study.measures.map(m =>
+    `${m} ${errors[m] === null ? 'not finite' : +(+errors[m]).toPrecision(3)}`).join(', ');
 }
 
 function captionOf(picture) {
   if (picture.method < 0) return 'reference: ' + study.scenes[viewer.scene].reference.origin;
   const run = study.runs.find(r => r.scene === viewer.scene && r.method === picture.method &&
                                    r.seed === picture.seed);
-  const errors = study.measures.map(m => `${m} ${+(+run.error[m]).toPrecision(3)}`).join(', ');
   return `${picture.name}: ${run.iterations} iterations, ${run.seconds.toPrecision(3)} s ` +
-      `(setup ${run.setup_seconds.toPrecision(2)} s), ${errors}`;
+      `(setup ${run.setup_seconds.toPrecision(2)} s), ${errorsText(run.error)}`;
 }
 
 function showPictures(index) {
@@ -121,18 +159,15 @@ function showPictures(index) {
     `Seed ${study.seeds[0]}.` + (scene.shrink > 1 ? ` Shown at 1/${scene.shrink} of their size: ` +
     'errors here are those of averages and look smaller than they are.' : '');
   eachPicture((picture, _, i) => {
-    picture.figure = element('figure', null, place);
-    picture.view = element('canvas', null, picture.figure);
-    element('figcaption', `${i + 1}. ${captionOf(picture)}`, picture.figure);
-    picture.canvas = document.createElement('canvas');
-    picture.canvas.width = scene.width;
-    picture.canvas.height = scene.height;
-    addMouse(picture.view, scene);
+    addFigure(place, picture, scene, `${i + 1}. ${captionOf(picture)}`);
+    addMouse(picture.view);
   });
+  showCrops();
+  showPyramids();
   redevelop();
 }
 
-function zoomBy(factor, view, clientX, clientY, scene) {
+function zoomBy(factor, view, clientX, clientY) {
   const box = view.getBoundingClientRect();
   // What is under the pointer stays there.
   const u = (clientX - box.left) / box.width - 0.5, v = (clientY - box.top) / box.height - 0.5;
@@ -143,10 +178,10 @@ function zoomBy(factor, view, clientX, clientY, scene) {
   repaint();
 }
 
-function addMouse(view, scene) {
+function addMouse(view) {
   view.addEventListener('wheel', event => {
     event.preventDefault();
-    zoomBy(2 ** (-event.deltaY / 240), view, event.clientX, event.clientY, scene);
+    zoomBy(2 ** (-event.deltaY / 240), view, event.clientX, event.clientY);
   }, {passive: false});
   view.addEventListener('pointerdown', event => {
     const box = view.getBoundingClientRect();

@@ -1,0 +1,76 @@
+#include "render/study/techniques.h"
+
+#include <nlohmann/json.hpp>
+
+#include "libcore/bidir/film.h"
+#include "libcore/image/exr.h"
+#include "render/study/embed.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+/// Of paths of 1 to `edges` edges; a path of k edges has k + 1: t from 1 to k + 1, s = k + 1 - t.
+double techniqueCount(int edges) {
+    return edges * (edges + 3.0) / 2.0;
+}
+
+int shrinkOf(const Results& results) {
+    const Study& study = results.study;
+    double pixels = 0.0;
+    for (const SceneFacts& facts : results.facts) {
+        pixels += double(facts.crop.width()) * double(facts.crop.height()) *
+                  double(study.methods.size()) * techniqueCount(study.techniques->edges);
+    }
+    return shrinkFactor(pixels, kTechniqueBytes);
+}
+
+json pyramidJson(const Results& results, const TechniqueResult& result, int shrink, int stops) {
+    const LayeredImage image = readExrLayers(result.image);
+    const double mean = meanOf(image.rgb());
+    const auto share = [&](const Image& layer) { return mean > 0.0 ? meanOf(layer) / mean : 0.0; };
+    json layers = json::array();
+    double longer = mean > 0.0 ? 1.0 : 0.0;
+    for (int k = 1; k <= results.study.techniques->edges; ++k) {
+        for (int t = k + 1; t >= 1; --t) {
+            const int s = k + 1 - t;
+            const std::string name = "weighted." + TechniqueFilm::layerName(s, t);
+            if (!image.hasRgb(name)) continue;
+            const Image layer = image.rgb(name);
+            longer -= share(layer);
+            layers.push_back({{"s", s},
+                              {"t", t},
+                              {"share", share(layer)},
+                              {"pixels", pixelsText(shrunk(layer, shrink), stops)}});
+        }
+    }
+    return {{"name", results.study.methods[result.run.method].name},
+            {"iterations", result.report.at("iterations")},
+            {"seed", result.run.seed},
+            {"command_line", result.report.at("command_line")},
+            {"longer", longer},
+            {"layers", std::move(layers)}};
+}
+
+}  // namespace
+
+json techniquesJson(const Results& results, std::size_t scene, int stops) {
+    if (!results.study.techniques) return nullptr;
+    const int shrink = shrinkOf(results);
+    const PixelRect& rendered = results.facts[scene].crop;
+    const Image size = shrunk(Image(rendered.width(), rendered.height()), shrink);
+    json pyramids = json::array();
+    for (const TechniqueResult& result : results.techniques) {
+        if (result.run.scene != scene) continue;
+        pyramids.push_back(pyramidJson(results, result, shrink, stops));
+    }
+    return {{"width", size.width},
+            {"height", size.height},
+            {"shrink", shrink},
+            {"stops", stops},
+            {"edges", results.study.techniques->edges},
+            {"pyramids", std::move(pyramids)}};
+}
+
+}  // namespace lacuna
