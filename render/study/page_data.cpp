@@ -99,8 +99,8 @@ json spreadJson(const Spread& s) {
     return object;
 }
 
-/// A knob's own curves, setup counted: per value the error at equal time, and the time to every
-/// bound that any value reaches.
+/// A knob's own curves: per value the error at equal iterations, which no setup costs; and with
+/// setup counted the error at equal time, and the time to every bound that any value reaches.
 json knobJson(const Results& results, std::size_t s, const std::string& measureName,
               const std::string& group) {
     const Study& study = results.study;
@@ -129,6 +129,9 @@ json knobJson(const Results& results, std::size_t s, const std::string& measureN
     const Axis axis = Axis::SecondsWithSetup;
     const double end = commonEnd(all, axis);
     const json errors = byValue([&](const auto& p) { return errorAt(p, measure, end, axis); });
+    const double iterations = commonEnd(all, Axis::Iterations);
+    const json iterationErrors =
+        byValue([&](const auto& p) { return errorAt(p, measure, iterations, Axis::Iterations); });
     json times = json::array();
     const auto bounds = study.scenes[s].bounds.find(measureName);
     if (bounds != study.scenes[s].bounds.end()) {
@@ -141,8 +144,14 @@ json knobJson(const Results& results, std::size_t s, const std::string& measureN
             if (reached) times.push_back({{"bound", bound}, {"points", std::move(points)}});
         }
     }
-    return {{"group", group}, {"knob", knob},     {"values", values},
-            {"seconds", end}, {"errors", errors}, {"times", times}};
+    return {{"group", group},
+            {"knob", knob},
+            {"values", values},
+            {"iterations", iterations},
+            {"iteration_errors", iterationErrors},
+            {"seconds", end},
+            {"errors", errors},
+            {"times", times}};
 }
 
 std::vector<std::string> knobGroups(const Study& study) {

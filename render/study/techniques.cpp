@@ -31,14 +31,18 @@ json pyramidJson(const Results& results, const TechniqueResult& result, int shri
     const double mean = meanOf(image.rgb());
     const auto share = [&](const Image& layer) { return mean > 0.0 ? meanOf(layer) / mean : 0.0; };
     json layers = json::array();
-    double longer = mean > 0.0 ? 1.0 : 0.0;
-    for (int k = 1; k <= results.study.techniques->edges; ++k) {
+    double longer = 0.0;
+    const int longest = result.report.at("max_depth");
+    for (int k = 1; k <= longest; ++k) {
         for (int t = k + 1; t >= 1; --t) {
             const int s = k + 1 - t;
             const std::string name = "weighted." + TechniqueFilm::layerName(s, t);
             if (!image.hasRgb(name)) continue;
             const Image layer = image.rgb(name);
-            longer -= share(layer);
+            if (k > results.study.techniques->edges) {
+                longer += share(layer);
+                continue;
+            }
             layers.push_back({{"s", s},
                               {"t", t},
                               {"share", share(layer)},

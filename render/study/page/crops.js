@@ -19,7 +19,7 @@ function showCrops() {
     const row = element('div', null, place, 'crop-row');
     for (const picture of crop.pictures) {
       addFigure(row, picture, crop, picture.method < 0 ? picture.name
-        : `${picture.name}: ${errorsText(picture.errors)}`);
+        : `${picture.name}\n${errorsText(picture.errors)}`);
     }
   }
 }
@@ -35,13 +35,15 @@ function paintCrops() {
 /// Where the crops are in a picture of the whole, their names above. `context`: see paint.
 function frameCrops(context, scene) {
   const scale = context.getTransform().a / devicePixelRatio;  // screen pixels
-  context.lineWidth = 1.5 / scale;
-  context.font = `${12 / scale}px sans-serif`;
+  context.font = `bold ${12 / scale}px sans-serif`;
+  context.lineJoin = 'round';
   for (const crop of scene.crops) {
     const [x, y, width, height] = crop.rect.map(v => v / scene.shrink);
+    context.lineWidth = 1.5 / scale;
     context.strokeStyle = '#ffd400';
     context.strokeRect(x, y, width, height);
     const top = y > 16 / scale ? y - 4 / scale : y + height + 13 / scale;
+    context.lineWidth = 4 / scale;
     context.strokeStyle = '#000';
     context.fillStyle = '#ffd400';
     context.strokeText(crop.name, x, top);

@@ -138,15 +138,16 @@ function redevelop() {
 
 function errorsText(errors) {
   return study.measures.map(m =>
-    `${m} ${errors[m] === null ? 'not finite' : +(+errors[m]).toPrecision(3)}`).join(', ');
+    `${m}\u00a0${errors[m] === null ? 'not finite' : +(+errors[m]).toPrecision(3)}`).join(', ');
 }
 
 function captionOf(picture) {
   if (picture.method < 0) return 'reference: ' + study.scenes[viewer.scene].reference.origin;
   const run = study.runs.find(r => r.scene === viewer.scene && r.method === picture.method &&
                                    r.seed === picture.seed);
-  return `${picture.name}: ${run.iterations} iterations, ${run.seconds.toPrecision(3)} s ` +
-      `(setup ${run.setup_seconds.toPrecision(2)} s), ${errorsText(run.error)}`;
+  return `${picture.name}: ${run.iterations} iteration${run.iterations > 1 ? 's' : ''}, ` +
+      `${run.seconds.toPrecision(3)}\u00a0s (setup ${run.setup_seconds.toPrecision(2)}\u00a0s), ` +
+      errorsText(run.error);
 }
 
 function showPictures(index) {
@@ -252,4 +253,6 @@ function showErrorScale() {
   const marks = element('div', null, place);
   const decades = Math.round(Math.log10(high / low));
   for (let d = 0; d <= decades; ++d) element('span', String(+(low * 10 ** d).toPrecision(1)), marks);
+  element('span', '|picture - reference| / (reference + a hundredth of its mean), mean of the ' +
+    'channels', place, 'hint');
 }

@@ -24,11 +24,12 @@ function draw(id, config) {
   charts[id] = new Chart(document.getElementById(id), config);
 }
 
-/// 1, 2, 3 and 5 times a power of ten; other ticks stay without a number, unless there are few.
+/// 1, 2, 3 and 5 times a power of ten, more where there is room; other ticks stay without a number.
 function logTick(value, index, ticks) {
-  if (ticks[ticks.length - 1].value < 3 * ticks[0].value) return String(+value.toPrecision(2));
+  const range = ticks[ticks.length - 1].value / ticks[0].value;
+  if (range < 3) return String(+value.toPrecision(2));
   const mantissa = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
-  return [1, 2, 3, 5].some(m => Math.abs(mantissa - m) < 1e-6) ? String(+value.toPrecision(1)) : '';
+  return (range < 10 ? [1, 2, 3, 4, 5, 7] : [1, 2, 3, 5]).some(m => Math.abs(mantissa - m) < 1e-6) ? String(+value.toPrecision(1)) : '';
 }
 
 function logAxis(title) {
@@ -36,6 +37,16 @@ function logAxis(title) {
 }
 
 const kFinite = point => point.every(value => value !== null && value > 0);
+
+/// Limits of a logarithmic axis that leave little empty; the decades around where there is nothing.
+function logRange(values) {
+  const usable = values.filter(v => v !== null && v > 0);
+  return usable.length && {min: Math.min(...usable) / 1.1, max: Math.max(...usable) * 1.1};
+}
+
+/// What an axis of errors is called: two measures are radiances, the others have no unit.
+const kMeasureTitles = {mae: 'mae (radiance)', rmse: 'rmse (radiance)',
+  mape: 'mape (1 = 100 %)', relmse: 'relmse (1 = 100 % of radiance squared)'};
 
 /// For a legend: the edges of bands are left out.
 const kMedians = (item, data) => !data.datasets[item.datasetIndex].edge;
@@ -95,8 +106,9 @@ function drawCurves(id, view, axis, title) {
     options: {
       parsing: false,
       scales: {
-        x: {...logAxis(title), min: range[0] / 1.1, max: range[1] * 1.1},
-        y: logAxis(view.measure),
+        x: {...logAxis(title), ...logRange(xs)},
+        y: {...logAxis(kMeasureTitles[view.measure]),
+            ...logRange(datasets.flatMap(d => d.data.map(p => p.y)))},
       },
       plugins: {legend, tooltip},
     },
@@ -151,8 +163,8 @@ function knobFigure(id, caption) {
   return figure;
 }
 
-/// Lines over a knob's values; what was not reached is a gap.
-function drawKnob(id, knob, lines, title) {
+/// Lines over a knob's values; what was not reached is a gap. `range`: of the vertical axis.
+function drawKnob(id, knob, lines, title, range) {
   const datasets = lines.flatMap(({label, points}, i) => {
     const edge = {label, edge: true, borderWidth: 0, pointRadius: 0, hitRadius: 0};
     return [
@@ -166,7 +178,10 @@ function drawKnob(id, knob, lines, title) {
     type: 'line',
     data: {labels: knob.values, datasets},
     options: {
-      scales: {x: {title: {display: true, text: knob.knob}}, y: logAxis(title)},
+      scales: {
+        x: {offset: true, title: {display: true, text: knob.knob}},
+        y: {...logAxis(title), ...range},
+      },
       plugins: {legend: {
         display: lines.length > 1,
         labels: {usePointStyle: true, boxHeight: 6, filter: kMedians},
@@ -178,17 +193,28 @@ function drawKnob(id, knob, lines, title) {
 function drawKnobs(view) {
   const knobs = study.knobs[view.scene][view.measure];
   document.getElementById('knobs').hidden = knobs.length === 0;
+  // One scale for all plots of a kind: knobs are compared with each other too.
+  const rangeOf = points => logRange(points.flatMap(Object.values));
+  const errorRange = rangeOf(knobs.flatMap(k => [...k.errors, ...k.iteration_errors]));
+  const timeRange = rangeOf(knobs.flatMap(k => k.times.flatMap(t => t.points)));
   knobs.forEach((knob, i) => {
+    knobFigure(`plot-knob-iterations-${i}`, `${knob.group}: error after ${knob.iterations} ` +
+      'iterations; median and range over seeds.');
+    drawKnob(`plot-knob-iterations-${i}`, knob,
+      [{label: knob.group, points: knob.iteration_errors}], kMeasureTitles[view.measure],
+      errorRange);
     knobFigure(`plot-knob-${i}`, `${knob.group}: error after ${+knob.seconds.toPrecision(3)} s, ` +
       'setup counted; median and range over seeds.');
-    drawKnob(`plot-knob-${i}`, knob, [{label: knob.group, points: knob.errors}], view.measure);
+    drawKnob(`plot-knob-${i}`, knob, [{label: knob.group, points: knob.errors}],
+      kMeasureTitles[view.measure], errorRange);
     const id = `plot-knob-time-${i}`;
-    const figure = knobFigure(id, `${knob.group}: time to a bound, setup counted; a gap where it ` +
-      'was not reached.');
+    const bounds = knob.times.map(t => t.bound).join(', ');
+    const figure = knobFigure(id, `${knob.group}: time to ${view.measure} ${bounds}, setup ` +
+      'counted; a gap where it was not reached.');
     figure.hidden = knob.times.length === 0;
     erase(id);
     if (figure.hidden) return;
     drawKnob(id, knob, knob.times.map(t => ({label: `${view.measure} ${t.bound}`,
-      points: t.points})), 'seconds');
+      points: t.points})), 'seconds', timeRange);
   });
 }

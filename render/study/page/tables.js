@@ -48,8 +48,9 @@ function showReference(view) {
 
 /// The parts of the page that no choice changes.
 function showFacts() {
-  document.getElementById('summary').textContent = `${study.methods.length} settings, ` +
-    `${study.scenes.length} scene(s), ${study.seeds.length} seed(s). ${study.machine}. ` +
+  const count = (list, name) => `${list.length} ${name}${list.length > 1 ? 's' : ''}`;
+  document.getElementById('summary').textContent = `${count(study.methods, 'setting')}, ` +
+    `${count(study.scenes, 'scene')}, ${count(study.seeds, 'seed')}. ${study.machine}. ` +
     `Lacuna ${study.version}.`;
   const facts = document.getElementById('facts');
   addTable(facts, ['', ''], [
