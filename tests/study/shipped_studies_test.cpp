@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "render/options.h"
+#include "render/study/plan.h"
 #include "render/study/study_file.h"
 
 namespace lacuna {
@@ -41,6 +42,21 @@ TEST_P(ShippedStudies, QuickNeedsNoSceneOfOthersAndLittleTime) {
         seconds += runs * (study.effort[0] == "--time" ? parseDuration(study.effort[1]) : 1.0);
     }
     EXPECT_LE(seconds, 120.0);
+}
+
+TEST_P(ShippedStudies, CropsLieInsideThePictures) {
+    setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
+    const ThreadPool pool(1);
+    for (const bool quick : {false, true}) {
+        for (const StudyScene& scene : readStudy(path(), quick).scenes) {
+            if (scene.crops.empty() || !std::filesystem::exists(scene.file)) continue;
+            const SceneFacts facts = inspectScene(scene, pool);
+            for (const StudyCrop& crop : scene.crops) {
+                EXPECT_LE(crop.rect.x1, facts.crop.width()) << scene.name << ": " << crop.name;
+                EXPECT_LE(crop.rect.y1, facts.crop.height()) << scene.name << ": " << crop.name;
+            }
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, ShippedStudies, ::testing::ValuesIn(shipped()),
