@@ -1,5 +1,6 @@
 #include "preprocess/voxelize.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -56,10 +57,14 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
     result.file.stamp =
         voxelStamp(scene.description().contentHash, settings.resolution, settings.domainText);
     VoxelSpace& space = result.file.space;
+    bool flat = false;  // no resolution leaves room between the surfaces
     phases.run("voxelize", [&] {
         if (settings.domainText.empty()) {
-            space.shape =
-                latticeOver(defaultDomain(reach, boundsOf(triangles)), settings.resolution);
+            const VoxelBox domain = defaultDomain(reach, boundsOf(triangles));
+            space.shape = latticeOver(domain, settings.resolution);
+            // The surfaces take a layer on either side.
+            const VoxelIndex finest = latticeOver(domain, kHighestResolution).size;
+            flat = std::min({finest[0], finest[1], finest[2]}) < 3;
         } else {
             VoxelBox domain = parseDomain(settings.domainText);
             domain.low -= scene.centre();
@@ -76,11 +81,13 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
     phases.run("parts", [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
     if (result.parts.reached == 0) {
         throw UsageError(
-            settings.domainText.empty()
-                ? "--resolution: expected voxels fine enough to leave empty ones where the camera "
-                  "looks, found none; raise it"
-                : "--domain: expected a box that camera paths or lamps reach, found none of them "
-                  "in it; leave it out or raise --resolution");
+            !settings.domainText.empty()
+                ? "--domain: expected a box that camera paths or lamps reach, found none of them "
+                  "in it; leave it out or raise --resolution"
+            : flat ? "--domain: expected the box of the space in front of the surfaces, because "
+                     "this scene's own is flat; found none; give one"
+                   : "--resolution: expected voxels fine enough to leave empty ones where the "
+                     "camera looks, found none; raise it");
     }
     phases.run("distance", [&] {
         const SurfaceDistance surface(triangles, pool);

@@ -14,6 +14,7 @@
 #include "libcore/voxel/reach.h"
 #include "libcore/voxel/surface_distance.h"
 #include "tests/scene/scene_builder.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -89,6 +90,7 @@ TEST(Voxelize, noLeakThroughSheetsInAnyDirection) {
         voxelize(sheet, shape, state, pool, kNever);
         EXPECT_EQ(Components(shape, state, {}, Connectivity::Corners).count(), 2u) << n;
     }
+    stabilityCase("voxel-thin-walls", 0, "of 40 sheets leak");
 }
 
 TEST(Voxelize, wallsOfTheDomainAreOneVoxelThick) {
