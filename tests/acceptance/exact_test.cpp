@@ -6,6 +6,7 @@
 
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -51,6 +52,7 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
     }
     EXPECT_NEAR(border.mean(), exact, 5 * border.standardError() + 1e-5);
     EXPECT_NEAR(inside.mean(), exact, 5 * inside.standardError() + 1e-5);
+    stabilityCase("film-border", worstDeviation(), kOfAllowed);
 }
 
 // Direct light on a plane
@@ -61,7 +63,8 @@ using Irradiance = std::function<double(double x, double z)>;
 
 /// A floor of albedo 0.6 alone under the light that `light` adds, against the closed form.
 void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>& light,
-                 const Irradiance& irradiance, const std::string& what) {
+                 const Irradiance& irradiance, const std::string& what,
+                 Judge judge = Judge::Everything) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
     b.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}));
@@ -86,7 +89,7 @@ void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>&
         }
         exact.push_back(Rgb(float(sum / (kSteps * kSteps) * 0.6 / std::numbers::pi)));
     }
-    expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what);
+    expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what, judge);
 }
 
 /// Of a rectangle [0, a] x [0, b] at distance 1, seen from below its corner at the origin.
@@ -113,6 +116,32 @@ TEST_P(Exact, quadLightHasItsFormFactor) {
             },
             twoSided ? "two-sided quad" : "quad");
     }
+}
+
+/// The slit alone is what the floor sees of a strip of light close behind it.
+TEST_P(Exact, lightThroughAGapOfAThousandth) {
+    const double y = 1.8, half = 0.5e-3, radiance = 100;
+    expectFloor(
+        row(),
+        [&](SceneBuilder& b) {
+            const auto black = b.add(matte(Rgb(0.0f)));
+            const auto h = float(half), yf = float(y);
+            b.add(quad({-2, yf, -3}, {2 - h, 0, 0}, {0, 0, 6}, black));
+            b.add(quad({h, yf, -3}, {2 - h, 0, 0}, {0, 0, 6}, black));
+            b.add(quad({-h, yf, -3}, {2 * h, 0, 0}, {0, 0, 2}, black));
+            b.add(quad({-h, yf, 1}, {2 * h, 0, 0}, {0, 0, 2}, black));
+            b.add(quad({-3e-3f, yf + 4e-3f, -1.1f}, {6e-3f, 0, 0}, {0, 0, 2.2f},
+                       b.add(emitter(Rgb(float(radiance))))));
+        },
+        [&](double x, double z) {
+            const auto f = [&](double u, double v) {
+                return cornerFormFactor((u - x) / y, (v - z) / y);
+            };
+            return std::numbers::pi * radiance *
+                   (f(half, 1) - f(-half, 1) - f(half, -1) + f(-half, -1));
+        },
+        "gap of a thousandth", Judge::MeanOnly);
+    stabilityCase("thin-gap", worstDeviation(), kOfAllowed);
 }
 
 TEST_P(Exact, pointLightFollowsTheInverseSquare) {
@@ -159,6 +188,7 @@ TEST_P(Exact, emptySceneShowsItsEnvironment) {
     shot.iterations = 100;
     shot.lightPaths = 1024;
     expectRadiance(render(*b.build(), row(), shot), 1, row().name + ", environment alone");
+    stabilityCase("sky-alone", worstDeviation(), kOfAllowed);
 }
 
 TEST_P(Exact, convexBodyUnderAConstantSkyShowsItsAlbedo) {
@@ -170,6 +200,7 @@ TEST_P(Exact, convexBodyUnderAConstantSkyShowsItsAlbedo) {
     shot.iterations = 200;
     shot.lightPaths = 1024;
     expectRadiance(render(*b.build(), row(), shot), 0.5, row().name + ", sphere under the sky");
+    stabilityCase("sky-alone", worstDeviation(), kOfAllowed);
 }
 
 /// Veils of alpha 0.25 and 0.5 that reflect nothing, between the camera and a light that fills its
@@ -217,6 +248,8 @@ TEST_P(Exact, sizeAndPlaceChangeNothingUnderTheSky) {
     shot.gain = 1;
     expectSame(render(*sphereOnGround(1, {1e5, -1e5, 1e5}).build(), row(), shot), reference,
                row().name + ", 1e5 away", Judge::BlocksAndMean);
+    stabilityCase("scale", worstDeviation(), kOfAllowed);
+    stabilityCase("offset", worstDeviation(), kOfAllowed);
 }
 
 // Lossless glass that fills the picture. Only hits of the environment can make these paths, and
@@ -253,6 +286,7 @@ TEST_P(Exact, losslessGlassInAConstantEnvironmentReadsOne) {
     nested.add(sphere({0.1f, 0, 0.1f}, 0.5f, 16, nested.add(glass(1.2f))));
     nested.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
     expectSmoothRadiance(row(), nested, 1, "glass in glass");
+    stabilityCase("refraction", worstDeviation(), kOfAllowed);
 }
 
 TEST_P(Exact, insideGlassTheSkyReadsTheSquaredIndex) {
@@ -260,6 +294,7 @@ TEST_P(Exact, insideGlassTheSkyReadsTheSquaredIndex) {
     b.add(sphere({0, 0, 0}, 1, 16, b.add(glass())));
     b.add(lookAt({0, 0, 0}, {0.2, 0.3, -1}, 60));  // from the middle nothing is trapped
     expectSmoothRadiance(row(), b, 2.25, "inside glass");
+    stabilityCase("refraction", worstDeviation(), kOfAllowed);
 }
 
 }  // namespace

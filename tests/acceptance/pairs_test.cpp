@@ -7,6 +7,7 @@
 #include "libcore/gltf/gltf.h"
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -46,6 +47,7 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
         const MethodRow row = rowNamed(name);
         expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name);
     }
+    stabilityCase("light-kinds", worstDeviation(), kOfAllowed);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LightPairsSlow, testing::ValuesIn(allPairs()), ByParameter());
@@ -93,7 +95,7 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
     for (const std::string& name : rowNames()) {
         const MethodRow row = rowNamed(name);
         if (hasDeltas(description) && !seesThroughDeltas(row)) continue;
-        if (GetParam().caustics && (!walksFromLights(row) || name.starts_with("test-"))) continue;
+        if (GetParam().caustics && (!walksFromLights(row) || isTestRow(row))) continue;
         expectSame(render(scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
                    Judge::BlocksAndMean);
     }

@@ -8,6 +8,7 @@
 
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -58,6 +59,7 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
     }
     const Picture large = renderUntilKnown(*scene, row, shot, kLargeError, 1000);
     shot.settings.clear();
+    double worst = 0;
     shot.width = shot.height = 8;
     for (const int candidates : {1, 2, 4}) {
         shot.candidates = candidates;
@@ -65,6 +67,7 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
         const Picture small = renderUntilKnown(*scene, row, shot, kSmallError, 100000);
         ASSERT_LT(small.standardError(), 1.01 * kSmallError * small.mean()) << "too noisy to judge";
         const double error = std::hypot(small.standardError(), large.standardError());
+        worst = std::max(worst, std::fabs(small.mean() - large.mean()) / (4.5 * error));
         // 4.5 standard errors: 7e-6 false alarms for each comparison.
         EXPECT_NEAR(small.mean() / large.mean(), 1.0, 4.5 * error / large.mean())
             << row.name << " with " << candidates << " subpaths: " << small.mean() << " against "
@@ -74,6 +77,7 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
                     candidates, small.mean() / large.mean(), error / large.mean(),
                     int(small.pixels.iterations()));
     }
+    stabilityCase("tiny-pools", worst, kOfAllowed);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TinyPoolsSlow, testing::ValuesIn(pooledRows()), ByParameter());

@@ -45,7 +45,20 @@ float channel(const Rgb& c, int i) {
     return i == 0 ? c.r : i == 1 ? c.g : c.b;
 }
 
-/// Largest excess over `z` standard errors; messages for the first few that exceed it.
+/// Of worstDeviation(): the test that it belongs to, and the largest share so far.
+struct {
+    const testing::TestInfo* test = nullptr;
+    double share = 0;
+} worst;
+
+bool within(double deviation, double allowed) {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    if (worst.test != test) worst = {test, 0};
+    if (deviation > 0) worst.share = std::max(worst.share, deviation / allowed);
+    return deviation <= allowed;
+}
+
+/// Messages for the first few places that are more than `z` standard errors apart.
 void judge(const Image& a, const Image& varianceA, const Image& b, const Image& varianceB, double z,
            const std::string& what) {
     int complaints = 0;
@@ -56,7 +69,7 @@ void judge(const Image& a, const Image& varianceA, const Image& b, const Image& 
                                            double(channel(varianceB.pixels[i], c)));
             // What floats lose where there is no noise to speak of.
             const double rounding = 2e-5 * std::max(std::fabs(va), std::fabs(vb));
-            if (std::fabs(va - vb) <= z * error + rounding || ++complaints > 4) continue;
+            if (within(std::fabs(va - vb), z * error + rounding) || ++complaints > 4) continue;
             ADD_FAILURE() << what << " " << i % std::size_t(a.width) << ","
                           << i / std::size_t(a.width) << " channel " << c << ": " << va << " and "
                           << vb << ", " << std::fabs(va - vb) / error
@@ -90,15 +103,25 @@ void judgeAll(const Picture& a, const Image& pixels, const Image& pixelVariance,
     double smallest = 0;
     for (int c = 0; c < 3; ++c) {
         const double error = std::hypot(own.standardError[c], meanError[c]);
-        EXPECT_NEAR(own.mean[c], mean[c], z * error + 2e-5 * std::fabs(mean[c]))
-            << what << ": mean of channel " << c << ", " << std::fabs(own.mean[c] - mean[c]) / error
-            << " standard errors, allowed " << z;
+        EXPECT_TRUE(within(std::fabs(own.mean[c] - mean[c]), z * error + 2e-5 * std::fabs(mean[c])))
+            << what << ": mean of channel " << c << ": " << own.mean[c] << " and " << mean[c]
+            << ", " << std::fabs(own.mean[c] - mean[c]) / error << " standard errors, allowed "
+            << z;
         if (mean[c] > 0) smallest = std::max(smallest, z * error / mean[c]);
     }
     std::printf("    %s: sees a bias of the mean from %.2f %% on\n", what.c_str(), 100 * smallest);
 }
 
 }  // namespace
+
+Shot quickShot(int iterations) {
+    Shot shot;
+    shot.width = shot.height = 12;
+    shot.maxDepth = 3;
+    shot.iterations = iterations;
+    shot.lightPaths = 512;
+    return shot;
+}
 
 double Picture::mean() const {
     const Film::MeanColour m = pixels.meanColour();
@@ -187,8 +210,8 @@ void expectSame(const Picture& a, const Picture& b, const std::string& what, Jud
              m.mean, m.standardError, b.pixels.iterations(), what, which);
 }
 
-void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact,
-                    const std::string& what) {
+void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const std::string& what,
+                    Judge which) {
     expectValid(picture, what);
     const int width = picture.pixels.width(), height = picture.pixels.height();
     Image pixels(width, height), blocks(picture.blocks.width(), picture.blocks.height());
@@ -206,12 +229,17 @@ void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact,
         }
     }
     judgeAll(picture, pixels, Image(width, height), blocks, Image(blocks.width, blocks.height),
-             mean, none, picture.pixels.iterations(), what, Judge::Everything);
+             mean, none, picture.pixels.iterations(), what, which);
 }
 
-void expectRadiance(const Picture& picture, double exact, const std::string& what) {
+void expectRadiance(const Picture& picture, double exact, const std::string& what, Judge which) {
     const auto n = std::size_t(picture.pixels.width()) * std::size_t(picture.pixels.height());
-    expectRadiance(picture, std::vector<Rgb>(n, Rgb(float(exact))), what);
+    expectRadiance(picture, std::vector<Rgb>(n, Rgb(float(exact))), what, which);
+}
+
+double worstDeviation() {
+    const bool current = worst.test == testing::UnitTest::GetInstance()->current_test_info();
+    return current ? worst.share : 0.0;
 }
 
 std::vector<std::string> rowNames() {
@@ -253,6 +281,10 @@ bool walksFromLights(const MethodRow& row) {
     const auto method = row.create(resolve(row, smallSettings(row, 4)));
     const auto constants = method->freeze(0).constants();
     return !constants || constants->indirect > 0;
+}
+
+bool isTestRow(const MethodRow& row) {
+    return row.name.starts_with("test-");
 }
 
 const MethodRow& pathTracer() {

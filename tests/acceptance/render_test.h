@@ -41,6 +41,9 @@ struct Shot {
     PathObserver observer = nullptr;
 };
 
+/// 12 x 12 pixels, 512 light subpaths, paths of three edges: for tests of tenths of a second.
+Shot quickShot(int iterations = 100);
+
 /// Sums of one render: by pixel, and by blocks of 4 x 4 pixels where the size allows it.
 struct Picture {
     explicit Picture(PixelRect crop)
@@ -90,8 +93,15 @@ enum class Judge { Everything, BlocksAndMean, MeanOnly };
 void expectSame(const Picture& a, const Picture& b, const std::string& what,
                 Judge judge = Judge::Everything);
 /// The same against exact radiance.
-void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const std::string& what);
-void expectRadiance(const Picture& picture, double exact, const std::string& what);
+void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const std::string& what,
+                    Judge judge = Judge::Everything);
+void expectRadiance(const Picture& picture, double exact, const std::string& what,
+                    Judge judge = Judge::Everything);
+
+/// The largest deviation that the comparisons above have met in the running test, as a share of
+/// what each allowed; and what stabilityCase() calls that.
+double worstDeviation();
+inline constexpr const char* kOfAllowed = "of the deviation allowed";
 
 // Rows
 // ----------------------------------------------------------------------------------------------
@@ -119,6 +129,8 @@ bool seesThroughDeltas(const MethodRow& row);
 Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
+/// The test's own rows, whose weights believe nonsense on purpose.
+bool isTestRow(const MethodRow& row);
 const MethodRow& pathTracer();
 
 }  // namespace lacuna::test

@@ -4,6 +4,7 @@
 
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -72,6 +73,7 @@ TEST_P(RoughnessSlow, rowsAgreeDownToTheDelta) {
             expectSame(render(*scene, row, shot(1, 100)), reference, what, Judge::BlocksAndMean);
         }
     }
+    stabilityCase("roughness", worstDeviation(), kOfAllowed);
 }
 
 TEST_P(RoughnessSlow, theLimitMeetsTheDelta) {
@@ -83,6 +85,7 @@ TEST_P(RoughnessSlow, theLimitMeetsTheDelta) {
         expectSame(render(*rough, row, shot(1, 150)), render(*delta, row, shot(2, 150)),
                    name + ", limit of " + GetParam().name, Judge::BlocksAndMean);
     }
+    stabilityCase("delta-limit", worstDeviation(), kOfAllowed);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RoughnessSlow,

@@ -2,9 +2,12 @@
 // same mean, in both forms of the weights.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "libcore/subspace/subspaces.h"
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -68,6 +71,31 @@ TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
             expectSame(picture, reference, weights);
         }
     }
+    stabilityCase("nonsense-subspaces", worstDeviation(), kOfAllowed);
+}
+
+/// Q and populations over thirty decades: a Q far too small believes in its subspace, one far too
+/// large does not; neither is more than noise.
+TEST(SubspacesOfNonsense, valuesOfAnyRangeLeaveTheMeanAsItIs) {
+    const auto scene = diffuseBox().builder.build();
+    Shot shot = quickShot(300);
+    shot.seed = 100;
+    const Picture reference = render(*scene, pathTracer(), shot);
+    shot.seed = 1;
+    shot.iterations = 150;
+    const MethodRow row = rowNamed("spcbpt");
+    for (const char* weights : {"weights=ris", "weights=paper"}) {
+        auto subspaces = std::make_shared<Subspaces>(*randomSubspaces(5));
+        Rng rng(6, 0, StreamKind::User, 0);
+        for (double& q : subspaces->q) q = std::pow(10.0, 30 * rng.uniformDouble() - 15);
+        for (double& n : subspaces->population) n = std::pow(10.0, 30 * rng.uniformDouble() - 15);
+        const std::vector<std::string> settings = {"candidates=144", weights};
+        const auto method = row.create(resolve(row, settings));
+        method->useSubspaces(subspaces);
+        expectSame(Render(*scene, row, shot, *method).run(), reference, weights,
+                   Judge::BlocksAndMean);
+    }
+    stabilityCase("subspace-range", worstDeviation(), kOfAllowed);
 }
 
 /// Reuse across iterations. One that counts vertices instead of iterations is off by percents here:

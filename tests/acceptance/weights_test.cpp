@@ -7,6 +7,7 @@
 #include "libcore/bidir/verify.h"
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -110,6 +111,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
     EXPECT_LE(worstSum, 1e-9);
     EXPECT_LE(worstProduct, 1e-6) << worstPath;
     EXPECT_EQ(render.statistics().invalidSamples, 0u);
+    stabilityCase("weights-sum", worstProduct, "between a weight and its full products");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Weights, testing::ValuesIn(allCases()), ByParameter());
@@ -199,6 +201,7 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     if (!done) judge(*now);  // rows without an eye pass
     EXPECT_GE(judged, kept.size());
     EXPECT_EQ(worst, 0.0);
+    stabilityCase("other-pool", worst, "between a path's weights");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PathOnly, testing::ValuesIn(rowNames()), ByParameter());
