@@ -9,6 +9,7 @@
 
 #include "libcore/base/rng.h"
 #include "tests/base/chi_square.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -81,6 +82,7 @@ TEST(DiscreteDistribution, HardWeights) {
         SCOPED_TRACE(i);
         checkInvariants(cases[i]);
     }
+    stabilityCase("pmf-range", double(cases.size()), "sets of weights");
 }
 
 TEST(DiscreteDistribution, RandomWeightsOfAnyRange) {
@@ -97,6 +99,7 @@ TEST(DiscreteDistribution, RandomWeightsOfAnyRange) {
         SCOPED_TRACE(round);
         checkInvariants(weights);
     }
+    stabilityCase("pmf-range", 60, "sets of weights");
 }
 
 TEST(DiscreteDistribution, EmptyWhereNothingCanBePicked) {
@@ -107,6 +110,7 @@ TEST(DiscreteDistribution, EmptyWhereNothingCanBePicked) {
     EXPECT_EQ(zeros.size(), 5u);
     EXPECT_EQ(zeros.pmf(2), 0.0);
     EXPECT_EQ(DiscreteDistribution().pmf(0), 0.0);
+    stabilityCase("pmf-of-nothing", zeros.pmf(2), "for a weight of zero");
 }
 
 TEST(DiscreteDistribution, RefusesWhatIsNoWeight) {
@@ -179,6 +183,8 @@ TEST(DiscreteDistribution, TwentyMillionEntries) {
     }
     EXPECT_GT(chiSquareSignificance(counts, std::vector<double>(200, 1.0 / 200), kSamples),
               sidak(kAlarm, kComparisons));
+    stabilityCase("many-entries", std::fabs(d.pmf(kEntries - 1) * kEntries - 1.0),
+                  "off the last entry's probability, relative");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/bidir/test_rows.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -105,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(All, FiniteSpacePoolsSlow, testing::ValuesIn(tinyPools(
 /// The method's density as it stands after its warm-up, on random paths of the space.
 TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
     const FiniteSpace space(3);
+    double worst = 0.0;
     for (const MethodRow& row : allRows()) {
         const auto method = row.create(resolve(row, settingsOf(row, 4)));
         Techniques techniques;
@@ -153,9 +155,11 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
                 weights += w;
             }
             EXPECT_NEAR(weights, 1.0, 1e-9) << row.name;
+            worst = std::max(worst, std::fabs(weights - 1.0));
         }
         EXPECT_GT(judged, 500) << row.name;
     }
+    stabilityCase("zero-densities", worst, "off a sum of one, at most");
 }
 
 }  // namespace

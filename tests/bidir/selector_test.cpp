@@ -7,6 +7,7 @@
 #include "libcore/base/parallel.h"
 #include "tests/bidir/finite_space.h"
 #include "tests/bidir/test_rows.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -15,6 +16,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
     const FiniteSpace space(3);
     const ThreadPool threads(1);
     IterationStatistics statistics;
+    double worst = 0.0;
     IterationContext context{space, threads, 20, 1000, statistics};
     // A row may draw in prepare() what it picks from in select(), so the mean is over both.
     constexpr int kSubpaths = 5, kPrepares = 1000, kDraws = 400;
@@ -81,8 +83,10 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
             const double m = sum[half] / kPrepares;
             const double error = std::sqrt((squares[half] / kPrepares - m * m) / kPrepares);
             EXPECT_NEAR(m, truth, 4.5 * error + 1e-12) << row.name << " half zero " << half;
+            worst = std::max(worst, std::fabs(m - truth) / (4.5 * error + 1e-12));
         }
     }
+    stabilityCase("zero-targets", worst, "of the deviation allowed");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "tests/gltf/gltf_builder.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -208,6 +209,7 @@ TEST(Camera, OrthographicOnesAreSkipped) {
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("camera"), std::string::npos);
     }
+    stabilityCase("strange-cameras", double(scene.cameras.size()), "cameras");
 }
 
 TEST(Camera, ImpossibleOnesAreRefused) {

@@ -8,6 +8,7 @@
 
 #include "tests/material/materials.h"
 #include "tests/material/statistics.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -46,6 +47,7 @@ TEST(BsdfContract, SampleEvaluationIsEvaluateBitForBit) {
         }
     }
     EXPECT_GT(drawn, 50000);
+    stabilityCase("bsdf-contract", drawn, "samples, each as evaluated");
 }
 
 // f_ns / eta_eye^2 is symmetric, and a density is the same number whichever role its direction
@@ -81,6 +83,7 @@ TEST(BsdfContract, ReciprocityAndSwappedRoles) {
         }
     }
     EXPECT_GT(compared, 50000);
+    stabilityCase("bsdf-contract", compared, "pairs of directions, each symmetric");
 }
 
 // Both walks estimate the same integral over pairs of directions (adjointness): what each
@@ -90,6 +93,7 @@ TEST(BsdfContract, BothWalksAgree) {
     constexpr int kSamples = 50000;
     const std::vector<Material> all = materials();
     const double significance = sidak(1e-3, double(all.size() * 3));
+    double worst = 0;
     for (const Material& m : all) {
         for (const float roughness : {0.0f, 0.3f, 0.8f}) {
             Bsdf::Parameters p = m.parameters;
@@ -123,10 +127,12 @@ TEST(BsdfContract, BothWalksAgree) {
             }
             const double error = std::hypot(walk[0].standardError(), walk[1].standardError());
             const double z = std::abs(walk[0].mean() - walk[1].mean()) / std::max(1e-12, error);
+            worst = std::max(worst, z);
             EXPECT_GT(normalTail(z, 2), significance)
                 << m.name << " " << roughness << ": " << walk[0].mean() << " " << walk[1].mean();
         }
     }
+    stabilityCase("bsdf-contract", worst, "standard errors between the walks");
 }
 
 TEST(BsdfContract, SpecularZeroIsExactlyLambert) {

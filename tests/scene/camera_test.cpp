@@ -8,6 +8,7 @@
 
 #include "tests/material/statistics.h"
 #include "tests/scene/scene_builder.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -65,6 +66,7 @@ struct Exact {
 
 TEST(Camera, RoundTrip) {
     Random random(1);
+    double worst = 0;
     for (const View& v : views()) {
         SCOPED_TRACE(v.name);
         // Or the rounding of a unit direction, where a pixel is seen under less than 2e-4.
@@ -88,10 +90,14 @@ TEST(Camera, RoundTrip) {
                 ASSERT_TRUE(p) << raster.x << " " << raster.y;
                 ASSERT_NEAR(p->raster.x, raster.x, tolerance);
                 ASSERT_NEAR(p->raster.y, raster.y, tolerance);
+                const Vec2 off{p->raster.x - raster.x, p->raster.y - raster.y};
+                worst =
+                    std::max({worst, std::fabs(off.x) / tolerance, std::fabs(off.y) / tolerance});
                 ASSERT_NEAR(p->pdfW / d.pdfW, 1.0f, 1e-5f);
             }
         }
     }
+    stabilityCase("film-round-trip", worst, "of the tolerance");
 }
 
 TEST(Camera, PinholeDirectionsAgainstTheDefinition) {
