@@ -31,12 +31,21 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
     for (std::size_t i = 0; i < lastPositive; ++i) cdf_[i] = std::min(cdf_[i] / sum, 1.0);
     for (std::size_t i = lastPositive; i < cdf_.size(); ++i) cdf_[i] = 1.0;
     total_ = sum * largest;
+
+    guide_.reserve(cdf_.size() + 1);
+    for (std::size_t k = 0, i = 0; k < cdf_.size(); ++k) {
+        while (bucket(cdf_[i]) < k) ++i;  // ends: the last entry is one
+        guide_.push_back(std::uint32_t(i));
+    }
+    guide_.push_back(std::uint32_t(lastPositive));
 }
 
 DiscreteDistribution::Pick DiscreteDistribution::sample(double u) const {
-    // First entry above u: an outcome of zero width can never be it.
-    const auto it = std::upper_bound(cdf_.begin(), cdf_.end(), u);
-    const std::size_t index = std::min(std::size_t(it - cdf_.begin()), cdf_.size() - 1);
+    const std::size_t k = std::min(bucket(u), cdf_.size() - 1);
+    // First entry above u: an outcome of zero width can never be it. All entries of smaller buckets
+    // are at most u, and the first one of a larger bucket is above it.
+    const auto it = std::upper_bound(cdf_.begin() + guide_[k], cdf_.begin() + guide_[k + 1], u);
+    const auto index = std::size_t(it - cdf_.begin());
     const double below = index == 0 ? 0.0 : cdf_[index - 1];
     return {std::uint32_t(index), cdf_[index] - below, u - below};
 }

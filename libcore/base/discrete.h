@@ -11,7 +11,8 @@ namespace lacuna {
 /// Cumulative distribution over n outcomes. Accumulated in double; the last POSITIVE entry and all
 /// after it are one, so that no outcome of weight zero is ever returned. One whose share of the sum
 /// is below 2^-53 may get probability zero. The reported pmf is the one that is realised: a
-/// difference of two stored entries.
+/// difference of two stored entries. A guide table [Chen74] makes a pick cost two looks into
+/// memory, however many outcomes there are.
 class DiscreteDistribution {
   public:
     DiscreteDistribution() = default;
@@ -41,7 +42,11 @@ class DiscreteDistribution {
     Pick sample(double u) const;
 
   private:
+    /// Which guide entry serves u; monotonic, whatever rounding does.
+    std::size_t bucket(double u) const { return std::size_t(u * double(cdf_.size())); }
+
     std::vector<double> cdf_;
+    std::vector<std::uint32_t> guide_;  // by bucket: the first outcome that it may pick; one more
     double total_ = 0.0;
 };
 
