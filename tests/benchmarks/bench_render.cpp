@@ -4,6 +4,10 @@
 //                         `of_bare_embree`: that rate over the rate at which bare Embree traces the
 //                         very rays of that iteration, replayed in their order by as many threads,
 //                         measured right after it in the same run, because machines drift
+//   effects/SCENE/METHOD  `all_over_needed`: time of an iteration with every effect forced on that
+//                         leaves the picture as it is (--set effects.NAME=on), over the time with
+//                         those alone that the scene calls for; both in turn
+//   pool/SCENE            memory of a pool of light subpaths
 //
 // Scenes: the repository's Cornell box and door, and every .glb of $LACUNA_SHARED_SCENES.
 #include <benchmark/benchmark.h>
@@ -15,6 +19,7 @@
 #include "libcore/bidir/integrator.h"
 #include "libcore/gltf/gltf.h"
 #include "libcore/methods/registry.h"
+#include "render/effect_switches.h"
 
 namespace lacuna {
 namespace {
@@ -27,53 +32,110 @@ double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void render(benchmark::State& state, const std::string& file, const MethodRow& row) {
-    const ThreadPool pool;
-    const Scene scene(loadGltf(file), pool);
-    const Camera camera = scene.makeCamera("", {kSide, kSide}, {});
-    const auto method = row.create(resolve(row, {}));
-    RenderSettings settings;
-    settings.limits.maxDepth = kMaxDepth;
-    settings.crop = {0, kSide, 0, kSide};
-    BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
-    const std::atomic<bool> never{false};
-    IterationStatistics warmUp;
-    integrator.warmUp(never, warmUp);
-    std::vector<Rgb> pixels(std::size_t(kSide) * kSide);
+/// A scene, warmed up, whose iterations can be timed.
+class Bench {
+  public:
+    Bench(SceneDescription description, const MethodRow& row)
+        : scene_(std::move(description), pool_),
+          camera_(scene_.makeCamera("", {kSide, kSide}, {})),
+          method_(row.create(resolve(row, {}))),
+          integrator_(scene_, camera_, row.techniques, *method_, settings(), pool_) {
+        IterationStatistics warmUp;
+        integrator_.warmUp(never_, warmUp);
+    }
 
-    IterationStatistics recordedStatistics;
-    integrator.setRecording(true);
-    integrator.render(0, pixels, never, recordedStatistics);
-    const std::vector<RecordedRay> rays = integrator.takeRecording();
-    integrator.setRecording(false);
+    const ThreadPool& pool() const { return pool_; }
+    const Scene& scene() const { return scene_; }
+    std::size_t pixelCount() const { return pixels_.size(); }
+
+    /// Seconds; rays are added to `traced`.
+    double iterate(std::uint64_t& traced) {
+        IterationStatistics statistics;
+        const auto start = Clock::now();
+        integrator_.render(iteration_++, pixels_, never_, statistics);
+        const double seconds = secondsSince(start);
+        traced += statistics.totalRays();
+        return seconds;
+    }
+    std::vector<RecordedRay> record() {
+        std::uint64_t traced = 0;
+        integrator_.setRecording(true);
+        iterate(traced);
+        std::vector<RecordedRay> rays = integrator_.takeRecording();
+        integrator_.setRecording(false);
+        return rays;
+    }
+
+  private:
+    static RenderSettings settings() {
+        RenderSettings settings;
+        settings.limits.maxDepth = kMaxDepth;
+        settings.crop = {0, kSide, 0, kSide};
+        return settings;
+    }
+
+    const std::atomic<bool> never_{false};
+    ThreadPool pool_;
+    Scene scene_;
+    Camera camera_;
+    std::unique_ptr<Method> method_;
+    BidirIntegrator integrator_;
+    std::vector<Rgb> pixels_ = std::vector<Rgb>(std::size_t(kSide) * kSide);
+    std::uint32_t iteration_ = 0;
+};
+
+void render(benchmark::State& state, const std::string& file, const MethodRow& row) {
+    Bench bench(loadGltf(file), row);
+    const std::vector<RecordedRay> rays = bench.record();
 
     double renderSeconds = 0.0, replaySeconds = 0.0;
     std::uint64_t traced = 0;
-    std::uint32_t iteration = 1;
     for (auto _ : state) {
-        IterationStatistics statistics;
-        const auto start = Clock::now();
-        integrator.render(iteration++, pixels, never, statistics);
-        const double seconds = secondsSince(start);
+        const double seconds = bench.iterate(traced);
         state.SetIterationTime(seconds);
         renderSeconds += seconds;
-        traced += statistics.totalRays();
 
         const auto replayStart = Clock::now();
         constexpr std::size_t kBlock = 4096;
-        pool.forEach((rays.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
+        bench.pool().forEach((rays.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
             const std::size_t n = std::min(kBlock, rays.size() - b * kBlock);
-            benchmark::DoNotOptimize(scene.accel().replay(std::span(rays).subspan(b * kBlock, n)));
+            benchmark::DoNotOptimize(
+                bench.scene().accel().replay(std::span(rays).subspan(b * kBlock, n)));
         });
         replaySeconds += secondsSince(replayStart);
     }
     const double iterations = double(state.iterations());
     const double rate = double(traced) / renderSeconds;
     const double bare = double(rays.size()) * iterations / replaySeconds;
-    state.counters["Msamples/s"] = double(pixels.size()) * iterations / renderSeconds * 1e-6;
+    state.counters["Msamples/s"] = double(bench.pixelCount()) * iterations / renderSeconds * 1e-6;
     state.counters["Mrays/s"] = rate * 1e-6;
     state.counters["bare_Mrays/s"] = bare * 1e-6;
     state.counters["of_bare_embree"] = rate / bare;
+}
+
+SceneDescription withEverythingOn(SceneDescription description) {
+    double pinhole = 0.0;
+    std::vector<Effect> effects = effectsOf(description, pinhole, nullptr);
+    const std::vector<EffectSwitch> switches = {{"textures", true},
+                                                {"emissive_textures", true},
+                                                {"normal_maps", true},
+                                                {"alpha_mask", true},
+                                                {"vertex_colors", true}};
+    forceEffects(switches, {description, pinhole, nullptr}, effects);
+    return description;
+}
+
+void effects(benchmark::State& state, const std::string& file, const MethodRow& row) {
+    Bench needed(loadGltf(file), row), all(withEverythingOn(loadGltf(file)), row);
+    double neededSeconds = 0.0, allSeconds = 0.0;
+    std::uint64_t traced = 0;
+    for (auto _ : state) {
+        const double seconds = needed.iterate(traced);
+        state.SetIterationTime(seconds);
+        neededSeconds += seconds;
+        allSeconds += all.iterate(traced);
+    }
+    state.counters["all_over_needed"] = allSeconds / neededSeconds;
 }
 
 /// Peak and stored size of a pool of 10^6 light subpaths.
@@ -106,6 +168,12 @@ void registerScene(const std::filesystem::path& file) {
     for (const MethodRow& row : methods()) {
         benchmark::RegisterBenchmark(("render/" + name + "/" + row.name).c_str(), render,
                                      file.string(), row)
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+    }
+    for (const char* method : {"pt", "bpt"}) {
+        benchmark::RegisterBenchmark(("effects/" + name + "/" + method).c_str(), effects,
+                                     file.string(), findMethod(method))
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
     }
