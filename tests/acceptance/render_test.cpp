@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tests/acceptance/scene_caches.h"
+
 namespace lacuna::test {
 
 namespace {
@@ -139,6 +141,7 @@ Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot)
       camera_(scene.makeCamera("", {shot.width, shot.height}, shot.lens)),
       settings_(settingsOf(row, shot)),
       own_(row.create(settings_)) {
+    giveCaches(*own_, row, scene, shot.threads ? *shot.threads : pool());
     start(scene, row, *own_);
 }
 

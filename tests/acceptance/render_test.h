@@ -60,8 +60,9 @@ struct Picture {
 /// Everything that must live as long as a render; for tests that drive the integrator themselves.
 class Render {
   public:
+    /// The row's caches are made for the scene (scene_caches.h).
     Render(const Scene& scene, const MethodRow& row, const Shot& shot);
-    /// With a method of one's own under the techniques of `row`.
+    /// With a method (and its caches) of one's own under the techniques of `row`.
     Render(const Scene& scene, const MethodRow& row, const Shot& shot, Method& method);
 
     Picture run();

@@ -174,6 +174,7 @@ MethodRow hashedDensityRow() {
 MethodRow mappedSkeletonRow() {
     MethodRow row = skeletonRow();
     row.name = "test-skelbpt-mapped";
+    row.needsSkeleton = false;  // it brings its own
     row.create = [](const Settings& s) {
         auto method = skeletonRow().create(s);
         method->useSkeleton(threeNodes());
@@ -189,6 +190,7 @@ MethodRow mappedSkeletonRow() {
 MethodRow mappedSubspaceRow() {
     MethodRow row = subspaceRow();
     row.name = "test-spcbpt-mapped";
+    row.needsSubspaces = false;  // it brings its own
     row.create = [](const Settings& s) {
         auto method = subspaceRow().create(s);
         method->useSubspaces(fewSubspaces());

@@ -1,0 +1,44 @@
+#include "tests/acceptance/scene_caches.h"
+
+#include "libcore/base/error.h"
+#include "preprocess/skeletonize.h"
+#include "preprocess/train.h"
+
+namespace lacuna::test {
+
+namespace {
+
+const std::atomic<bool> never{false};
+
+std::shared_ptr<const Skeleton> skeletonOf(const Scene& scene, const ThreadPool& pool) {
+    Phases phases;
+    VoxelizeSettings settings;
+    settings.resolution = 24;
+    const Voxelized voxels = voxelizeScene(scene, settings, pool, never, phases);
+    Skeletonized made = skeletonize(scene, voxels.file, pool, never, phases);
+    return std::make_shared<const Skeleton>(std::move(made.file.skeleton));
+}
+
+std::shared_ptr<const Subspaces> subspacesOf(const Scene& scene, const ThreadPool& pool) {
+    Phases phases;
+    TrainSettings settings;
+    settings.paths = 4000;
+    settings.subspaces = 40;
+    settings.lightPaths = 20000;
+    settings.epochs = 4;
+    return std::make_shared<const Subspaces>(
+        std::move(train(scene, settings, pool, never, phases).file.subspaces));
+}
+
+}  // namespace
+
+void giveCaches(Method& method, const MethodRow& row, const Scene& scene, const ThreadPool& pool) {
+    try {
+        if (row.needsSkeleton) method.useSkeleton(skeletonOf(scene, pool));
+        if (row.needsSubspaces) method.useSubspaces(subspacesOf(scene, pool));
+    } catch (const InputError&) {  // no surface
+    } catch (const UsageError&) {  // nothing but solid voxels, as where all there is is a floor
+    }
+}
+
+}  // namespace lacuna::test
