@@ -21,11 +21,13 @@
 // Without subspaces there is one of each, Gamma = 1, and Q comes from a warm-up that is thrown
 // away: light vertices are picked in proportion to beta alone.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <deque>
 #include <numeric>
 
-#include "libcore/base/discrete.h"
+#include "libcore/base/alias_table.h"
 #include "libcore/base/parallel.h"
 #include "libcore/methods/methods.h"
 #include "libcore/subspace/subspaces.h"
@@ -35,6 +37,7 @@ namespace lacuna {
 namespace {
 
 constexpr std::size_t kEntriesPerTask = 4096;
+constexpr int kMostPicks = 64;
 constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
 struct Options {
@@ -78,6 +81,7 @@ class Classes {
             weights.assign(column.begin(), column.end());
             columns_.emplace_back(weights);
         }
+        for (const float g : subspaces_->gamma) believedGamma_.push_back(rounded(g));
         unseen_ = unseenQ(q_, subspaces_->lightPaths);
     }
 
@@ -104,9 +108,11 @@ class Classes {
         return known != Labels::kUnknown ? known : subspaces_->eyeSubspace(z, predecessor);
     }
     /// To draw light subspaces from.
-    const DiscreteDistribution& column(std::uint32_t eye) const { return columns_[eye]; }
+    const AliasTable& column(std::uint32_t eye) const { return columns_[eye]; }
+    /// What the weights believe Gamma to be: within 0.4 %.
     double gamma(std::uint32_t light, std::uint32_t eye) const {
-        return double(subspaces_->column(eye)[light]);
+        const std::uint32_t high = believedGamma_[std::size_t(eye) * lightCount() + light];
+        return double(std::bit_cast<float>(high << 16));
     }
     void tagWalk(std::span<PathVertex> walk) const {
         if (walk.empty()) return;
@@ -130,8 +136,17 @@ class Classes {
     std::uint32_t window(std::uint32_t light) const { return windows_[light]; }
 
   private:
+    /// The upper half of a float, rounded to nearest; never zero for what is not.
+    static std::uint16_t rounded(float g) {
+        if (!(g > 0.0f)) return 0;
+        return std::uint16_t(std::max(1u, (std::bit_cast<std::uint32_t>(g) + 0x8000u) >> 16));
+    }
+
     std::shared_ptr<const Subspaces> subspaces_;
-    std::vector<DiscreteDistribution> columns_;  // by eye subspace
+    std::vector<AliasTable> columns_;  // by eye subspace
+    // Gamma in half the memory. Weights look it up for every technique of every path, at random,
+    // and may believe what they like.
+    std::vector<std::uint16_t> believedGamma_;
     std::vector<double> q_;
     std::vector<std::uint32_t> windows_;
     double unseen_ = 1.0;
@@ -211,23 +226,46 @@ class SubspaceConnections final : public Method {
             for (const Subpath& y : cell.members) {
                 weights.push_back(double(mean(y.back().throughput)));
             }
-            cell.within = DiscreteDistribution(weights);
+            cell.within = AliasTable(weights);
             cell.iterations = double(kept_[i].size() + 1);
         });
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        const DiscreteDistribution& column = classes_.column(
+        const AliasTable& column = classes_.column(
             classes_.eyeOf(context.vertex, context.predecessor(), EdgeMaker::EyeWalk));
+        // Every look into memory waits for the one before it, so the picks go side by side.
+        struct Pick {
+            double u, subspacePmf, pmf;
+            const Cell* cell;
+            const Subpath* light;
+        };
+        std::array<Pick, kMostPicks> storage;  // not initialised: few of them are used
+        const auto picks = std::span(storage).first(std::size_t(options_.picks));
+        for (Pick& p : picks) {
+            p.u = rng.uniformDouble();
+            column.prefetch(p.u);
+        }
+        for (Pick& p : picks) {
+            const AliasTable::Pick subspace = column.sample(p.u);
+            p.cell = &cells_[subspace.index];
+            p.subspacePmf = subspace.pmf;
+            p.u = subspace.remapped;
+            p.cell->within.prefetch(p.u);
+        }
+        for (Pick& p : picks) {
+            p.light = nullptr;
+            if (p.cell->within.empty()) continue;
+            const AliasTable::Pick within = p.cell->within.sample(p.u);
+            p.pmf = p.subspacePmf * within.pmf;
+            p.light = &p.cell->members[within.index];
+            __builtin_prefetch(p.light);
+        }
         const double nm = double(options_.picks) * double(options_.subpaths);
-        for (int n = 0; n < options_.picks; ++n) {
-            const auto subspace = column.sample(rng.uniformDouble());
-            const Cell& cell = cells_[subspace.index];
-            if (cell.within.empty()) continue;
-            const auto pick = cell.within.sample(subspace.remapped());
-            const Subpath y = cell.members[pick.index];
-            prefetch(y.back());
-            sink.add({y, 1.0 / (nm * cell.iterations * subspace.pmf * pick.pmf), 0});
+        for (const Pick& p : picks) {
+            if (!p.light) continue;
+            prefetch(p.light->back());
+            sink.add({*p.light, 1.0 / (nm * p.cell->iterations * p.pmf), 0});
         }
     }
 
@@ -256,7 +294,7 @@ class SubspaceConnections final : public Method {
         std::vector<Subpath> members;  ///< of the pool first, then the kept ones
         std::size_t fresh = 0;         ///< those of the pool
         double iterations = 1.0;       ///< that they are from: min(j, W_i)
-        DiscreteDistribution within;   ///< P_r
+        AliasTable within;             ///< P_r
     };
 
     /// Copies what the coming iterations use again. Iterations without a vertex count as well.
@@ -298,7 +336,7 @@ MethodRow subspaceRow() {
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
-        {"connections", Kind::Integer, 3, 1, 64, "picks per eye vertex, N"},
+        {"connections", Kind::Integer, 3, 1, kMostPicks, "picks per eye vertex, N"},
         {"weights",
          Kind::Choice,
          0,

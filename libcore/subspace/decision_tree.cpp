@@ -1,6 +1,7 @@
 #include "libcore/subspace/decision_tree.h"
 
 #include <algorithm>
+#include <deque>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,39 @@ DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
                                              : attribute < SubpathEnd::kAttributes && index > i &&
                                                    std::size_t(index) + 1 < nodes_.size();
         if (!good) throw std::invalid_argument("decision tree: node " + std::to_string(i));
+    }
+    arrange();
+}
+
+void DecisionTree::arrange() {
+    const auto isLeaf = [](const Node& n) { return (n.code & kLeaf) == kLeaf; };
+    // A pair that has no place yet, and where its parent lies.
+    struct Pair {
+        std::uint32_t first;
+        Node* parent;
+    };
+    lines_.resize((nodes_.size() - 1 + kLine - 1) / kLine);
+    root_ = nodes_[0];
+    std::vector<Pair> begins;  // pairs that begin a line, unless there is room in one
+    if (!isLeaf(root_)) begins.push_back({root_.code >> 4, &root_});
+    std::deque<Pair> next;  // on the way down from those of this line, nearest first
+    for (std::uint32_t place = 0; !begins.empty() || !next.empty(); place += 2) {
+        if (place % kLine == 0) {
+            begins.insert(begins.end(), next.rbegin(), next.rend());
+            next.clear();
+        }
+        if (next.empty()) {
+            next.push_back(begins.back());
+            begins.pop_back();
+        }
+        const Pair pair = next.front();
+        next.pop_front();
+        pair.parent->code = place << 4 | (pair.parent->code & kLeaf);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            Node& node = lines_[place / kLine].node[place % kLine + k];
+            node = nodes_[pair.first + k];
+            if (!isLeaf(node)) next.push_back({node.code >> 4, &node});
+        }
     }
 }
 
@@ -48,10 +82,10 @@ class TreeGrower {
         std::iota(order_.begin(), order_.end(), 0u);
     }
 
-    DecisionTree grow() {
-        DecisionTree tree;
-        if (!samples_.empty()) fill(tree.nodes_, 0, order_, 0);
-        return tree;
+    std::vector<DecisionTree::Node> grow() {
+        std::vector<DecisionTree::Node> nodes{{0.0f, DecisionTree::kLeaf}};
+        if (!samples_.empty()) fill(nodes, 0, order_, 0);
+        return nodes;
     }
 
   private:
@@ -143,7 +177,7 @@ class TreeGrower {
 
 DecisionTree growTree(std::span<const SubpathEnd> samples, std::span<const std::uint32_t> labels,
                       std::uint32_t labelCount, double purity) {
-    return TreeGrower(samples, labels, labelCount, purity).grow();
+    return {TreeGrower(samples, labels, labelCount, purity).grow(), std::max(labelCount, 1u)};
 }
 
 double treeAccuracy(const DecisionTree& tree, std::span<const SubpathEnd> samples,

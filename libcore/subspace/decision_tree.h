@@ -28,16 +28,17 @@ class DecisionTree {
     static constexpr int kMaxDepth = 32;
 
     /// One leaf with the label 0.
-    DecisionTree() : nodes_{{0.0f, kLeaf}} {}
+    DecisionTree() : DecisionTree({{0.0f, kLeaf}}, 1) {}
     /// Throws std::invalid_argument unless every child lies behind its parent, inside the array,
     /// with labels below `labels`.
     DecisionTree(std::vector<Node> nodes, std::uint32_t labels);
 
     std::uint32_t operator()(const SubpathEnd& end) const {
-        Node n = nodes_[0];
+        Node n = root_;
         for (std::uint32_t attribute; (attribute = n.code & kLeaf) != kLeaf;) {
             const std::uint32_t second = end.value[attribute] < n.threshold ? 0u : 1u;
-            n = nodes_[(n.code >> 4) + second];
+            const std::uint32_t i = (n.code >> 4) + second;
+            n = lines_[i / kLine].node[i % kLine];
         }
         return n.code >> 4;
     }
@@ -47,8 +48,19 @@ class DecisionTree {
     int depth() const;
 
   private:
-    friend class TreeGrower;  // decision_tree.cpp
+    static constexpr std::uint32_t kLine = 8;
+    /// What the processor fetches at once: four pairs of siblings.
+    struct alignas(64) Line {
+        Node node[kLine];
+    };
+
+    void arrange();
+
     std::vector<Node> nodes_;
+    // The same tree in the order of walks: pairs that follow each other on the way down share a
+    // line, so that a walk of d steps fetches about d / 2.3 lines instead of nearly d.
+    Node root_;
+    std::vector<Line> lines_;
 };
 
 /// Grows a tree from labelled samples; labels are below `labels`. Samples that no attribute tells

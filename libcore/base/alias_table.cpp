@@ -1,0 +1,59 @@
+#include "libcore/base/alias_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace lacuna {
+
+AliasTable::AliasTable(std::span<const double> weights) : slots_(weights.size()) {
+    double largest = 0.0;
+    std::uint32_t heaviest = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (!(weights[i] >= 0.0) || !std::isfinite(weights[i])) {
+            throw std::invalid_argument("alias table: weight " + std::to_string(i) + " is " +
+                                        std::to_string(weights[i]) +
+                                        ", expected a finite number >= 0");
+        }
+        if (weights[i] > largest) {
+            largest = weights[i];
+            heaviest = std::uint32_t(i);
+        }
+    }
+    if (largest == 0.0) return;
+    // Relative to the largest weight, so that the sum neither overflows nor goes denormal.
+    double sum = 0.0;
+    for (const double w : weights) sum += w / largest;
+    total_ = sum * largest;
+
+    // What each outcome has, in slots; those with less than one are filled up by those with more.
+    const auto n = double(weights.size());
+    std::vector<double> share(weights.size());
+    std::vector<std::uint32_t> small, large;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        share[i] = weights[i] / largest / sum * n;
+        slots_[i].pmf = float(share[i] / n);
+        (share[i] < 1.0 ? small : large).push_back(std::uint32_t(i));
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::uint32_t poor = small.back(), rich = large.back();
+        small.pop_back();
+        slots_[poor].threshold = float(share[poor]);
+        slots_[poor].alias = rich;
+        share[rich] -= 1.0 - share[poor];
+        if (share[rich] >= 1.0) continue;
+        large.pop_back();
+        small.push_back(rich);
+    }
+    // What is left has one slot but for rounding; a weight of zero must not get it.
+    for (const auto* left : {&small, &large}) {
+        for (const std::uint32_t i : *left) {
+            slots_[i].threshold = weights[i] > 0.0 ? 1.0f : 0.0f;
+            slots_[i].alias = heaviest;
+        }
+    }
+    for (Slot& slot : slots_) slot.aliasPmf = slots_[slot.alias].pmf;
+}
+
+}  // namespace lacuna
