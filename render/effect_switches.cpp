@@ -58,6 +58,8 @@ bool switchOff(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) m.normalTexture = {};
     } else if (name == "vertex_colors") {
         for (Mesh& m : scene.meshes) m.colors = {};
+    } else if (name == "attenuation") {
+        for (Material& m : scene.materials) m.absorption = {};
     } else if (name == "thin_lens") {
         to.lensRadius = 0.0;
     } else if (to.techniques && name == "hits") {
@@ -99,6 +101,11 @@ bool switchOn(const std::string& name, const SwitchTargets& to) {
             m.alphaMode = Material::Alpha::Mask;
             m.baseAlpha = 0.75f;  // below one, so that it is looked at, and above any cutoff of 0
             m.alphaCutoff = 0.0f;
+        }
+    } else if (name == "attenuation") {
+        constexpr float kUnseen = 1e-30f;  // a float's exp of it is 1
+        for (Material& m : scene.materials) {
+            if (isBlack(m.absorption)) m.absorption = Rgb(kUnseen);
         }
     } else if (name == "vertex_colors") {
         for (Mesh& m : scene.meshes) {

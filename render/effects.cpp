@@ -144,6 +144,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           "no rough thin sheet");
     t.add("smooth_thin_transmission", have.count(glass(true, false)), "smooth thin sheet", "",
           "no smooth thin sheet");
+    t.add("attenuation", have.count([](const Material& m) { return !isBlack(m.absorption); }),
+          "coloured solid", " of glass", "no solid of glass with an attenuation colour");
     t.add("thin_lens", lensRadius > 0.0,
           lensRadius > 0.0 ? "the aperture is above 0" : "the aperture is 0: a pinhole");
 

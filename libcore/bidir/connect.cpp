@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libcore/bidir/absorption.h"
+
 namespace lacuna {
 
 namespace {
@@ -40,8 +42,9 @@ void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices
     path.eyeEdges = int(eyeVertices) - 1;
 }
 
-void setSource(FullPath& path, const Lights& lights, const PathVertex& source, const Rgb& beta) {
-    const LightKind kind = lights.kind(source.light);
+void setSource(FullPath& path, const Scene& scene, const PathVertex& source, const Rgb& beta) {
+    const LightKind kind = scene.lights().kind(source.light);
+    path.absorption = scene.absorption();
     path.sourceBeta = beta;
     path.hittable = isHittable(kind);
     path.splattable = path.hittable;
@@ -72,7 +75,8 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
     setEdges(path, 0, eye.size());
     fillEyePart(path, eye);
     // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
-    setSource(path, lights, z, point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
+    setSource(path, walker.scene(), z,
+              point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
     path.scatter[0] = emission.profile;
     path.lightPdfA[0] = point.pdf;
     if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
@@ -93,7 +97,8 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
         return std::nullopt;
     }
     const EndValue end = lightEnd(lights, y, -edge.direction);
-    const Closed closed{y.throughput * end.f * (edge.geometry * projection->pdfW), 1,
+    const Rgb through = transmittance(walker.scene().absorption(), z0, edge.direction, y);
+    const Closed closed{y.throughput * end.f * through * (edge.geometry * projection->pdfW), 1,
                         projection->raster};
     if (isBlack(closed.contribution) || !connected(walker.scene(), y, z0, RayKind::Splat, tally)) {
         return std::nullopt;
@@ -102,7 +107,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     setEdges(path, light.size(), 1);
     const int k = path.edges;
     fillLightPart(path, light);
-    setSource(path, lights, light[0], light[0].throughput);
+    setSource(path, walker.scene(), light[0], light[0].throughput);
     path.vertex[k] = &z0;
     path.lightPdfA[k] = 0.0f;
     path.eyePdfA[k] = 1.0f;
@@ -124,8 +129,10 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     const EndValue atLight = lightEnd(lights, y, edge.direction);
     if (isBlack(atLight.f)) return std::nullopt;
     const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
-    const Closed closed{
-        z.throughput * atEye.f * atLight.f * y.throughput * edge.geometry, int(eye.size()), {}};
+    const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
+    const Closed closed{z.throughput * atEye.f * atLight.f * through * y.throughput * edge.geometry,
+                        int(eye.size()),
+                        {}};
     if (isBlack(closed.contribution) ||
         !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
         return std::nullopt;
@@ -135,7 +142,7 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     setEdges(path, light.size(), eye.size());
     fillLightPart(path, light);
     fillEyePart(path, eye);
-    setSource(path, lights, light[0], light[0].throughput);
+    setSource(path, walker.scene(), light[0], light[0].throughput);
     path.delta[s - 1] = path.delta[s] = false;
     path.scatter[s - 1] = atLight.f;
     path.scatter[s] = atEye.f;

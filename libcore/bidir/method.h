@@ -119,7 +119,8 @@ class PathSpace {
     /// Replaces `out` by an eye subpath through a uniform point of the whole film.
     virtual void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const = 0;
 
-    /// What arrives where a light subpath meets an eye subpath's last vertex, visibility left out.
+    /// What arrives where a light subpath meets an eye subpath's last vertex; visibility, and what
+    /// coloured glass absorbs between the two, left out.
     struct Arrival {
         Rgb value;            ///< beta rho at the light's end; times rho at the eye's if asked for
         double geometry = 0;  ///< G

@@ -1,5 +1,7 @@
 #include "libcore/bidir/mis.h"
 
+#include "libcore/bidir/absorption.h"
+
 namespace lacuna {
 
 double FullPath::geometryOf(int i) const {
@@ -11,6 +13,12 @@ double FullPath::geometryOf(int i) const {
                : double(edgeBetween(*vertex[i], *vertex[i + 1]).geometry);
 }
 
+Vec3 FullPath::directionOf(int i) const {
+    if (i < lightEdges) return -vertex[i + 1]->toPrevious;
+    if (i >= edges - eyeEdges) return vertex[i]->toPrevious;
+    return edgeBetween(*vertex[i], *vertex[i + 1]).direction;
+}
+
 void FullPath::fillLightThroughputs(int rouletteDepth) {
     beta[0] = sourceBeta;
     for (int i = 1; i < edges; ++i) {
@@ -18,6 +26,9 @@ void FullPath::fillLightThroughputs(int rouletteDepth) {
         const double g = geometry[i - 1] = geometryOf(i - 1);
         const double pdf = double(lightPdfA[i]) * lightRoulette(i, rouletteDepth);
         beta[i] = pdf > 0.0 ? beta[i - 1] * scatter[i - 1] * float(g / pdf) : Rgb{};
+        if (!absorption.empty()) {
+            beta[i] *= transmittance(absorption, *vertex[i - 1], directionOf(i - 1), *vertex[i]);
+        }
     }
 }
 

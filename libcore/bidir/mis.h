@@ -13,6 +13,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "libcore/bidir/path.h"
 
@@ -115,6 +116,7 @@ struct FullPath {
     Rgb sourceBeta;                              ///< exitance over density at x_0
     bool hittable = false;                       ///< an eye walk can run into this light
     bool splattable = true;                      ///< k = 1 under a punctual light is not splatted
+    std::span<const Rgb> absorption;             ///< of the scene, by material (absorption.h)
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;
 
@@ -143,6 +145,8 @@ struct FullPath {
     /// densities are made of: the positions at its ends know it to 1e-7 of the scene's size only,
     /// and over a short or grazing edge the cosines of the two differ by percents.
     double geometryOf(int i) const;
+    /// Unit, from x_i to x_{i+1}; a walk's edge has the direction that the walk drew.
+    Vec3 directionOf(int i) const;
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     std::array<Rgb, kMaxEdges + 1> beta;
     std::array<double, kMaxEdges + 1> geometry;  ///< geometryOf; filled likewise

@@ -46,6 +46,9 @@ struct PathVertex {
     /// What the method's density keeps for this vertex (ConnectionDensity::tagOf), so that it is
     /// looked up once and not once per path; kNone: nothing, or not looked up.
     std::uint32_t tag = kNone;
+    /// Of the surface that the vertex lies on, whose body may absorb (absorption.h); y_0 has it
+    /// only where something in the scene absorbs.
+    std::uint32_t material = kNone;
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
     std::uint16_t index = 0;                    ///< 0 on the light or the lens

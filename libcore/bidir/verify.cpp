@@ -6,6 +6,8 @@
 #include <limits>
 #include <tuple>
 
+#include "libcore/bidir/absorption.h"
+
 namespace lacuna {
 
 namespace {
@@ -141,6 +143,8 @@ class Products {
             const double pdf = lightPdfA_[v] * lightRoulette(i);
             beta_[v] =
                 pdf > 0.0 ? beta_[v - 1] * scatter_[v - 1] * float(geometry_[v - 1] / pdf) : Rgb{};
+            beta_[v] *=
+                transmittance(walker_.scene().absorption(), x(i - 1), towardsLens(i - 1), x(i));
         }
     }
 

@@ -4,6 +4,8 @@
 #include <memory>
 #include <new>
 
+#include "libcore/bidir/absorption.h"
+
 namespace lacuna {
 
 bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
@@ -17,6 +19,9 @@ bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
     out.ng = p.ng;
     out.light = p.light;
     out.lightUv = p.uv;
+    if (p.kind == LightKind::Area && !scene_.absorption().empty()) {
+        out.material = scene_.materialOf(p.light);
+    }
     out.pdfA = p.pdf;
     out.throughput = p.exitance * (1.0f / p.pdf);
     return true;
@@ -70,8 +75,9 @@ void Walker::addSurface(const SurfacePoint& point, Vec3 direction, float pdfW, R
     ::new (&v.bsdf) Bsdf(scene_.bsdfAt(point));  // in place: 80 bytes are worth not copying
     v.light = point.light;
     v.lightUv = point.barycentric;
+    v.material = point.material;
     v.survival = v.bsdf.survivalAlbedo();
-    v.throughput = throughput;
+    v.throughput = throughput * transmittance(scene_.absorption(), previous, direction, v);
 
     const double cosine = measureCosine(v, direction);
     if (previous.infinite()) {

@@ -36,6 +36,8 @@ class Reader {
     }
 
   private:
+    static constexpr double kMostAbsorption = 1e30;  ///< per unit of length
+
     void readSurface() {
         const tinygltf::PbrMetallicRoughness& pbr = source_.pbrMetallicRoughness;
         material_.baseColor = clampedRgb(pbr.baseColorFactor, "baseColorFactor");
@@ -112,13 +114,26 @@ class Reader {
         }
         if (const json* volume = extension("KHR_materials_volume")) {
             material_.thin = !(number(*volume, "thicknessFactor", 0.0) > 0.0);
-            const auto color = numbers<3>(*volume, "attenuationColor", {1, 1, 1});
-            const bool attenuates =
-                volume->contains("attenuationDistance") &&
-                std::any_of(color.begin(), color.end(), [](double c) { return c != 1.0; });
-            warn("attenuation in volumes is not rendered yet", attenuates && !material_.thin);
             warn("thickness textures are not rendered", volume->contains("thicknessTexture"));
+            readAbsorption(*volume);
         }
+    }
+
+    /// The white that enters has attenuationColor left after attenuationDistance.
+    void readAbsorption(const json& volume) {
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        const auto color = numbers<3>(volume, "attenuationColor", {1, 1, 1});
+        const double distance = number(volume, "attenuationDistance", kNever);
+        warn("attenuationDistance 0 is not a distance: nothing is absorbed", !(distance > 0.0));
+        if (material_.thin || !(material_.transmission > 0.0f)) return;
+        if (!(distance > 0.0) || distance == kNever) return;
+        const auto coefficient = [&](double c) {
+            const auto left = double(clamped(c, 0, 1, "attenuationColor"));
+            // Black absorbs without limit: as much as a float can say.
+            return float(std::min(-std::log(left) / distance, kMostAbsorption));
+        };
+        material_.absorption = {coefficient(color[0]), coefficient(color[1]),
+                                coefficient(color[2])};
     }
 
     void warnAboutRest() {

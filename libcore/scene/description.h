@@ -52,6 +52,7 @@ struct Material {
     float transmission = 0.0f;
     TextureUse transmissionTexture;  ///< linear: R
     bool thin = true;                ///< no KHR_materials_volume thickness: no refraction
+    Rgb absorption;                  ///< of a solid, per unit of length: exp(-absorption d) is left
     TextureUse normalTexture;        ///< linear: tangent, bitangent, normal as (x + 1) / 2
     float normalScale = 1.0f;        ///< of the first two
     Rgb emission;                    ///< radiance: emissiveFactor x emissiveStrength

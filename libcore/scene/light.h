@@ -67,6 +67,8 @@ class Lights {
     bool empty() const { return selection_.empty(); }
     std::size_t size() const { return kinds_.size(); }
     LightKind kind(std::uint32_t light) const { return kinds_[light]; }
+    /// What EmissiveTriangle::object was, of an area light.
+    std::uint32_t object(std::uint32_t light) const { return triangles_[light].object; }
     const Environment* environment() const { return environment_; }
     std::uint32_t environmentIndex() const { return environmentIndex_; }
     /// Probability of picking this light (proportional to its power).

@@ -233,6 +233,11 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
     lights_ = std::make_unique<Lights>(std::move(emitters), d.lights, centre_, environment_.get(),
                                        radius_);
 
+    if (std::any_of(d.materials.begin(), d.materials.end(),
+                    [](const Material& m) { return !isBlack(m.absorption); })) {
+        for (const Material& m : d.materials) absorption_.push_back(m.absorption);
+    }
+
     std::vector<float> iors;
     for (const Material& m : d.materials) {
         // A diffuse base under a dielectric layer; factors of one may be less by their texture.
@@ -474,6 +479,10 @@ bool Scene::visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind,
     const Ray ray{offsetOrigin(a, ngA, direction, offsetFloor_), direction};
     if (tally.recording) tally.recording->push_back({ray, kind});
     return !accel_->occluded(ray);
+}
+
+std::uint32_t Scene::materialOf(std::uint32_t light) const {
+    return meshes_[objects_[lights_->object(light)].mesh].material;
 }
 
 Bsdf Scene::bsdfAt(const SurfacePoint& point) const {

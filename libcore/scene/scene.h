@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,10 @@ class Scene {
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const;
     const AlbedoTables& albedoTables() const { return *tables_; }
+    /// Of the materials' bodies, per unit of length; empty where none absorbs.
+    std::span<const Rgb> absorption() const { return absorption_; }
+    /// Material of an area light.
+    std::uint32_t materialOf(std::uint32_t light) const;
 
   private:
     struct Object;
@@ -103,6 +108,7 @@ class Scene {
     std::vector<Object> objects_;
     std::unique_ptr<AlbedoTables> tables_;
     std::vector<std::optional<Bsdf>> constantBsdfs_;  // by material; where no texture is asked
+    std::vector<Rgb> absorption_;                     // by material; empty where none absorbs
     std::unique_ptr<Environment> environment_;
     std::unique_ptr<Lights> lights_;
     std::unique_ptr<Accel> accel_;

@@ -222,6 +222,35 @@ TEST_P(Exact, veilsLetTheirShareThrough) {
                    row().name + ", veils");
 }
 
+/// A slab of ior 1, half a unit thick, between the camera and a light that fills its view.
+TEST_P(Exact, colouredGlassFollowsBeerAndLambert) {
+    if (!seesThroughDeltas(row())) return;
+    const Rgb absorption(0.5f, 2, 0);
+    SceneBuilder b;
+    b.add(quad({-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, b.add(emitter(Rgb(2.0f)))));
+    b.add(box({-5, -5, -1.5f}, {5, 5, -1}, b.add(colouredGlass(absorption, 1))));
+    b.add(lookAt({0, 0, 0}, {0, 0, -1}, 60));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 3;
+    shot.iterations = 100;
+    const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
+    std::vector<Rgb> exact;
+    constexpr int kSteps = 8;
+    for (int i = 0; i < shot.width * shot.height; ++i) {
+        Rgb sum;
+        for (int j = 0; j < kSteps * kSteps; ++j) {
+            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
+                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
+            const Vec3 d = camera.directionAt(camera.position(), raster).direction;
+            const float inside = 0.5f / std::fabs(d.z);
+            sum += Rgb(std::exp(-absorption.r * inside), std::exp(-absorption.g * inside), 1);
+        }
+        exact.push_back(sum * (2.0f / (kSteps * kSteps)));
+    }
+    expectRadiance(render(*scene, row(), shot), exact, row().name + ", coloured slab");
+}
+
 /// The sky is dimmed as the scene grows, so that the light that it holds (and whatever a density
 /// makes of beta) stays what it was; Shot::gain takes that back.
 SceneBuilder sphereOnGround(double scale, Vec3d offset) {

@@ -199,9 +199,19 @@ NamedScene bentNormals() {
     return s;
 }
 
+NamedScene colouredBodies() {
+    NamedScene s{"coloured glass", room(), true};
+    SceneBuilder& b = s.builder;
+    const auto amber = b.add(colouredGlass({0.2f, 1, 4}, 1.5f, 0.5f));
+    b.add(box({-0.8f, -0.95f, -0.7f}, {0.1f, -0.1f, 0}, amber));
+    b.add(sphere({-0.35f, -0.5f, -0.35f}, 0.2f, 12, b.add(metal(Rgb(0.8f), 0.4f))));
+    b.add(sphere({0.5f, -0.5f, 0}, 0.35f, 12, b.add(colouredGlass({3, 0.5f, 1}))));
+    return s;
+}
+
 std::vector<NamedScene> weightScenes() {
-    return {diffuseBox(),     glossyBox(),         deltaBox(),   underTheSky(),
-            punctualLights(), instancedEmitters(), bentNormals()};
+    return {diffuseBox(),     glossyBox(),         deltaBox(),    underTheSky(),
+            punctualLights(), instancedEmitters(), bentNormals(), colouredBodies()};
 }
 
 }  // namespace lacuna::test

@@ -44,6 +44,8 @@ NamedScene underTheSky();
 NamedScene punctualLights();
 NamedScene instancedEmitters();
 NamedScene bentNormals();
+/// Rough and smooth bodies of coloured glass, one within another, a lamp and the camera outside.
+NamedScene colouredBodies();
 /// All of these.
 std::vector<NamedScene> weightScenes();
 

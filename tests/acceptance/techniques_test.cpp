@@ -121,6 +121,32 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back({"camera in rough glass", b, 2, 3});
     }
     {
+        // A plate of coloured glass with a leaf in it, between light and floor: edges from face to
+        // face, and from either face to what says nothing about the glass.
+        TechniqueScene s{"coloured rough glass", plates(false), 2, 4};
+        SceneBuilder& b = s.builder;
+        const auto rough = b.add(colouredGlass({3, 1, 0.2f}, 1.3f, 0.95f));
+        b.add(quad({-0.8f, 1.1f, -0.6f}, {0, 0.1f, 1.4f}, {1.6f, 0, 0}, rough));
+        b.add(quad({-0.8f, 0.5f, -0.6f}, {1.6f, 0, 0}, {0, 0.1f, 1.4f}, rough));
+        b.add(quad({-0.4f, 0.85f, 0}, {0.3f, 0, 0}, {0, 0.1f, 0.4f}));
+        addQuadLight(b);
+        scenes.push_back(s);
+    }
+    {
+        // Camera inside coloured glass, which glows itself on both sides of one face: light leaves
+        // its back for the glass, and meets a floor there that says nothing.
+        SceneBuilder b;
+        const auto rough = b.add(colouredGlass({1.5f, 0.5f, 0.1f}, 1.3f, 0.9f));
+        lacuna::Material glow = b.d.materials[rough];
+        glow.emission = Rgb(4.0f);
+        glow.doubleSided = true;
+        b.add(quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}));
+        b.add(quad({-1, 0.4f, -1.3f}, {0, 1, -0.2f}, {2, 0, 0}, rough));
+        b.add(quad({-0.4f, 1.5f, -0.3f}, {0, 0, 0.6f}, {0.8f, 0, 0}, b.add(glow)));
+        b.add(lookAt({0, 0.9, 2.5}, {0, 0.2, 0}, 40));
+        scenes.push_back({"glow in coloured glass", b, 2, 3});
+    }
+    {
         TechniqueScene s{"instanced and mirrored emitters", plates(false), 2, 3};
         SceneBuilder& b = s.builder;
         Mesh lamp = joined(quad({-0.2f, 0, -0.2f}, {0.4f, 0, 0}, {0, 0.1f, 0.4f}),

@@ -45,6 +45,7 @@ SceneDescription everything() {
     m.emissiveTexture = m.baseColorTexture = m.normalTexture = use;
     m.alphaMode = Material::Alpha::Mask;
     scene.materials[1].alphaMode = Material::Alpha::Blend;
+    scene.materials[1].absorption = Rgb(1.0f);
     scene.meshes.resize(2);
     for (std::uint32_t i = 0; i < 2; ++i) {
         scene.meshes[i].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -69,7 +70,7 @@ TEST(EffectSwitches, OffIsGoneAndSaid) {
     for (const char* name :
          {"area_lights", "point_lights", "spot_lights", "directional_lights", "environment",
           "emissive_textures", "textures", "alpha_mask", "alpha_blend", "normal_maps",
-          "vertex_colors", "thin_lens", "hits", "connections", "splats"}) {
+          "vertex_colors", "attenuation", "thin_lens", "hits", "connections", "splats"}) {
         SceneDescription scene = everything();
         double lens = 0.1;
         TechniqueSet techniques = row.techniques;
@@ -124,9 +125,10 @@ TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
     for (const MethodRow& row : methods()) {
         ASSERT_EQ(run(quick(row.name, "--quiet")).exitCode, 0);
         const Image plain = readImage(path("out.exr"));
-        const Outcome o = run(quick(
-            row.name, "--json @o.json" + switches({"textures", "alpha_mask", "emissive_textures",
-                                                   "vertex_colors", "normal_maps"})));
+        const Outcome o =
+            run(quick(row.name, "--json @o.json" +
+                                    switches({"textures", "alpha_mask", "emissive_textures",
+                                              "vertex_colors", "normal_maps", "attenuation"})));
         ASSERT_EQ(o.exitCode, 0) << o.err;
         EXPECT_EQ(o.err.find("lacks"), std::string::npos) << o.err;
         const Image forced = readImage(path("out.exr"));

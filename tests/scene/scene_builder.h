@@ -119,6 +119,12 @@ inline lacuna::Material glass(float ior = 1.5f, float roughness = 0) {
     m.thin = false;
     return m;
 }
+/// Solid; `absorption` per unit of length.
+inline lacuna::Material colouredGlass(Rgb absorption, float ior = 1.5f, float roughness = 0) {
+    lacuna::Material m = glass(ior, roughness);
+    m.absorption = absorption;
+    return m;
+}
 inline lacuna::Material emitter(Rgb radiance, bool twoSided = false, Rgb albedo = Rgb(0.0f)) {
     lacuna::Material m = matte(albedo);
     m.emission = radiance;

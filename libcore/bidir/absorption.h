@@ -1,0 +1,29 @@
+// What coloured glass takes from light on its way through it (KHR_materials_volume).
+//
+// Paths know surfaces, not bodies, so an edge's ends say whether it runs inside one: an end that
+// the edge leaves on the back of an absorbing solid says that it does, and by what coefficient.
+// Where both ends say so, the mean of the two holds (they are the same but where bodies overlap).
+// Where neither does, nothing is absorbed: between two opaque things, or lights, in the glass too.
+// This is symmetric in the ends, so whatever makes the edge (either walk, a connection, a splat)
+// carries the same; no density knows of it.
+#pragma once
+
+#include <span>
+
+#include "libcore/bidir/path.h"
+
+namespace lacuna {
+
+/// As transmittance, where something in the scene absorbs.
+Rgb transmittanceInside(std::span<const Rgb> absorption, const PathVertex& a, Vec3 direction,
+                        const PathVertex& b);
+
+/// Share of the light that the edge from `a` along the unit `direction` to `b` lets through:
+/// exp(-sigma d) [Beer-Lambert]. `absorption`: sigma by material, per scene unit; empty where no
+/// material absorbs. Edges to infinity run through no body.
+inline Rgb transmittance(std::span<const Rgb> absorption, const PathVertex& a, Vec3 direction,
+                         const PathVertex& b) {
+    return absorption.empty() ? Rgb(1.0f) : transmittanceInside(absorption, a, direction, b);
+}
+
+}  // namespace lacuna
