@@ -49,6 +49,12 @@ bool switchOff(const std::string& name, const SwitchTargets& to) {
     } else if (name == "textures") {
         for (Material& m : scene.materials) {
             m.baseColorTexture = m.metallicRoughnessTexture = m.transmissionTexture = {};
+            m.specularTexture = m.specularColorTexture = {};
+        }
+    } else if (name == "specular_color") {
+        for (Material& m : scene.materials) {
+            m.specularColor = Rgb(1.0f);
+            m.specularColorTexture = {};
         }
     } else if (name == "alpha_mask") {
         makeOpaque(scene, Material::Alpha::Mask);

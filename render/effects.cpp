@@ -111,7 +111,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("emissive_textures", have.emissiveTextures,
           have.emissiveTextures ? "emission varies over triangles" : "no emissive texture");
     t.add("textures", have.count([](const Material& m) {
-        return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture;
+        return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture ||
+               m.specularTexture || m.specularColorTexture;
     }),
           "textured material", "", "no texture");
     t.add("alpha_mask",
@@ -130,6 +131,10 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           "no diffuse material");
     t.add("glossy", have.count([](const Material& m) { return reflects(m) && mayBeRough(m); }),
           "material", " with a rough reflection", "no rough metal or coat");
+    t.add("specular_color", have.count([](const Material& m) {
+        return reflects(m) && (m.specularColor != Rgb(1.0f) || m.specularColorTexture);
+    }),
+          "material", " with a coloured coat", "no coat with a colour of its own");
     t.add("mirror", have.count([](const Material& m) { return reflects(m) && mayBeSmooth(m); }),
           "material", " with a perfectly smooth reflection", "no metal or coat of roughness 0");
     const auto glass = [](bool thin, bool rough) {

@@ -51,18 +51,23 @@ class Reader {
         material_.normalScale =
             clamped(source_.normalTexture.scale, -1e6, 1e6, "normalTexture.scale");
 
-        if (const json* specular = extension("KHR_materials_specular")) {
-            material_.specular =
-                clamped(number(*specular, "specularFactor", 1.0), 0, 1, "specularFactor");
-            const auto color = numbers<3>(*specular, "specularColorFactor", {1, 1, 1});
-            const bool tinted =
-                std::any_of(color.begin(), color.end(), [](double c) { return c != 1.0; });
-            warn("specularColorFactor is not rendered yet", tinted);
-            warn("specular textures are not rendered yet",
-                 specular->contains("specularTexture") ||
-                     specular->contains("specularColorTexture"));
-        }
+        if (const json* specular = extension("KHR_materials_specular")) readSpecular(*specular);
         if (const json* ior = extension("KHR_materials_ior")) readIor(number(*ior, "ior", 1.5));
+    }
+
+    void readSpecular(const json& specular) {
+        constexpr double kMost = 1e6;  // what exceeds a reflectance of 1 is cut there anyway
+        material_.specular =
+            clamped(number(specular, "specularFactor", 1.0), 0, 1, "specularFactor");
+        if (!(material_.specular > 0.0f)) return;
+        const auto color = numbers<3>(specular, "specularColorFactor", {1, 1, 1});
+        material_.specularColor = {clamped(color[0], 0, kMost, "specularColorFactor"),
+                                   clamped(color[1], 0, kMost, "specularColorFactor"),
+                                   clamped(color[2], 0, kMost, "specularColorFactor")};
+        material_.specularTexture = texture(&specular, "specularTexture", false);
+        if (!isBlack(material_.specularColor)) {
+            material_.specularColorTexture = texture(&specular, "specularColorTexture", true);
+        }
     }
 
     void readIor(double ior) {

@@ -159,14 +159,13 @@ const AlbedoTable* AlbedoTables::find(float ior) const {
     return nullptr;
 }
 
-const AlbedoTable* AlbedoTables::nearest(float ior) const {
-    const AlbedoTable* best = nullptr;
+const AlbedoTable* AlbedoTables::covering(float ior) const {
     for (const AlbedoTable& table : tables_) {
-        if (!best || std::abs(table.ior() - ior) < std::abs(best->ior() - ior)) {
-            best = &table;
+        if (table.ior() >= ior) {
+            return &table;
         }
     }
-    return best;
+    return tables_.empty() ? nullptr : &tables_.back();
 }
 
 }  // namespace lacuna

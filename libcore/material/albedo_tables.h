@@ -81,11 +81,12 @@ class AlbedoTables {
 
     /// The table of exactly this index, or null.
     const AlbedoTable* find(float ior) const;
-    /// The table of the nearest index; null only where there is none at all.
-    const AlbedoTable* nearest(float ior) const;
+    /// The table of the smallest index that is not below `ior`, or else of the largest one: a base
+    /// gets no more under it than the layer leaves. Null only where there is none at all.
+    const AlbedoTable* covering(float ior) const;
 
   private:
-    std::vector<AlbedoTable> tables_;
+    std::vector<AlbedoTable> tables_;  // by index
 };
 
 }  // namespace lacuna

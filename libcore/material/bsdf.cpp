@@ -5,6 +5,7 @@
 #include "libcore/material/bsdf.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libcore/base/sampling.h"
 #include "libcore/material/albedo_tables.h"
@@ -27,24 +28,52 @@ float unit(float x) {
     return x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
 }
 
+float legalIor(float ior) {
+    return ior > 1.0f ? std::min(ior, kMaxIor) : 1.0f;
+}
+
+/// Fresnel's reflectance along the normal.
+float normalReflectance(float ior) {
+    const float r = (ior - 1.0f) / (ior + 1.0f);
+    return r * r;
+}
+
+/// Of each channel of the coat.
+Rgb coatReflectance(float ior, const Rgb& color) {
+    const float f0 = normalReflectance(ior), most = normalReflectance(kMaxIor);
+    const auto channel = [&](float c) { return c > 0.0f ? std::min(f0 * c, most) : 0.0f; };
+    return {channel(color.r), channel(color.g), channel(color.b)};
+}
+
 }  // namespace
+
+float Bsdf::layerIor(float ior, const Rgb& specularColor) {
+    if (maxComponent(specularColor) == 1.0f) {
+        return legalIor(ior);  // as it is, without rounding
+    }
+    const float r = std::sqrt(maxComponent(coatReflectance(legalIor(ior), specularColor)));
+    return (1.0f + r) / (1.0f - r);
+}
 
 Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables)
     : ng_(ng),
       ns_(ns),
       baseColor_(unit(parameters.baseColor.r), unit(parameters.baseColor.g),
                  unit(parameters.baseColor.b)),
-      ior_(parameters.ior > 1.0f ? std::min(parameters.ior, kMaxIor) : 1.0f),
+      ior_(legalIor(parameters.ior)),
+      coatIor_(layerIor(ior_, parameters.specularColor)),
       metal_(unit(parameters.metallic)),
       specular_(unit(parameters.specular)) {
     const float transmission = unit(parameters.transmission);
     plastic_ = (1.0f - metal_) * (1.0f - transmission);
-    glass_ = (1.0f - metal_) * transmission;
+    const Rgb coat = coatReflectance(ior_, parameters.specularColor);
+    const float brightest = maxComponent(coat);
+    tintLoss_ = (Rgb(brightest) - coat) * (1.0f / (1.0f - brightest));
     const float roughness = unit(parameters.roughness);
     alpha_ = roughness * roughness < kMinAlpha ? 0.0f : roughness * roughness;
 
     unsigned flags = 0;
-    const bool coated = specular_ > 0.0f && ior_ > 1.0f;
+    const bool coated = specular_ > 0.0f && coatIor_ > 1.0f;
     if (plastic_ > 0.0f) {
         flags |= lacuna::isBlack(baseColor_) ? 0u : unsigned(kDiffuse);
         flags |= coated ? unsigned(kCoat) : 0u;
@@ -52,7 +81,7 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     if (metal_ > 0.0f) {
         flags |= kMetal;
     }
-    if (glass_ > 0.0f && !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
+    if (transmission > 0.0f && glass() > 0.0f && !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
         flags |= kGlass;
         flags |= parameters.thin ? unsigned(kThin) : 0u;
         if (alpha_ > 0.0f && (parameters.thin || alpha_ * (ior_ - 1.0f) >= kMinRefractionSpread)) {
@@ -65,20 +94,19 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     if ((flags & kDiffuse) != 0) {
         float average = 0.0f;
         if (coated) {
-            const AlbedoTable* exact = tables.find(ior_);
-            table_ = alpha_ > 0.0f ? (exact ? exact : tables.nearest(ior_)) : nullptr;
+            const AlbedoTable* exact = tables.find(coatIor_);
+            table_ = alpha_ > 0.0f ? (exact ? exact : tables.covering(coatIor_)) : nullptr;
             if (table_) {
                 const AlbedoTable::Row row = AlbedoTable::row(alpha_);
                 rowIndex_ = row.index;
                 rowFraction_ = row.fraction;
                 average = table_->average(row);
             } else {
-                average = exact ? exact->smoothAverage() : float(fresnelAverage(double(ior_)));
+                average = exact ? exact->smoothAverage() : float(fresnelAverage(double(coatIor_)));
             }
         }
         const float open = 1.0f - specular_ * average;
         diffuseScale_ = open > 1e-6f ? plastic_ * kInvPi / open : 0.0f;
-        diffuseChoice_ = plastic_ * mean(baseColor_);
     }
     const int kinds =
         int((flags & kDiffuse) != 0) + int((flags & kLayers) != 0) + int((flags & kGlass) != 0);
@@ -92,19 +120,23 @@ float Bsdf::survivalAlbedo() const {
     if (has(kCoat | kGlass)) {
         // Hemispherical means of Fresnel's reflectance; glass from its inside, where total internal
         // reflection makes it largest: 1 - (1 - F_avg) / ior^2.
-        const float f0 = (ior_ - 1.0f) * (ior_ - 1.0f) / ((ior_ + 1.0f) * (ior_ + 1.0f));
-        const float average = f0 + (1.0f - f0) * (1.0f / 21.0f);
-        albedo += has(kCoat) ? plastic_ * dark * specular_ * average : 0.0f;
-        const float inside = has(kThin) ? average : 1.0f - (1.0f - average) / (ior_ * ior_);
-        albedo += has(kGlass) ? glass_ * (color + dark * inside) : 0.0f;
+        const auto average = [](float ior) {
+            const float f0 = normalReflectance(ior);
+            return f0 + (1.0f - f0) * (1.0f / 21.0f);
+        };
+        albedo += has(kCoat) ? plastic_ * dark * specular_ * average(coatIor_) : 0.0f;
+        const float outside = average(ior_);
+        const float inside = has(kThin) ? outside : 1.0f - (1.0f - outside) / (ior_ * ior_);
+        albedo += has(kGlass) ? glass() * (color + dark * inside) : 0.0f;
     }
     return std::clamp(albedo, kMinSurvival, 1.0f);
 }
 
 Rgb Bsdf::layerAlbedo() const {
-    const float f0 = (ior_ - 1.0f) * (ior_ - 1.0f) / ((ior_ + 1.0f) * (ior_ + 1.0f));
-    const float coat = has(kCoat) ? specular_ * f0 : 0.0f;
-    return plastic_ * (baseColor_ * (1.0f - coat) + Rgb(coat)) + (glass_ + metal_) * baseColor_;
+    const float f0 = has(kCoat) ? normalReflectance(coatIor_) : 0.0f;
+    const Rgb coat = has(kCoat) ? (Rgb(f0) - tintLoss_ * (1.0f - f0)) * specular_ : Rgb{};
+    return plastic_ * (baseColor_ * (1.0f - specular_ * f0) + coat) +
+           (1.0f - plastic_) * baseColor_;
 }
 
 }  // namespace lacuna

@@ -70,13 +70,15 @@ enum class Side : std::uint8_t { Light, Eye };
 
 class Bsdf {
   public:
-    /// What textures and factors gave at this point. All in [0, 1] but ior (>= 1).
+    /// What textures and factors gave at this point. All in [0, 1] but ior (>= 1) and
+    /// specularColor (>= 0).
     struct Parameters {
         Rgb baseColor{0.0f};
         float metallic = 0.0f;
         float roughness = 1.0f;  ///< alpha = roughness^2; alpha < kMinAlpha counts as 0 (delta)
         float specular =
             1.0f;  ///< factor on the dielectric layer's reflectance; 0: exactly Lambert
+        Rgb specularColor{1.0f};  ///< factor on its reflectance along the normal, up to 1
         float ior = 1.5f;
         float transmission = 0.0f;
         bool thin = true;
@@ -84,9 +86,12 @@ class Bsdf {
 
     Bsdf() = default;
     /// `tables` must outlive the Bsdf; it is read only where a dielectric layer lies over a diffuse
-    /// base (a smooth layer merely gets its mean reflectance faster from it). An ior without a
-    /// table of its own takes the nearest one's. Throws nothing.
+    /// base (a smooth layer merely gets its mean reflectance faster from it). A layer without a
+    /// table of its own takes that of a larger index. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
+    /// Index of the layer that reflects, along the normal, what `ior` does times the largest
+    /// channel of `specularColor`: the one whose table the constructor looks for.
+    static float layerIor(float ior, const Rgb& specularColor);
     /// The same material at another point.
     Bsdf at(Vec3 ng, Vec3 ns) const {
         Bsdf b = *this;
@@ -151,7 +156,8 @@ class Bsdf {
     bool makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const;
     float coatAlbedo(float mu) const;
     Choice choose(float mu) const;
-    Rgb layersReflectance(float cosine, float coatFresnel) const;
+    Rgb layersReflectance(float cosine) const;
+    float glass() const { return 1.0f - plastic_ - metal_; }
     float indexOn(bool front) const { return front || has(kThin) ? 1.0f : ior_; }
     /// Transmitted over incident index for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
@@ -162,20 +168,22 @@ class Bsdf {
                                   BsdfEvaluation& out) const;
     void addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair, BsdfEvaluation& out) const;
 
-    // 80 bytes: it lives in every path vertex.
+    // 88 bytes: it lives in every path vertex.
     const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse
     Vec3 ng_, ns_;
     Rgb baseColor_;
     float alpha_ = 0;
-    float ior_ = 1;
-    float plastic_ = 0, glass_ = 0, metal_ = 0;  ///< mixture weights; they add up to 1
+    float ior_ = 1;      ///< of the glass
+    float coatIor_ = 1;  ///< of the coat's brightest channel
+    /// (F0 - that of the channel) / (1 - F0): the coat reflects F - tintLoss (1 - F).
+    Rgb tintLoss_;
+    float plastic_ = 0, metal_ = 0;  ///< mixture weights; glass is the rest
     float specular_ = 0;
-    float diffuseScale_ = 0;   ///< plastic / (pi (1 - specular E_avg))
-    float diffuseChoice_ = 0;  ///< plastic x mean of the base colour
+    float diffuseScale_ = 0;  ///< plastic / (pi (1 - specular E_avg))
     std::uint8_t flags_ = 0;
     std::uint8_t rowIndex_ = 0;  ///< AlbedoTable::Row
     std::uint16_t rowFraction_ = 0;
 };
-static_assert(sizeof(Bsdf) <= 80);
+static_assert(sizeof(Bsdf) <= 88);
 
 }  // namespace lacuna

@@ -68,19 +68,17 @@ void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const 
     const float se = ggx::smithS(ce, alpha_ * alpha_);
     const float sl = ggx::smithS(cl, alpha_ * alpha_);
 
-    const float outer = has(kCoat | kGlass) ? fresnelDielectric(cosine, ior_) : 0.0f;
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;  // given toEye, given toLight
     if (has(kRoughLayers)) {
-        reflectance = layersReflectance(cosine, outer);
+        reflectance = layersReflectance(cosine);
         pmfEye = eye.layers;
         pmfLight = light.layers;
     }
     if (has(kRoughGlass)) {
         const bool front = pair.eye > 0.0f;
-        const float inner =
-            front || has(kThin) ? outer : fresnelDielectric(cosine, relativeIndex(front));
-        reflectance += Rgb(glass_ * inner);
+        const float inner = fresnelDielectric(cosine, relativeIndex(front));
+        reflectance += Rgb(glass() * inner);
         pmfEye += eye.glass * inner;
         pmfLight += light.glass * inner;
     }
@@ -103,7 +101,7 @@ void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
     const float sl = ggx::smithS(cl, alpha_ * alpha_);
     const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
     out.f =
-        baseColor_ * (glass_ * transmit * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
+        baseColor_ * (glass() * transmit * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
     out.pdfWToLight = choose(ce).glass * transmit * k * ggx::g1OverCosine(ce, se);
     out.pdfWToEye = choose(cl).glass * transmit * k * ggx::g1OverCosine(cl, sl);
 }
@@ -134,7 +132,7 @@ void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
     const float etaEye = indexOn(eyeOutside);
     const float etaLight = indexOn(!eyeOutside);
 
-    out.f = baseColor_ * (glass_ * transmit * etaEye * etaEye * k *
+    out.f = baseColor_ * (glass() * transmit * etaEye * etaEye * k *
                           ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
     out.pdfWToLight =
         choose(ce).glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
@@ -161,7 +159,7 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
         const float transmit = 1.0f - fresnelDielectric(front || has(kThin) ? ce : cl, ior_);
         const float etaEye = indexOn(front);
         const float etaLight = indexOn(!front);
-        out.f = baseColor_ * (glass_ * transmit * etaEye * etaEye * pair.adjoint);
+        out.f = baseColor_ * (glass() * transmit * etaEye * etaEye * pair.adjoint);
         out.pdfWToLight = choose(ce).glass * transmit * etaLight * etaLight * cl;
         out.pdfWToEye = choose(cl).glass * transmit * etaEye * etaEye * ce;
         return out;
@@ -171,18 +169,16 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
     }
     const Choice eye = choose(ce);
     const Choice light = choose(cl);
-    const float outer = has(kCoat | kGlass) ? fresnelDielectric(ce, ior_) : 0.0f;
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;
     if (deltaLayers) {
-        reflectance = layersReflectance(ce, outer);
+        reflectance = layersReflectance(ce);
         pmfEye = eye.layers;
         pmfLight = light.layers;
     }
     if (deltaGlass) {
-        const float inner =
-            front || has(kThin) ? outer : fresnelDielectric(ce, relativeIndex(front));
-        reflectance += Rgb(glass_ * inner);
+        const float inner = fresnelDielectric(ce, relativeIndex(front));
+        reflectance += Rgb(glass() * inner);
         pmfEye += eye.glass * inner;
         pmfLight += light.glass * inner;
     }

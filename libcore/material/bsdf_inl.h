@@ -24,10 +24,10 @@ inline bool Bsdf::makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const {
            (eyeG * pair.eye > 0.0f) & (lightG * pair.light > 0.0f);
 }
 
-/// E(mu) of the dielectric layer with specular factor 1.
+/// E(mu) of the dielectric layer's brightest channel with specular factor 1.
 inline float Bsdf::coatAlbedo(float mu) const {
     return table_ ? table_->directional({rowIndex_, rowFraction_}, mu)
-                  : fresnelDielectric(mu, ior_);
+                  : fresnelDielectric(mu, coatIor_);
 }
 
 /// Lobe probabilities: the lobes' albedos, channels averaged, as far as they are known without
@@ -43,9 +43,9 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
         c.glass = has(kGlass) ? 1.0f : 0.0f;
         return c;
     } else if (has(kCoat)) {
-        c.open = 1.0f - specular_ * fresnelDielectric(mu, ior_);
+        c.open = 1.0f - specular_ * fresnelDielectric(mu, coatIor_);
     }
-    c.diffuse = diffuseChoice_ * c.open;
+    c.diffuse = plastic_ * mean(baseColor_) * c.open;
     if (has(kCoat)) {
         c.layers = plastic_ * (1.0f - c.open);
     }
@@ -55,7 +55,7 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
         c.layers += metal_ * std::max(0.02f, f0 + (1.0f - f0) * schlickWeight(mu));
     }
     if (has(kGlass)) {
-        c.glass = glass_ * std::max(0.1f, mean(baseColor_));
+        c.glass = glass() * std::max(0.1f, mean(baseColor_));
     }
     const float sum = c.diffuse + c.layers + c.glass;
     const float inverse = sum > 0.0f ? 1.0f / sum : 0.0f;
@@ -65,9 +65,17 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     return c;
 }
 
-/// Coat and metal together; `coatFresnel` is the exact Fresnel reflectance seen from outside.
-inline Rgb Bsdf::layersReflectance(float cosine, float coatFresnel) const {
-    Rgb r(has(kCoat) ? plastic_ * specular_ * coatFresnel : 0.0f);
+/// Coat and metal together, seen from outside. The coat's colour is that of its reflectance along
+/// the normal; towards grazing angles it becomes white, as Fresnel's does.
+inline Rgb Bsdf::layersReflectance(float cosine) const {
+    Rgb r;
+    if (has(kCoat)) {
+        const float f = fresnelDielectric(cosine, coatIor_);
+        const Rgb tinted = Rgb(f) - tintLoss_ * (1.0f - f);
+        // Below 0 only for indices above 3.7, whose reflectance dips before it rises.
+        r = Rgb(std::max(0.0f, tinted.r), std::max(0.0f, tinted.g), std::max(0.0f, tinted.b)) *
+            (plastic_ * specular_);
+    }
     if (has(kMetal)) {
         r += metal_ * schlick(baseColor_, cosine);
     }

@@ -48,6 +48,9 @@ struct Material {
     float roughness = 1.0f;               ///< GGX alpha = roughness^2; 0 is a perfect mirror
     TextureUse metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
     float specular = 1.0f;                ///< KHR_materials_specular factor; 0 = exactly Lambert
+    TextureUse specularTexture;           ///< linear: alpha
+    Rgb specularColor{1.0f};              ///< of the layer along its normal; may be above 1
+    TextureUse specularColorTexture;      ///< sRGB
     float ior = 1.5f;
     float transmission = 0.0f;
     TextureUse transmissionTexture;  ///< linear: R

@@ -243,12 +243,19 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         // A diffuse base under a dielectric layer; factors of one may be less by their texture.
         const bool diffuse = (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
                              (m.transmission < 1.0f || m.transmissionTexture);
-        if (diffuse && m.specular > 0.0f && m.ior > 1.0f) iors.push_back(m.ior);
+        if (!diffuse || m.specular == 0.0f || m.ior == 1.0f) continue;
+        // A coloured texture makes any layer up to the factor's: some tables on the way, each for
+        // the layers up to it, so that the base gets at most F0 / 8 too little.
+        constexpr int kSteps = 8;
+        for (int i = m.specularColorTexture ? 1 : kSteps; i <= kSteps; ++i) {
+            iors.push_back(Bsdf::layerIor(m.ior, m.specularColor * (float(i) / kSteps)));
+        }
     }
     tables_ = std::make_unique<AlbedoTables>(iors);
     for (const Material& m : d.materials) {
         std::optional<Bsdf>& bsdf = constantBsdfs_.emplace_back();
-        if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture) {
+        if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture &&
+            !m.specularTexture && !m.specularColorTexture) {
             bsdf = Bsdf(bsdfParameters(m, {}), {}, {}, *tables_);
         }
     }
@@ -499,6 +506,7 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     p.metallic = m.metallic;
     p.roughness = m.roughness;
     p.specular = m.specular;
+    p.specularColor = m.specularColor;
     p.ior = m.ior;
     p.transmission = m.transmission;
     p.thin = m.thin;
@@ -512,6 +520,12 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     }
     if (m.transmissionTexture) {
         p.transmission *= sample(m.transmissionTexture, uv).rgb.r;
+    }
+    if (m.specularTexture) {
+        p.specular *= sample(m.specularTexture, uv).alpha;
+    }
+    if (m.specularColorTexture) {
+        p.specularColor *= sample(m.specularColorTexture, uv).rgb;
     }
     return p;
 }

@@ -86,6 +86,41 @@ TEST(Material, TransmissionIorVolumeSpecular) {
     EXPECT_TRUE(loadExtension("KHR_materials_volume", json::object()).materials[0].thin);
 }
 
+TEST(Material, SpecularColourAndItsTextures) {
+    TriangleBuilder b;
+    const json info = {{"index", b.texture(redBlue())}};
+    json specular = {{"specularFactor", 0.5},
+                     {"specularColorFactor", {1, 0.5, 3}},
+                     {"specularTexture", info},
+                     {"specularColorTexture", info}};
+    b.add("materials", {{"extensions", {{"KHR_materials_specular", specular}}}});
+    specular["specularFactor"] = 0;
+    specular["specularColorFactor"] = {1, -1, 1};
+    b.add("materials", {{"extensions", {{"KHR_materials_specular", specular}}}});
+    const SceneDescription scene = b.load();
+    const Material& m = scene.materials[0];
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(m.specular, 0.5f);
+    EXPECT_EQ(m.specularColor, Rgb(1, 0.5f, 3));
+    ASSERT_TRUE(m.specularTexture && m.specularColorTexture);
+    EXPECT_FALSE(scene.textures[std::size_t(m.specularTexture.value)].srgb);
+    EXPECT_TRUE(scene.textures[std::size_t(m.specularColorTexture.value)].srgb);
+    // Without the layer its colour says nothing.
+    EXPECT_FALSE(scene.materials[1].specularTexture || scene.materials[1].specularColorTexture);
+    specular["specularFactor"] = 1;
+    EXPECT_EQ(
+        warningsWith(
+            withMaterial({{"extensions",
+                           {{"KHR_materials_specular", {{"specularColorFactor", {1, -1, 1}}}}}}})
+                .load(),
+            "clamped"),
+        1);
+    expectRefused(
+        withMaterial(
+            {{"extensions", {{"KHR_materials_specular", {{"specularTexture", {{"index", 7}}}}}}}}),
+        {"specularTexture.index", "textures"});
+}
+
 TEST(Material, AttenuationOfSolidGlass) {
     const auto load = [](json volume, double transmission = 1) {
         volume["attenuationColor"] = {0.5, 1, 0};
@@ -147,8 +182,6 @@ TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
         {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}}}},
         {"extensions",
          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
-          {"KHR_materials_specular",
-           {{"specularColorFactor", {1, 0.5, 1}}, {"specularTexture", info}}},
           {"KHR_materials_volume",
            {{"thicknessFactor", 1},
             {"attenuationDistance", 2},
@@ -157,13 +190,12 @@ TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
     b.add("materials", material);
     b.add("materials", material);
     const SceneDescription scene = b.load();
-    for (const char* kind : {"coordinate sets", "clearcoat", "specularColorFactor",
-                             "specular textures", "thickness textures"}) {
+    for (const char* kind : {"coordinate sets", "clearcoat", "thickness textures"}) {
         EXPECT_EQ(warningsWith(scene, kind), 1) << kind;
     }
-    EXPECT_EQ(warningsWith(scene, "2 times"), 5);
+    EXPECT_EQ(warningsWith(scene, "2 times"), 3);
     EXPECT_EQ(warningsWith(scene, "cclusion"), 0);
-    EXPECT_EQ(scene.warnings.size(), 5u);
+    EXPECT_EQ(scene.warnings.size(), 3u);
     EXPECT_EQ(scene.materials[0].alphaMode, Material::Alpha::Blend);
 }
 

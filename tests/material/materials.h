@@ -31,6 +31,11 @@ inline Bsdf::Parameters makeParameters(Rgb color, float metallic, float transmis
     return p;
 }
 
+inline Bsdf::Parameters tinted(Bsdf::Parameters p, Rgb specularColor) {
+    p.specularColor = specularColor;
+    return p;
+}
+
 /// Every kind of lobe alone and together; roughness is set by the test.
 inline std::vector<Material> materials() {
     const Rgb white(1.0f), red(0.9f, 0.3f, 0.1f), black(0.0f);
@@ -50,6 +55,9 @@ inline std::vector<Material> materials() {
         {"everything, solid", makeParameters(red, 0.3f, 0.5f, 1, 1.33f)},
         {"everything, thin", makeParameters(red, 0.3f, 0.5f, 1, 1.33f, true)},
         {"lambert and glass", makeParameters(white, 0, 0.5f, 0)},
+        {"plastic with a coloured coat", tinted(makeParameters(red, 0, 0), Rgb(1, 0.2f, 0.4f))},
+        {"coloured coat, brighter, on white and glass",
+         tinted(makeParameters(white, 0, 0.3f, 0.7f), Rgb(0.5f, 3, 1))},
     };
 }
 
@@ -62,7 +70,7 @@ inline const AlbedoTables& tables() {
     static const AlbedoTables t = [] {
         std::vector<float> iors;
         for (const Material& m : materials()) {
-            iors.push_back(m.parameters.ior);
+            iors.push_back(Bsdf::layerIor(m.parameters.ior, m.parameters.specularColor));
         }
         return AlbedoTables(iors);
     }();

@@ -103,8 +103,10 @@ TEST(AlbedoTables, LookUpAndDeterminism) {
     const AlbedoTables a(iors), b(iors);
     ASSERT_TRUE(a.find(1.33f));
     EXPECT_FALSE(a.find(1.4f));
-    EXPECT_EQ(a.nearest(1.4f), a.find(1.33f));
-    EXPECT_EQ(AlbedoTables().nearest(1.5f), nullptr);
+    EXPECT_EQ(a.covering(1.4f), a.find(1.5f));
+    EXPECT_EQ(a.covering(1.5f), a.find(1.5f));
+    EXPECT_EQ(a.covering(2.0f), a.find(1.8f));
+    EXPECT_EQ(AlbedoTables().covering(1.5f), nullptr);
     for (int i = 0; i < 1000; ++i) {
         const AlbedoTable::Row row = AlbedoTable::row(float(i) / 999);
         const float mu = float((i * 37) % 1000) / 999;

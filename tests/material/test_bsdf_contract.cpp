@@ -232,6 +232,9 @@ TEST(BsdfContract, FuzzedInputsStayFinite) {
         p.metallic = extreme(1);
         p.transmission = extreme(1);
         p.specular = random.next() < 0.1f ? 1e-30f : extreme(1);
+        if (random.next() < 0.5f) {
+            p.specularColor = {extreme(3), extreme(1), extreme(1e30f)};
+        }
         p.thin = random.next() < 0.5f;
         const float roughness[] = {0, 0.0099f, 0.01f, 0.010001f, 0.02f, random.next(), 1};
         p.roughness = roughness[std::size_t(random.next() * 7)];

@@ -213,15 +213,55 @@ TEST(BsdfReference, CoatOverDiffuse) {
     }
 }
 
+// F0 has the colour, cut at 1; towards grazing angles the coat becomes white, whatever it was.
+TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
+    Random random(26);
+    const double ior = 1.5, f0 = 0.04;
+    for (const Rgb& color : {Rgb(1, 0.5f, 0), Rgb(0.3f, 0.2f, 0.1f), Rgb(0.5f, 4, 1)}) {
+        Bsdf::Parameters p = tinted(makeParameters(Rgb(0.0f), 0, 0, 0.8f, float(ior)), color);
+        p.roughness = 0.5f;
+        const Bsdf bsdf(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        const double most = f0 * double(maxComponent(color));
+        const double brightest = (1 + std::sqrt(most)) / (1 - std::sqrt(most));
+        for (int i = 0; i < 2000; ++i) {
+            Vec3d e = randomDirection(random), l = randomDirection(random);
+            e.z = std::abs(e.z) + 0.01;
+            l.z = std::abs(l.z) + 0.01;
+            e = normalize(e);
+            l = normalize(l);
+            const Vec3d h = normalize(e + l);
+            const double lobe = textbookD(0.25, h.z) / (1 + lambda(0.25, e.z) + lambda(0.25, l.z)) /
+                                (4 * e.z * l.z);
+            const double fresnel = textbookFresnel(dot(e, h), brightest);
+            const auto expected = [&](float c) {
+                // Of the channel's own F0 as much is left as of the brightest one's way to 1.
+                const double rise = (fresnel - most) / (1 - most), own = f0 * double(c);
+                return 0.8 * (own + (1 - own) * rise) * lobe;
+            };
+            const BsdfEvaluation v = bsdf.evaluate(Vec3(e), Vec3(l));
+            ASSERT_NEAR(double(v.f.r), expected(color.r), 1e-3 * lobe * fresnel);
+            ASSERT_NEAR(double(v.f.g), expected(color.g), 1e-3 * lobe * fresnel);
+            ASSERT_NEAR(double(v.f.b), expected(color.b), 1e-3 * lobe * fresnel);
+        }
+    }
+}
+
 // White furnace: what the layer does not reflect, a white base does, at every roughness and angle.
 TEST(BsdfReference, WhitePlasticReturnsEverything) {
     Random random(25);
-    const double significance = sidak(1e-3, 3 * 6 * 5);
-    for (const auto& [specular, ior] : {std::pair{1.0f, 1.5f}, {0.5f, 1.8f}, {1.0f, 1.33f}}) {
+    struct Layer {
+        float specular, ior;
+        Rgb color{1.0f};
+    };
+    // Green, which is looked at, is always a brightest channel.
+    const double significance = sidak(1e-3, 4 * 6 * 5);
+    for (const auto& [specular, ior, color] :
+         {Layer{1.0f, 1.5f}, {0.5f, 1.8f}, {1.0f, 1.33f}, {0.7f, 1.5f, {0.5f, 3, 1}}}) {
         for (const float roughness : kRoughness) {
             for (const double degrees : kDegrees) {
                 Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 0, specular, ior);
                 p.roughness = roughness;
+                p.specularColor = color;
                 const Bsdf bsdf(p, world().n, world().n, tables());
                 const Vec3 from = world().toWorld(polar(degrees, 300));
                 Moments albedo;
