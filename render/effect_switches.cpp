@@ -50,7 +50,10 @@ bool switchOff(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) {
             m.baseColorTexture = m.metallicRoughnessTexture = m.transmissionTexture = {};
             m.specularTexture = m.specularColorTexture = {};
+            m.clearcoatTexture = m.clearcoatRoughnessTexture = {};
         }
+    } else if (name == "clearcoat") {
+        for (Material& m : scene.materials) m.clearcoat = 0.0f;
     } else if (name == "specular_color") {
         for (Material& m : scene.materials) {
             m.specularColor = Rgb(1.0f);

@@ -63,6 +63,13 @@ bool isDiffuse(const Material& m) {
            (m.transmission < 1.0f || m.transmissionTexture);
 }
 
+bool mayHaveRoughClearcoat(const Material& m) {
+    return m.clearcoat > 0.0f && m.clearcoatRoughness * m.clearcoatRoughness >= kMinAlpha;
+}
+bool mayHaveSmoothClearcoat(const Material& m) {
+    return m.clearcoat > 0.0f && (!mayHaveRoughClearcoat(m) || m.clearcoatRoughnessTexture);
+}
+
 class Table {
   public:
     /// `found` of these `noun`s call for the effect (`rest` follows); zero: left out, `missing`.
@@ -112,7 +119,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           have.emissiveTextures ? "emission varies over triangles" : "no emissive texture");
     t.add("textures", have.count([](const Material& m) {
         return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture ||
-               m.specularTexture || m.specularColorTexture;
+               m.specularTexture || m.specularColorTexture || m.clearcoatTexture ||
+               m.clearcoatRoughnessTexture;
     }),
           "textured material", "", "no texture");
     t.add("alpha_mask",
@@ -129,13 +137,19 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
 
     t.add("diffuse", have.count(isDiffuse), "material", " with a diffuse lobe",
           "no diffuse material");
-    t.add("glossy", have.count([](const Material& m) { return reflects(m) && mayBeRough(m); }),
+    t.add("glossy", have.count([](const Material& m) {
+        return (reflects(m) && mayBeRough(m)) || mayHaveRoughClearcoat(m);
+    }),
           "material", " with a rough reflection", "no rough metal or coat");
+    t.add("clearcoat", have.count([](const Material& m) { return m.clearcoat > 0.0f; }), "material",
+          " under a clearcoat", "no clearcoat");
     t.add("specular_color", have.count([](const Material& m) {
         return reflects(m) && (m.specularColor != Rgb(1.0f) || m.specularColorTexture);
     }),
           "material", " with a coloured coat", "no coat with a colour of its own");
-    t.add("mirror", have.count([](const Material& m) { return reflects(m) && mayBeSmooth(m); }),
+    t.add("mirror", have.count([](const Material& m) {
+        return (reflects(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m);
+    }),
           "material", " with a perfectly smooth reflection", "no metal or coat of roughness 0");
     const auto glass = [](bool thin, bool rough) {
         return [thin, rough](const Material& m) {

@@ -10,19 +10,16 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSupported = {
-    "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",     "KHR_materials_specular",
-    "KHR_materials_volume",  "KHR_materials_transmission",
-    "KHR_mesh_quantization", "KHR_texture_transform",
+constexpr std::array<std::string_view, 9> kSupported = {
+    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_specular",
+    "KHR_materials_volume",    "KHR_materials_transmission",
+    "KHR_materials_clearcoat", "KHR_mesh_quantization",
+    "KHR_texture_transform",
 };
 
-/// Known by name and warned about where they are used (material.cpp): no second warning here.
-constexpr std::array<std::string_view, 1> kWarnedWhereUsed = {"KHR_materials_clearcoat"};
-
-template <std::size_t N>
-bool contains(const std::array<std::string_view, N>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+bool isSupported(const std::string& name) {
+    return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }
 
 /// Little-endian 32-bit number at `offset`, which the caller has checked.
@@ -134,7 +131,7 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
 
     if (const auto required = root.find("extensionsRequired"); required != root.end()) {
         for (const auto& name : *required) {
-            if (!contains(kSupported, name.get_ref<const std::string&>())) {
+            if (!isSupported(name.get_ref<const std::string&>())) {
                 refuse(file, "extensionsRequired", "extensions that lacuna has",
                        name.get<std::string>(), "export without it");
             }
@@ -144,7 +141,7 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
         std::string unknown;
         for (const auto& entry : *used) {
             const auto& name = entry.get_ref<const std::string&>();
-            if (contains(kSupported, name) || contains(kWarnedWhereUsed, name)) continue;
+            if (isSupported(name)) continue;
             unknown += (unknown.empty() ? "" : ", ") + printable(name);
         }
         if (!unknown.empty()) {

@@ -31,7 +31,7 @@ class Reader {
         readEmission();
         readAlpha();
         readTransmission();
-        warnAboutRest();
+        readClearcoat();
         return std::move(material_);
     }
 
@@ -141,10 +141,22 @@ class Reader {
                                 coefficient(color[2])};
     }
 
-    void warnAboutRest() {
-        if (const json* coat = extension("KHR_materials_clearcoat")) {
-            warn("clearcoat is not rendered yet", number(*coat, "clearcoatFactor", 0.0) > 0.0);
+    void readClearcoat() {
+        const json* coat = extension("KHR_materials_clearcoat");
+        if (!coat) return;
+        material_.clearcoat =
+            clamped(number(*coat, "clearcoatFactor", 0.0), 0, 1, "clearcoatFactor");
+        if (!(material_.clearcoat > 0.0f)) return;
+        material_.clearcoatTexture = texture(coat, "clearcoatTexture", false);
+        material_.clearcoatRoughness = clamped(number(*coat, "clearcoatRoughnessFactor", 0.0), 0, 1,
+                                               "clearcoatRoughnessFactor");
+        if (material_.clearcoatRoughness > 0.0f) {
+            material_.clearcoatRoughnessTexture = texture(coat, "clearcoatRoughnessTexture", false);
         }
+        warn(
+            "a clearcoat has the normals of what is under it: no normal map, or lack of one, of "
+            "its own",
+            coat->contains("clearcoatNormalTexture") || material_.normalTexture);
     }
 
     static const json* member(const json& object, const char* name) {

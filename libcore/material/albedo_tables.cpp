@@ -1,6 +1,7 @@
 #include "libcore/material/albedo_tables.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "libcore/material/bsdf.h"
 #include "libcore/material/fresnel.h"
 #include "libcore/material/microfacet.h"
 
@@ -138,6 +140,13 @@ AlbedoTable::AlbedoTable(float ior)
         }
         averages_[std::size_t(a)] = float(2 * sum);
     });
+}
+
+const AlbedoTable& clearcoatTable() {
+    // Isolated: a thread that makes it must not begin other work, which might ask for it.
+    static const AlbedoTable table =
+        tbb::this_task_arena::isolate([] { return AlbedoTable(Bsdf::kClearcoatIor); });
+    return table;
 }
 
 AlbedoTables::AlbedoTables(std::span<const float> iors) {

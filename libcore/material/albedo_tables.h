@@ -71,6 +71,9 @@ class AlbedoTable {
     std::vector<float> averages_;  // [alpha]
 };
 
+/// The table of every clearcoat, Bsdf::kClearcoatIor. Made when it is first asked for.
+const AlbedoTable& clearcoatTable();
+
 /// One table per distinct index of refraction; immutable, read by all threads. Bsdfs point into it.
 class AlbedoTables {
   public:

@@ -2,6 +2,8 @@
 // ask about it as a whole. Values and densities: bsdf_evaluate.cpp; directions: bsdf_sample.cpp.
 //
 //     f = (1 - metallic) [ (1 - transmission) plastic + transmission glass ] + metallic metal
+//
+// under a clearcoat.
 #include "libcore/material/bsdf.h"
 
 #include <algorithm>
@@ -26,6 +28,12 @@ constexpr float kMinSurvival = 0.05f;
 
 float unit(float x) {
     return x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
+}
+
+/// 0: smooth.
+float alphaOf(float roughness) {
+    const float alpha = unit(roughness) * unit(roughness);
+    return alpha < kMinAlpha ? 0.0f : alpha;
 }
 
 float legalIor(float ior) {
@@ -63,14 +71,15 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
       ior_(legalIor(parameters.ior)),
       coatIor_(layerIor(ior_, parameters.specularColor)),
       metal_(unit(parameters.metallic)),
-      specular_(unit(parameters.specular)) {
+      specular_(unit(parameters.specular)),
+      clearcoat_(unit(parameters.clearcoat)),
+      clearcoatAlpha_(clearcoat_ > 0.0f ? alphaOf(parameters.clearcoatRoughness) : 0.0f) {
     const float transmission = unit(parameters.transmission);
     plastic_ = (1.0f - metal_) * (1.0f - transmission);
     const Rgb coat = coatReflectance(ior_, parameters.specularColor);
     const float brightest = maxComponent(coat);
     tintLoss_ = (Rgb(brightest) - coat) * (1.0f / (1.0f - brightest));
-    const float roughness = unit(parameters.roughness);
-    alpha_ = roughness * roughness < kMinAlpha ? 0.0f : roughness * roughness;
+    alpha_ = alphaOf(parameters.roughness);
 
     unsigned flags = 0;
     const bool coated = specular_ > 0.0f && coatIor_ > 1.0f;
@@ -105,29 +114,54 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
                 average = exact ? exact->smoothAverage() : float(fresnelAverage(double(coatIor_)));
             }
         }
-        const float open = 1.0f - specular_ * average;
+        const float open = openAverage(coated ? average : 0.0f);
         diffuseScale_ = open > 1e-6f ? plastic_ * kInvPi / open : 0.0f;
     }
     const int kinds =
         int((flags & kDiffuse) != 0) + int((flags & kLayers) != 0) + int((flags & kGlass) != 0);
-    flags_ = std::uint8_t(flags | (kinds == 1 ? unsigned(kOneLobe) : 0u));
+    const bool oneLobe = kinds == 1 && !(clearcoat_ > 0.0f);
+    flags_ = std::uint8_t(flags | (oneLobe ? unsigned(kOneLobe) : 0u));
+}
+
+/// Cosine-weighted mean of what the coats leave to the diffuse base.
+float Bsdf::openAverage(float coatAverage) const {
+    if (!(clearcoat_ > 0.0f)) {
+        return 1.0f - specular_ * coatAverage;
+    }
+    // Gauss-Legendre in mu: nodes and weights about the middle of [-1, 1].
+    constexpr float kNode[] = {0.18343464f, 0.52553241f, 0.79666648f, 0.96028986f};
+    constexpr float kWeight[] = {0.36268378f, 0.31370665f, 0.22238103f, 0.10122854f};
+    const bool coated = coatAverage > 0.0f;
+    float sum = 0.0f;
+    for (int i = 0; i < 4; ++i) {
+        for (const float side : {-1.0f, 1.0f}) {
+            const float mu = 0.5f + 0.5f * side * kNode[i];
+            const float coat = coated ? 1.0f - specular_ * coatAlbedo(mu) : 1.0f;
+            sum += kWeight[i] * mu * coat * (1.0f - clearcoat_ * clearcoatAlbedo(mu));
+        }
+    }
+    return sum;
 }
 
 float Bsdf::survivalAlbedo() const {
     const float color = maxComponent(baseColor_);
     const float dark = 1.0f - color;
     float albedo = metal_ * (color + dark * (1.0f / 21.0f)) + plastic_ * color;
+    // Hemispherical means of Fresnel's reflectance.
+    const auto average = [](float ior) {
+        const float f0 = normalReflectance(ior);
+        return f0 + (1.0f - f0) * (1.0f / 21.0f);
+    };
     if (has(kCoat | kGlass)) {
-        // Hemispherical means of Fresnel's reflectance; glass from its inside, where total internal
-        // reflection makes it largest: 1 - (1 - F_avg) / ior^2.
-        const auto average = [](float ior) {
-            const float f0 = normalReflectance(ior);
-            return f0 + (1.0f - f0) * (1.0f / 21.0f);
-        };
+        // Glass from its inside, where total internal reflection makes it largest:
+        // 1 - (1 - F_avg) / ior^2.
         albedo += has(kCoat) ? plastic_ * dark * specular_ * average(coatIor_) : 0.0f;
         const float outside = average(ior_);
         const float inside = has(kThin) ? outside : 1.0f - (1.0f - outside) / (ior_ * ior_);
         albedo += has(kGlass) ? glass() * (color + dark * inside) : 0.0f;
+    }
+    if (clearcoat_ > 0.0f) {
+        albedo += (1.0f - albedo) * clearcoat_ * average(kClearcoatIor);
     }
     return std::clamp(albedo, kMinSurvival, 1.0f);
 }
@@ -135,8 +169,10 @@ float Bsdf::survivalAlbedo() const {
 Rgb Bsdf::layerAlbedo() const {
     const float f0 = has(kCoat) ? normalReflectance(coatIor_) : 0.0f;
     const Rgb coat = has(kCoat) ? (Rgb(f0) - tintLoss_ * (1.0f - f0)) * specular_ : Rgb{};
-    return plastic_ * (baseColor_ * (1.0f - specular_ * f0) + coat) +
-           (1.0f - plastic_) * baseColor_;
+    const Rgb under =
+        plastic_ * (baseColor_ * (1.0f - specular_ * f0) + coat) + (1.0f - plastic_) * baseColor_;
+    const float clear = clearcoat_ * normalReflectance(kClearcoatIor);
+    return under * (1.0f - clear) + Rgb(clear);
 }
 
 }  // namespace lacuna

@@ -82,7 +82,10 @@ class Bsdf {
         float ior = 1.5f;
         float transmission = 0.0f;
         bool thin = true;
+        float clearcoat = 0.0f;  ///< weight of a layer of index kClearcoatIor over everything else
+        float clearcoatRoughness = 0.0f;
     };
+    static constexpr float kClearcoatIor = 1.5f;  // KHR_materials_clearcoat
 
     Bsdf() = default;
     /// `tables` must outlive the Bsdf; it is read only where a dielectric layer lies over a diffuse
@@ -113,8 +116,10 @@ class Bsdf {
     std::optional<BsdfSample> sample(Side side, Vec3 from, float uLobe, float u1, float u2) const;
 
     /// Whether any lobe has a density: only then may a path be connected here.
-    bool connectable() const { return has(kDiffuse | kRoughLayers | kRoughGlass); }
-    bool isBlack() const { return !has(kDiffuse | kLayers | kGlass); }
+    bool connectable() const {
+        return has(kDiffuse | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
+    }
+    bool isBlack() const { return !has(kDiffuse | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;
     /// Diffuse and specular colour together, for the albedo.* image layer.
@@ -134,15 +139,21 @@ class Bsdf {
         kThin = 16,
         kRoughLayers = 32,  ///< coat and metal have a density
         kRoughGlass = 64,
-        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass: nothing to choose
+        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass, no clearcoat: nothing to choose
     };
 
-    /// Probabilities of the lobes given the one known direction, and what the coat leaves to the
-    /// base.
+    /// Probabilities of the lobes given the one known direction, and what the coats leave to what
+    /// is under them.
     struct Choice {
-        float diffuse = 0, layers = 0, glass = 0;
-        float open = 1;  ///< 1 - specular E(mu)
+        float diffuse = 0, layers = 0, glass = 0, clearcoat = 0;
+        float open = 1;   ///< 1 - specular E(mu)
+        float under = 1;  ///< 1 - clearcoat E(mu) of the clearcoat
     };
+    /// What the clearcoat lets through, both ways, to anything but a diffuse base: the less open of
+    /// the two, so that no base returns more than reaches it, and a mirror all of that.
+    static float through(const Choice& eye, const Choice& light) {
+        return eye.under < light.under ? eye.under : light.under;
+    }
     /// A pair of directions seen from both normals; signed cosines about ns.
     struct Pair {
         float eye, light;
@@ -155,6 +166,8 @@ class Bsdf {
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
     bool makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const;
     float coatAlbedo(float mu) const;
+    float clearcoatAlbedo(float mu) const;
+    float openAverage(float coatAverage) const;
     Choice choose(float mu) const;
     Rgb layersReflectance(float cosine) const;
     float glass() const { return 1.0f - plastic_ - metal_; }
@@ -164,11 +177,13 @@ class Bsdf {
 
     void addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
                             const Choice& light, BsdfEvaluation& out) const;
+    void addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
+                           const Choice& light, BsdfEvaluation& out) const;
     void addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
                                   BsdfEvaluation& out) const;
     void addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair, BsdfEvaluation& out) const;
 
-    // 88 bytes: it lives in every path vertex.
+    // 96 bytes: it lives in every path vertex.
     const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse
     Vec3 ng_, ns_;
     Rgb baseColor_;
@@ -179,11 +194,12 @@ class Bsdf {
     Rgb tintLoss_;
     float plastic_ = 0, metal_ = 0;  ///< mixture weights; glass is the rest
     float specular_ = 0;
-    float diffuseScale_ = 0;  ///< plastic / (pi (1 - specular E_avg))
+    float diffuseScale_ = 0;  ///< plastic / (pi times the mean of what all coats leave)
+    float clearcoat_ = 0, clearcoatAlpha_ = 0;
     std::uint8_t flags_ = 0;
     std::uint8_t rowIndex_ = 0;  ///< AlbedoTable::Row
     std::uint16_t rowFraction_ = 0;
 };
-static_assert(sizeof(Bsdf) <= 88);
+static_assert(sizeof(Bsdf) <= 96);
 
 }  // namespace lacuna

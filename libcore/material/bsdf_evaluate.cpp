@@ -47,12 +47,16 @@ BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
     const Choice eye = choose(pair.eyeAbs());
     const Choice light = choose(pair.lightAbs());
     if (has(kDiffuse)) {
-        out.f = baseColor_ * (diffuseScale_ * eye.open * light.open * pair.adjoint);
+        out.f = baseColor_ *
+                (diffuseScale_ * eye.open * eye.under * light.open * light.under * pair.adjoint);
         out.pdfWToLight = eye.diffuse * pair.lightAbs() * kInvPi;
         out.pdfWToEye = light.diffuse * pair.eyeAbs() * kInvPi;
     }
     if (has(kRoughLayers | kRoughGlass)) {
         addRoughReflection(toEye, toLight, pair, eye, light, out);
+    }
+    if (clearcoatAlpha_ > 0.0f) {
+        addRoughClearcoat(toEye, toLight, pair, eye, light, out);
     }
     return out;
 }
@@ -82,9 +86,26 @@ void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const 
         pmfEye += eye.glass * inner;
         pmfLight += light.glass * inner;
     }
-    out.f += reflectance * (k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
+    out.f +=
+        reflectance * (through(eye, light) * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
     out.pdfWToLight += pmfEye * k * ggx::g1OverCosine(ce, se);
     out.pdfWToEye += pmfLight * k * ggx::g1OverCosine(cl, sl);
+}
+
+void Bsdf::addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
+                             const Choice& light, BsdfEvaluation& out) const {
+    const float ce = pair.eyeAbs();
+    const float cl = pair.lightAbs();
+    const float hn = ce + cl;
+    const float cross2 = lengthSquared(cross(toEye + toLight, ns_));
+    const float cosine = std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2));
+    const float k = 0.25f * ggx::distribution(clearcoatAlpha_, hn, cross2);
+    const float se = ggx::smithS(ce, clearcoatAlpha_ * clearcoatAlpha_);
+    const float sl = ggx::smithS(cl, clearcoatAlpha_ * clearcoatAlpha_);
+    const float reflectance = clearcoat_ * fresnelDielectric(cosine, kClearcoatIor);
+    out.f += Rgb(reflectance * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
+    out.pdfWToLight += eye.clearcoat * k * ggx::g1OverCosine(ce, se);
+    out.pdfWToEye += light.clearcoat * k * ggx::g1OverCosine(cl, sl);
 }
 
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
@@ -100,10 +121,11 @@ void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
     const float se = ggx::smithS(ce, alpha_ * alpha_);
     const float sl = ggx::smithS(cl, alpha_ * alpha_);
     const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
-    out.f =
-        baseColor_ * (glass() * transmit * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight = choose(ce).glass * transmit * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye = choose(cl).glass * transmit * k * ggx::g1OverCosine(cl, sl);
+    const Choice eye = choose(ce), light = choose(cl);
+    out.f = baseColor_ * (glass() * transmit * through(eye, light) * k *
+                          ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
+    out.pdfWToLight = eye.glass * transmit * k * ggx::g1OverCosine(ce, se);
+    out.pdfWToEye = light.glass * transmit * k * ggx::g1OverCosine(cl, sl);
 }
 
 void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
@@ -132,11 +154,11 @@ void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
     const float etaEye = indexOn(eyeOutside);
     const float etaLight = indexOn(!eyeOutside);
 
-    out.f = baseColor_ * (glass() * transmit * etaEye * etaEye * k *
+    const Choice eye = choose(ce), light = choose(cl);
+    out.f = baseColor_ * (glass() * transmit * through(eye, light) * etaEye * etaEye * k *
                           ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight =
-        choose(ce).glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye = choose(cl).glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
+    out.pdfWToLight = eye.glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
+    out.pdfWToEye = light.glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
 }
 
 BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event) const {
@@ -148,9 +170,12 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
     }
     const bool deltaLayers = has(kLayers) && !has(kRoughLayers);
     const bool deltaGlass = has(kGlass) && !has(kRoughGlass);
+    const bool deltaClearcoat = clearcoat_ > 0.0f && !(clearcoatAlpha_ > 0.0f);
     const float ce = pair.eyeAbs();
     const float cl = pair.lightAbs();
     const bool front = pair.eye > 0.0f;
+    const Choice eye = choose(ce);
+    const Choice light = choose(cl);
     if (event == ScatterEvent::DeltaTransmission) {
         if (!deltaGlass) {
             return out;
@@ -159,16 +184,15 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
         const float transmit = 1.0f - fresnelDielectric(front || has(kThin) ? ce : cl, ior_);
         const float etaEye = indexOn(front);
         const float etaLight = indexOn(!front);
-        out.f = baseColor_ * (glass() * transmit * etaEye * etaEye * pair.adjoint);
-        out.pdfWToLight = choose(ce).glass * transmit * etaLight * etaLight * cl;
-        out.pdfWToEye = choose(cl).glass * transmit * etaEye * etaEye * ce;
+        out.f = baseColor_ *
+                (glass() * transmit * through(eye, light) * etaEye * etaEye * pair.adjoint);
+        out.pdfWToLight = eye.glass * transmit * etaLight * etaLight * cl;
+        out.pdfWToEye = light.glass * transmit * etaEye * etaEye * ce;
         return out;
     }
-    if (!deltaLayers && !deltaGlass) {
+    if (!deltaLayers && !deltaGlass && !deltaClearcoat) {
         return out;
     }
-    const Choice eye = choose(ce);
-    const Choice light = choose(cl);
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;
     if (deltaLayers) {
@@ -181,6 +205,12 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
         reflectance += Rgb(glass() * inner);
         pmfEye += eye.glass * inner;
         pmfLight += light.glass * inner;
+    }
+    reflectance *= through(eye, light);
+    if (deltaClearcoat) {
+        reflectance += Rgb(clearcoat_ * fresnelDielectric(ce, kClearcoatIor));
+        pmfEye += eye.clearcoat;
+        pmfLight += light.clearcoat;
     }
     out.f = reflectance * pair.adjoint;
     out.pdfWToLight = pmfEye * cl;

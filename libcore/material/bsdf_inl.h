@@ -30,6 +30,13 @@ inline float Bsdf::coatAlbedo(float mu) const {
                   : fresnelDielectric(mu, coatIor_);
 }
 
+/// E(mu) of the clearcoat with factor 1.
+inline float Bsdf::clearcoatAlbedo(float mu) const {
+    return clearcoatAlpha_ > 0.0f
+               ? clearcoatTable().directional(AlbedoTable::row(clearcoatAlpha_), mu)
+               : fresnelDielectric(mu, kClearcoatIor);
+}
+
 /// Lobe probabilities: the lobes' albedos, channels averaged, as far as they are known without
 /// effort. A function of the material and of the one known direction: sampling and density use this
 /// and nothing else.
@@ -57,8 +64,16 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     if (has(kGlass)) {
         c.glass = glass() * std::max(0.1f, mean(baseColor_));
     }
-    const float sum = c.diffuse + c.layers + c.glass;
+    if (clearcoat_ > 0.0f) {
+        c.clearcoat = clearcoat_ * clearcoatAlbedo(mu);
+        c.under = 1.0f - c.clearcoat;
+        c.diffuse *= c.under;
+        c.layers *= c.under;
+        c.glass *= c.under;
+    }
+    const float sum = c.diffuse + c.layers + c.glass + c.clearcoat;
     const float inverse = sum > 0.0f ? 1.0f / sum : 0.0f;
+    c.clearcoat *= inverse;
     c.diffuse *= inverse;
     c.layers *= inverse;
     c.glass *= inverse;

@@ -55,20 +55,24 @@ std::optional<BsdfSample> Bsdf::sample(Side side, Vec3 from, float uLobe, float 
     Vec3 to;
     ScatterEvent event = ScatterEvent::Smooth;
     // The probabilities add up to 1 but for rounding: the last lobe that exists takes the rest.
-    if (uLobe < choice.diffuse || !has(kLayers | kGlass)) {
+    const bool clearcoat = uLobe < choice.clearcoat;
+    const float uBase = uLobe - choice.clearcoat;
+    if (!clearcoat && (uBase < choice.diffuse || !has(kLayers | kGlass))) {
         to = Frame(n).toWorld(cosineHemisphere(u1, u2));
     } else {
-        const bool glass = has(kGlass) && !(uLobe < choice.diffuse + choice.layers);
-        const bool rough = has(glass ? kRoughGlass : kRoughLayers);
-        const Vec3 h = rough ? visibleNormal(from, n, cosine, alpha_, u1, u2) : n;
+        const bool glass = !clearcoat && has(kGlass) && !(uBase < choice.diffuse + choice.layers);
+        const float alpha = clearcoat ? clearcoatAlpha_ : alpha_;
+        const bool rough =
+            clearcoat ? clearcoatAlpha_ > 0.0f : has(glass ? kRoughGlass : kRoughLayers);
+        const Vec3 h = rough ? visibleNormal(from, n, cosine, alpha, u1, u2) : n;
         const float hCosine = rough ? std::min(1.0f, dot(from, h)) : cosine;
         if (!(hCosine > 0.0f)) {
             return result;
         }
         bool transmits = false;
         if (glass) {
-            // What is left of uLobe decides between reflection (F) and transmission (1 - F).
-            const float u = (uLobe - choice.diffuse - choice.layers) / choice.glass;
+            // What is left of uBase decides between reflection (F) and transmission (1 - F).
+            const float u = (uBase - choice.diffuse - choice.layers) / choice.glass;
             // Never transmission where F is 1, though rounding may bring u up to 1.
             const float fresnel = fresnelDielectric(hCosine, relativeIndex(front));
             transmits = !(u < fresnel) && fresnel < 1.0f;

@@ -51,6 +51,10 @@ struct Material {
     TextureUse specularTexture;           ///< linear: alpha
     Rgb specularColor{1.0f};              ///< of the layer along its normal; may be above 1
     TextureUse specularColorTexture;      ///< sRGB
+    float clearcoat = 0.0f;  ///< KHR_materials_clearcoat: weight of a layer over everything else
+    TextureUse clearcoatTexture;  ///< linear: R
+    float clearcoatRoughness = 0.0f;
+    TextureUse clearcoatRoughnessTexture;  ///< linear: G
     float ior = 1.5f;
     float transmission = 0.0f;
     TextureUse transmissionTexture;  ///< linear: R

@@ -255,7 +255,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
     for (const Material& m : d.materials) {
         std::optional<Bsdf>& bsdf = constantBsdfs_.emplace_back();
         if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture &&
-            !m.specularTexture && !m.specularColorTexture) {
+            !m.specularTexture && !m.specularColorTexture && !m.clearcoatTexture &&
+            !m.clearcoatRoughnessTexture) {
             bsdf = Bsdf(bsdfParameters(m, {}), {}, {}, *tables_);
         }
     }
@@ -510,6 +511,8 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     p.ior = m.ior;
     p.transmission = m.transmission;
     p.thin = m.thin;
+    p.clearcoat = m.clearcoat;
+    p.clearcoatRoughness = m.clearcoatRoughness;
     if (m.baseColorTexture) {
         p.baseColor *= sample(m.baseColorTexture, uv).rgb;
     }
@@ -526,6 +529,12 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     }
     if (m.specularColorTexture) {
         p.specularColor *= sample(m.specularColorTexture, uv).rgb;
+    }
+    if (m.clearcoatTexture) {
+        p.clearcoat *= sample(m.clearcoatTexture, uv).rgb.r;
+    }
+    if (m.clearcoatRoughnessTexture) {
+        p.clearcoatRoughness *= sample(m.clearcoatRoughnessTexture, uv).rgb.g;
     }
     return p;
 }

@@ -121,6 +121,19 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back({"camera in rough glass", b, 2, 3});
     }
     {
+        TechniqueScene s{"coloured coat and clearcoat", plates(true), 2, 3};
+        SceneBuilder& b = s.builder;
+        lacuna::Material lacquer = plastic({0.2f, 0.4f, 0.6f}, 0.7f);
+        lacquer.specularColor = {4, 1, 0.5f};
+        lacquer.clearcoat = 0.8f;
+        lacquer.clearcoatRoughness = 0.6f;
+        b.d.meshes[0].material = b.add(lacquer);
+        lacquer.metallic = 1;
+        b.add(sphere({0, 0.6f, 0}, 0.35f, 12, b.add(lacquer), true));
+        addQuadLight(b);
+        scenes.push_back(s);
+    }
+    {
         // A plate of coloured glass with a leaf in it, between light and floor: edges from face to
         // face, and from either face to what says nothing about the glass.
         TechniqueScene s{"coloured rough glass", plates(false), 2, 4};

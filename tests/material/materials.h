@@ -36,6 +36,12 @@ inline Bsdf::Parameters tinted(Bsdf::Parameters p, Rgb specularColor) {
     return p;
 }
 
+inline Bsdf::Parameters clearcoated(Bsdf::Parameters p, float weight, float roughness) {
+    p.clearcoat = weight;
+    p.clearcoatRoughness = roughness;
+    return p;
+}
+
 /// Every kind of lobe alone and together; roughness is set by the test.
 inline std::vector<Material> materials() {
     const Rgb white(1.0f), red(0.9f, 0.3f, 0.1f), black(0.0f);
@@ -58,6 +64,15 @@ inline std::vector<Material> materials() {
         {"plastic with a coloured coat", tinted(makeParameters(red, 0, 0), Rgb(1, 0.2f, 0.4f))},
         {"coloured coat, brighter, on white and glass",
          tinted(makeParameters(white, 0, 0.3f, 0.7f), Rgb(0.5f, 3, 1))},
+        {"smooth clearcoat on plastic", clearcoated(makeParameters(white, 0, 0), 1, 0)},
+        {"rough clearcoat on metal", clearcoated(makeParameters(red, 1, 0), 0.8f, 0.5f)},
+        {"rough clearcoat on lambert", clearcoated(makeParameters(red, 0, 0, 0), 1, 0.6f)},
+        {"smooth clearcoat on glass", clearcoated(makeParameters(white, 0, 1), 1, 0)},
+        {"rough clearcoat on thin glass",
+         clearcoated(makeParameters(red, 0, 1, 1, 1.5f, true), 0.7f, 0.4f)},
+        {"rough clearcoat on everything, solid",
+         clearcoated(makeParameters(red, 0.3f, 0.5f, 1, 1.33f), 0.6f, 0.5f)},
+        {"clearcoat on black", clearcoated(makeParameters(black, 0, 0, 0), 1, 0.3f)},
     };
 }
 

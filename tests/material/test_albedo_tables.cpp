@@ -9,6 +9,7 @@
 
 #include "libcore/base/sampling.h"
 #include "libcore/material/albedo_tables.h"
+#include "libcore/material/bsdf.h"
 #include "libcore/material/fresnel.h"
 #include "tests/material/statistics.h"
 
@@ -107,6 +108,7 @@ TEST(AlbedoTables, LookUpAndDeterminism) {
     EXPECT_EQ(a.covering(1.5f), a.find(1.5f));
     EXPECT_EQ(a.covering(2.0f), a.find(1.8f));
     EXPECT_EQ(AlbedoTables().covering(1.5f), nullptr);
+    EXPECT_EQ(clearcoatTable().ior(), Bsdf::kClearcoatIor);
     for (int i = 0; i < 1000; ++i) {
         const AlbedoTable::Row row = AlbedoTable::row(float(i) / 999);
         const float mu = float((i * 37) % 1000) / 999;

@@ -236,6 +236,10 @@ TEST(BsdfContract, FuzzedInputsStayFinite) {
             p.specularColor = {extreme(3), extreme(1), extreme(1e30f)};
         }
         p.thin = random.next() < 0.5f;
+        if (random.next() < 0.5f) {
+            p.clearcoat = random.next() < 0.1f ? 1e-30f : extreme(1);
+            p.clearcoatRoughness = extreme(1);
+        }
         const float roughness[] = {0, 0.0099f, 0.01f, 0.010001f, 0.02f, random.next(), 1};
         p.roughness = roughness[std::size_t(random.next() * 7)];
         const float ior[] = {1,  1.0000001f, 1.00001f, 1.001f, 1.5f, 1 + random.next(),

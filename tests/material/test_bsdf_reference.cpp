@@ -157,6 +157,9 @@ TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
                     p.roughness = 0;
                     const Bsdf delta(p, ng, world().n, tables());
                     p.roughness = 0.01001f;
+                    if (p.clearcoatRoughness == 0) {
+                        p.clearcoatRoughness = p.roughness;
+                    }
                     const Bsdf rough(p, ng, world().n, tables());
                     const Vec3 up = world().toWorld(polar(degrees, 10));
                     const Vec3 from = front ? up : -up;
@@ -213,6 +216,49 @@ TEST(BsdfReference, CoatOverDiffuse) {
     }
 }
 
+// A smooth clearcoat on a mirror: both reflect one way, F of the coat and (1 - F) of the mirror.
+// A rough one adds its lobe to what it leaves of any other.
+TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
+    Random random(27);
+    for (const double weight : {0.5, 1.0}) {
+        Bsdf::Parameters p =
+            clearcoated(makeParameters(Rgb(0.9f, 0.5f, 0), 1, 0), float(weight), 0);
+        p.roughness = 0;
+        const Bsdf mirror(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        EXPECT_FALSE(mirror.connectable());
+        p.roughness = 1;
+        p.clearcoatRoughness = 0.6f;
+        const Bsdf rough(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        p.clearcoat = 0;
+        const Bsdf bare(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        const double alpha = 0.36;
+        const auto albedo = [&](double mu) {
+            return weight *
+                   double(clearcoatTable().directional(AlbedoTable::row(0.36f), float(mu)));
+        };
+        for (int i = 0; i < 1000; ++i) {
+            Vec3d e = randomDirection(random), l = randomDirection(random);
+            e.z = std::abs(e.z) + 0.01;
+            l.z = std::abs(l.z) + 0.01;
+            e = normalize(e);
+            l = normalize(l);
+            const double f = weight * textbookFresnel(e.z, 1.5);
+            const double schlickF = 0.5 + 0.5 * std::pow(1 - e.z, 5);
+            const BsdfEvaluation m = mirror.evaluate(Vec3(e), Vec3(Vec3d{-e.x, -e.y, e.z}),
+                                                     ScatterEvent::DeltaReflection);
+            EXPECT_NEAR(double(m.f.g), f + (1 - f) * schlickF, 1e-4);
+            EXPECT_NEAR(double(m.pdfWToLight), e.z, 1e-5);  // nothing to choose
+            const Vec3d h = normalize(e + l);
+            const double lobe = textbookD(alpha, h.z) /
+                                (1 + lambda(alpha, e.z) + lambda(alpha, l.z)) / (4 * e.z * l.z);
+            const double coat = weight * textbookFresnel(dot(e, h), 1.5) * lobe;
+            const double left = 1 - std::max(albedo(e.z), albedo(l.z));
+            const double expected = coat + left * double(bare.evaluate(Vec3(e), Vec3(l)).f.g);
+            EXPECT_NEAR(double(rough.evaluate(Vec3(e), Vec3(l)).f.g), expected, 1e-3 * expected);
+        }
+    }
+}
+
 // F0 has the colour, cut at 1; towards grazing angles the coat becomes white, whatever it was.
 TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
     Random random(26);
@@ -252,16 +298,23 @@ TEST(BsdfReference, WhitePlasticReturnsEverything) {
     struct Layer {
         float specular, ior;
         Rgb color{1.0f};
+        float clearcoat = 0;
     };
     // Green, which is looked at, is always a brightest channel.
-    const double significance = sidak(1e-3, 4 * 6 * 5);
-    for (const auto& [specular, ior, color] :
-         {Layer{1.0f, 1.5f}, {0.5f, 1.8f}, {1.0f, 1.33f}, {0.7f, 1.5f, {0.5f, 3, 1}}}) {
+    const double significance = sidak(1e-3, 6 * 6 * 5);
+    for (const auto& [specular, ior, color, clearcoat] : {Layer{1.0f, 1.5f},
+                                                          {0.5f, 1.8f},
+                                                          {1.0f, 1.33f},
+                                                          {0.7f, 1.5f, {0.5f, 3, 1}},
+                                                          {0, 1.5f, Rgb(1.0f), 1},
+                                                          {0, 1.5f, Rgb(1.0f), 0.6f}}) {
         for (const float roughness : kRoughness) {
             for (const double degrees : kDegrees) {
                 Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 0, specular, ior);
                 p.roughness = roughness;
                 p.specularColor = color;
+                p.clearcoat = clearcoat;
+                p.clearcoatRoughness = roughness;
                 const Bsdf bsdf(p, world().n, world().n, tables());
                 const Vec3 from = world().toWorld(polar(degrees, 300));
                 Moments albedo;

@@ -47,6 +47,7 @@ SceneDescription everything() {
     scene.materials[1].alphaMode = Material::Alpha::Blend;
     scene.materials[1].absorption = Rgb(1.0f);
     scene.materials[1].specularColor = Rgb(0.5f);
+    scene.materials[1].clearcoat = 0.5f;
     scene.meshes.resize(2);
     for (std::uint32_t i = 0; i < 2; ++i) {
         scene.meshes[i].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -68,10 +69,11 @@ SceneDescription everything() {
 
 TEST(EffectSwitches, OffIsGoneAndSaid) {
     const MethodRow& row = findMethod("bpt");
-    for (const char* name : {"area_lights", "point_lights", "spot_lights", "directional_lights",
-                             "environment", "emissive_textures", "textures", "alpha_mask",
-                             "alpha_blend", "normal_maps", "vertex_colors", "attenuation",
-                             "specular_color", "thin_lens", "hits", "connections", "splats"}) {
+    for (const char* name :
+         {"area_lights", "point_lights", "spot_lights", "directional_lights", "environment",
+          "emissive_textures", "textures", "alpha_mask", "alpha_blend", "normal_maps",
+          "vertex_colors", "attenuation", "specular_color", "clearcoat", "thin_lens", "hits",
+          "connections", "splats"}) {
         SceneDescription scene = everything();
         double lens = 0.1;
         TechniqueSet techniques = row.techniques;
