@@ -56,19 +56,23 @@ std::vector<std::vector<Moments>> strategyMeans(const Scene& scene, const Method
 TEST(DeltaShares, meetThoseOfANarrowLobe) {
     // Other methods' densities know the pool, and a delta's vertices are not in it.
     const MethodRow row = rowNamed("bpt");
-    const auto withMirror = [](float roughness) {
+    // Ten times as large as 1, so that densities per area are far from 1 themselves.
+    const Affine place = scaling({10, 10, 10});
+    const auto withMirror = [&](float roughness) {
         SceneBuilder b;
-        b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
-        b.add(quad({-0.9f, 0, -0.8f}, {1.8f, 0, 0}, {0, 1.4f, 0},
-                   b.add(metal(Rgb(0.9f), roughness))));
-        b.add(quad({-0.5f, 1.6f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(3.0f)))));
-        b.add(lookAt({0, 1, 2.6}, {0, 0.3, -0.1}, 34));
+        const auto mirror = b.add(metal(Rgb(0.9f), roughness));
+        b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), place);
+        b.add(quad({1, 0, -0.8f}, {0, 0, 1.8f}, {0, 1.4f, 0}), place);
+        b.add(quad({-0.9f, 0, -0.8f}, {1.8f, 0, 0}, {0, 1.4f, 0}, mirror), place);
+        b.add(quad({-0.5f, 1.6f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(3.0f)))),
+              place);
+        b.add(lookAt({0, 10, 26}, {0, 3, -1}, 34));
         return b.build();
     };
     Shot shot;
     shot.width = shot.height = 12;
     shot.maxDepth = 4;
-    shot.iterations = 6;
+    shot.iterations = 12;
     shot.lightPaths = 512;
     constexpr int kBatches = 40;
     // alpha just above what counts as a delta, and a delta.
