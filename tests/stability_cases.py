@@ -97,6 +97,9 @@ GROUPS = [
         Case("space-scale", "rooms of 1e-3 and of 1e6 units", "the same skeleton and node map"),
     ]),
     ("Training", [
+        Case("train-scale", "scenes of 1e-3 and 1e6 of their size, 1e-18 and 1e18 of their brightness",
+             "subspaces and Gamma the same in every bit, Q in proportion"),
+        Case("train-range", "lamps thirty decades apart", "finite numbers, losses and all"),
         Case("tree-range", "positions and labels over sixty decades", "a tree of bounded depth that its reader accepts"),
         Case("centroid-range", "weights over sixty decades", "the heaviest is among the drawn"),
         Case("lamp-range", "lamps over thirty decades of power", "no more cells than asked for, and one more"),
