@@ -41,6 +41,9 @@ bash "$project/.ci/format.sh"
 say "Scenes: the files are what their generator makes"
 python3 "$project/scenes/make_scenes.py" --check
 
+say "Hard cases: each has a test, and the table is of these tests"
+python3 "$project/tests/stability_table.py" --check
+
 say "Tests ($preset)"
 cd "$project"
 exec ctest --preset "$preset" --parallel "$(nproc)" "$@"
