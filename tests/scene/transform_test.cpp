@@ -260,6 +260,53 @@ TEST(SurfacePoint, NormalMapsThatSayNothingAreIgnored) {
     }
 }
 
+struct Met {
+    std::unique_ptr<Scene> scene;  // holds what the Bsdf points to
+    std::optional<SurfacePoint> point;
+    Bsdf bsdf() const { return scene->bsdfAt(point.value()); }
+};
+
+/// What a ray against the z axis meets at (0.25, 0.25) of `mesh`.
+Met meet(SceneBuilder b, Mesh mesh, const lacuna::Material& material) {
+    mesh.material = b.add(material);
+    b.add(mesh);
+    Met met{b.build(), {}};
+    RayTally tally;
+    met.point = met.scene->intersect(Vec3(Vec3d{0.25, 0.25, 1} - met.scene->centre()), {},
+                                     {0, 0, -1}, RayKind::Camera, tally);
+    return met;
+}
+
+TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
+    SceneBuilder b;
+    Texture texel;
+    texel.width = texel.height = 1;
+    texel.rgba = {51, 153, 204, 102};  // 0.2, 0.6, 0.8, 0.4
+    lacuna::Material textured = plastic({0.5f, 0.4f, 0.3f}, 0);
+    textured.specularTexture = textured.specularColorTexture = textured.clearcoatTexture =
+        textured.clearcoatRoughnessTexture = b.add(texel);
+    textured.specularColor = {2, 1, 3};
+    textured.clearcoat = 0.9f;
+    textured.clearcoatRoughness = 0.8f;
+    lacuna::Material constant = plastic({0.5f, 0.4f, 0.3f}, 0);
+    constant.specular = 0.4f;
+    constant.specularColor = {0.4f, 0.6f, 2.4f};
+    constant.clearcoat = 0.18f;
+    constant.clearcoatRoughness = 0.48f;
+    const Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Met met = meet(b, mesh, textured), other = meet(b, mesh, constant);
+    const Bsdf found = met.bsdf(), expected = other.bsdf();
+    const Vec3 eye = normalize(Vec3{0.3f, 0.1f, 1}), mirrored{-eye.x, -eye.y, eye.z};
+    for (const ScatterEvent event : {ScatterEvent::Smooth, ScatterEvent::DeltaReflection}) {
+        const Rgb is = found.evaluate(eye, mirrored, event).f;
+        const Rgb should = expected.evaluate(eye, mirrored, event).f;
+        EXPECT_GT(should.r, 0);
+        EXPECT_NEAR(is.r, should.r, 1e-5 * should.r);
+        EXPECT_NEAR(is.g, should.g, 1e-5 * should.g);
+        EXPECT_NEAR(is.b, should.b, 1e-5 * should.b);
+    }
+}
+
 TEST(SurfacePoint, VertexColoursAreInterpolatedAndMultiply) {
     SceneBuilder b;
     Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(matte({0.5f, 1.0f, 1.0f})));
