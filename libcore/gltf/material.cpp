@@ -219,7 +219,7 @@ class Reader {
             refuse(document_.file, place_ + "..." + name, "a texture index", "none");
         }
         TextureUse use = textures_.request(index->get<int>(), srgb, warnings_);
-        bool otherSet = info->value("texCoord", 0) != 0;
+        double set = info->value("texCoord", 0);
         const json* extensions = member(*info, "extensions");
         const json* transform = extensions && extensions->is_object()
                                     ? member(*extensions, "KHR_texture_transform")
@@ -230,9 +230,11 @@ class Reader {
                        "an object", printable(transform->dump(), 60));
             }
             place(*transform, use);
-            otherSet = number(*transform, "texCoord", otherSet ? 1.0 : 0.0) != 0.0;
+            set = number(*transform, "texCoord", set);
         }
-        warn("texture coordinate sets other than 0 are not rendered yet: set 0 is used", otherSet);
+        use.secondSet = set == 1.0;
+        warn("texture coordinate sets above 1 are not rendered: set 0 is used",
+             set != 0.0 && set != 1.0);
         return use;
     }
 

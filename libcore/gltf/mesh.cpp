@@ -190,6 +190,9 @@ void readPrimitive(const Document& document, Task& task) {
     if (const int uvs = attribute(primitive, "TEXCOORD_0"); uvs >= 0) {
         mesh.uvs = readVertices<Vec2, 2>(document, task, "TEXCOORD_0", uvs, vertexCount, which);
     }
+    if (const int uvs = attribute(primitive, "TEXCOORD_1"); uvs >= 0) {
+        mesh.uvs1 = readVertices<Vec2, 2>(document, task, "TEXCOORD_1", uvs, vertexCount, which);
+    }
     if (const int colors = attribute(primitive, "COLOR_0"); colors >= 0) {
         readColors(document, task, colors, vertexCount, which);
     }

@@ -29,6 +29,7 @@ struct Texture {
 struct TextureUse {
     static constexpr std::int32_t kNone = -1;
     std::int32_t value = kNone;
+    bool secondSet = false;  ///< the mesh's uvs1 instead of its uvs
     Vec2 uAxis{1, 0}, vAxis{0, 1}, offset{0, 0};
 
     explicit operator bool() const { return value != kNone; }
@@ -75,6 +76,7 @@ struct Mesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty, or one per position (not necessarily unit)
     std::vector<Vec2> uvs;      ///< empty, or one per position (TEXCOORD_0)
+    std::vector<Vec2> uvs1;     ///< likewise (TEXCOORD_1)
     /// Empty, or one per position (COLOR_0): linear factors on base colour and alpha.
     std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -17,12 +17,17 @@ namespace lacuna {
 struct Scene::WorldMesh {
     std::vector<Vec3> positions;  // one more than there are vertices (accel.h)
     std::vector<Vec3> normals;
-    std::vector<Vec2> uvs;
+    std::vector<Vec2> uvs, uvs1;
     std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
-    bool plain = true;  ///< neither vertex colours nor a normal map
+    bool plain = true;  ///< neither vertex colours, nor a normal map, nor a second set
+
+    /// The coordinates by which a texture lies on the mesh; may be empty.
+    const std::vector<Vec2>& uvsOf(const TextureUse& use) const {
+        return use.secondSet ? uvs1 : uvs;
+    }
 };
 
 struct Scene::Object {
@@ -85,6 +90,16 @@ bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
         }
     }
     return true;
+}
+
+bool usesSecondSet(const Material& m) {
+    const TextureUse* const all[] = {&m.baseColorTexture,    &m.metallicRoughnessTexture,
+                                     &m.specularTexture,     &m.specularColorTexture,
+                                     &m.clearcoatTexture,    &m.clearcoatRoughnessTexture,
+                                     &m.transmissionTexture, &m.normalTexture,
+                                     &m.emissiveTexture};
+    return std::any_of(std::begin(all), std::end(all),
+                       [](const TextureUse* use) { return *use && use->secondSet; });
 }
 
 /// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's
@@ -170,9 +185,10 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
         }
         to.uvs = std::move(from.uvs);
+        if (usesSecondSet(d.materials[from.material])) to.uvs1 = std::move(from.uvs1);
         to.colors = std::move(from.colors);
-        to.plain =
-            to.colors.empty() && !(d.materials[from.material].normalTexture && !to.uvs.empty());
+        to.plain = to.colors.empty() && to.uvs1.empty() &&
+                   !(d.materials[from.material].normalTexture && !to.uvs.empty());
         to.triangles = std::move(from.triangles);
         if (mirroredMesh[m]) {
             for (auto& t : to.triangles) std::swap(t[1], t[2]);
@@ -213,7 +229,8 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
             for (int c = 0; c < 3; ++c) {
                 const Vec3 p = mesh.positions[triangle[c]];
                 e.corners[c] = object.instanced ? object.point(p) : p;
-                const Vec2 uv = mesh.uvs.empty() ? Vec2{} : mesh.uvs[triangle[c]];
+                const std::vector<Vec2>& uvs = mesh.uvsOf(material.emissiveTexture);
+                const Vec2 uv = uvs.empty() ? Vec2{} : uvs[triangle[c]];
                 e.uvs[c] = material.emissiveTexture.at(uv);
             }
             e.radiance = material.emission;
@@ -257,7 +274,7 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture &&
             !m.specularTexture && !m.specularColorTexture && !m.clearcoatTexture &&
             !m.clearcoatRoughnessTexture) {
-            bsdf = Bsdf(bsdfParameters(m, {}), {}, {}, *tables_);
+            bsdf = Bsdf(bsdfParameters(m, {}, {}), {}, {}, *tables_);
         }
     }
     for (const WorldMesh& m : meshes_) {
@@ -300,10 +317,10 @@ Camera Scene::makeCamera(const std::string& name, Camera::Film film, Camera::Len
     throw UsageError("--camera: expected one of " + names + ", found '" + name + "'");
 }
 
-Vec2 Scene::uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& t, float u,
-                 float v) const {
-    if (mesh.uvs.empty()) return {};
-    return mesh.uvs[t[0]] * (1.0f - u - v) + mesh.uvs[t[1]] * u + mesh.uvs[t[2]] * v;
+Vec2 Scene::uvAt(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& t, float u,
+                 float v) {
+    if (uvs.empty()) return {};
+    return uvs[t[0]] * (1.0f - u - v) + uvs[t[1]] * u + uvs[t[2]] * v;
 }
 
 bool Scene::hasHoles(const Material& material, const WorldMesh& mesh) const {
@@ -328,7 +345,8 @@ float Scene::opacity(const Hit& hit) const {
     const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
     float alpha = material.baseAlpha;
     if (material.baseColorTexture) {
-        alpha *= sample(material.baseColorTexture, uvAt(mesh, t, hit.u, hit.v)).alpha;
+        const Vec2 uv = uvAt(mesh.uvsOf(material.baseColorTexture), t, hit.u, hit.v);
+        alpha *= sample(material.baseColorTexture, uv, uv).alpha;
     }
     if (!mesh.colors.empty()) {
         alpha *= mesh.colors[t[0]][3] * (1.0f - hit.u - hit.v) + mesh.colors[t[1]][3] * hit.u +
@@ -378,10 +396,11 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
         // Normals that contradict the winding are turned; ones at a right angle say nothing.
         if (std::fabs(side) > 1e-3f) s.ns = side < 0.0f ? -n : n;
     }
-    s.uv = uvAt(mesh, t, hit.u, hit.v);
+    s.uv = uvAt(mesh.uvs, t, hit.u, hit.v);
     s.material = mesh.material;
     if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
     if (mesh.plain) return;
+    s.uv1 = uvAt(mesh.uvs1, t, hit.u, hit.v);
     if (!mesh.colors.empty()) {
         const auto color = [&](std::uint32_t corner) {
             const auto& c = mesh.colors[corner];
@@ -390,9 +409,10 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
         s.color = color(t[0]) * w + color(t[1]) * hit.u + color(t[2]) * hit.v;
     }
     const Material& material = description_.materials[mesh.material];
-    if (material.normalTexture && !mesh.uvs.empty()) {
+    const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
+    if (material.normalTexture && !uvs.empty()) {
         s.ns = bumped(s, material.normalTexture, material.normalScale, {p0, p1, p2},
-                      {mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]});
+                      {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
     }
 }
 
@@ -410,7 +430,7 @@ Vec3 Scene::bumped(const SurfacePoint& point, const TextureUse& map, float scale
     Vec3 bitangent = cross(point.ns, tangent);
     // glTF's bitangent points to the image's upper edge, against v [glTF 2.0, 3.9.3].
     if (dot(bitangent, down) > 0.0f) bitangent = -bitangent;
-    const Rgb texel = sample(map, point.uv).rgb;
+    const Rgb texel = sample(map, point.uv, point.uv1).rgb;
     const Vec3 n = tangent * ((2.0f * texel.r - 1.0f) * scale) +
                    bitangent * ((2.0f * texel.g - 1.0f) * scale) +
                    point.ns * (2.0f * texel.b - 1.0f);
@@ -496,12 +516,13 @@ std::uint32_t Scene::materialOf(std::uint32_t light) const {
 Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
     const std::optional<Bsdf>& constant = constantBsdfs_[point.material];
     if (constant) return constant->at(point.ng, point.ns);
-    Bsdf::Parameters p = bsdfParameters(description_.materials[point.material], point.uv);
+    Bsdf::Parameters p =
+        bsdfParameters(description_.materials[point.material], point.uv, point.uv1);
     p.baseColor *= point.color;
     return Bsdf(p, point.ng, point.ns, *tables_);
 }
 
-Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
+Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv, Vec2 uv1) const {
     Bsdf::Parameters p;
     p.baseColor = m.baseColor;
     p.metallic = m.metallic;
@@ -514,27 +535,27 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv) const {
     p.clearcoat = m.clearcoat;
     p.clearcoatRoughness = m.clearcoatRoughness;
     if (m.baseColorTexture) {
-        p.baseColor *= sample(m.baseColorTexture, uv).rgb;
+        p.baseColor *= sample(m.baseColorTexture, uv, uv1).rgb;
     }
     if (m.metallicRoughnessTexture) {
-        const Rgb t = sample(m.metallicRoughnessTexture, uv).rgb;
+        const Rgb t = sample(m.metallicRoughnessTexture, uv, uv1).rgb;
         p.roughness *= t.g;
         p.metallic *= t.b;
     }
     if (m.transmissionTexture) {
-        p.transmission *= sample(m.transmissionTexture, uv).rgb.r;
+        p.transmission *= sample(m.transmissionTexture, uv, uv1).rgb.r;
     }
     if (m.specularTexture) {
-        p.specular *= sample(m.specularTexture, uv).alpha;
+        p.specular *= sample(m.specularTexture, uv, uv1).alpha;
     }
     if (m.specularColorTexture) {
-        p.specularColor *= sample(m.specularColorTexture, uv).rgb;
+        p.specularColor *= sample(m.specularColorTexture, uv, uv1).rgb;
     }
     if (m.clearcoatTexture) {
-        p.clearcoat *= sample(m.clearcoatTexture, uv).rgb.r;
+        p.clearcoat *= sample(m.clearcoatTexture, uv, uv1).rgb.r;
     }
     if (m.clearcoatRoughnessTexture) {
-        p.clearcoatRoughness *= sample(m.clearcoatRoughnessTexture, uv).rgb.g;
+        p.clearcoatRoughness *= sample(m.clearcoatRoughnessTexture, uv, uv1).rgb.g;
     }
     return p;
 }

@@ -28,7 +28,7 @@ struct SurfacePoint {
     Vec3 position;
     Vec3 ng;          ///< unit, by the winding (sign of the transform's determinant included)
     Vec3 ns;          ///< unit, on ng's side
-    Vec2 uv;          ///< texture coordinates
+    Vec2 uv, uv1;     ///< texture coordinates of either set
     Rgb color{1.0f};  ///< the vertices', a factor on the base colour
     Vec2 barycentric;
     std::uint32_t material = 0;
@@ -91,13 +91,14 @@ class Scene {
     bool hasHoles(const Material& material, const WorldMesh& mesh) const;
     float opacity(const Hit& hit) const;
     bool isThere(const Hit& hit, Vec3 origin, Vec3 direction) const;
-    Rgba sample(const TextureUse& use, Vec2 uv) const {
-        return sampleTexture(description_.textures[std::size_t(use.value)], use.at(uv));
+    Rgba sample(const TextureUse& use, Vec2 uv, Vec2 uv1) const {
+        return sampleTexture(description_.textures[std::size_t(use.value)],
+                             use.at(use.secondSet ? uv1 : uv));
     }
-    Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv) const;
+    Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv, Vec2 uv1) const;
     bool mostlyHoles(std::uint32_t object, std::uint32_t primitive) const;
-    Vec2 uvAt(const WorldMesh& mesh, const std::array<std::uint32_t, 3>& triangle, float u,
-              float v) const;
+    static Vec2 uvAt(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& triangle,
+                     float u, float v);
 
     SceneDescription description_;
     Vec3d centre_;

@@ -206,7 +206,7 @@ TEST(Material, WhatIsNotRenderedYetIsSaidOncePerKind) {
     const json material = {
         {"alphaMode", "BLEND"},
         {"occlusionTexture", info},
-        {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}}}},
+        {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}, {"texCoord", 2}}}}},
         {"extensions",
          {{"KHR_materials_volume",
            {{"thicknessFactor", 1},
@@ -307,8 +307,28 @@ TEST(Material, BadPlacesOfTexturesAreRefused) {
     }
     TriangleBuilder b;
     const int t = b.texture(redBlue());
-    b.add("materials", {{"normalTexture", placedTexture(t, {{"texCoord", 1}})}});
+    b.add("materials", {{"normalTexture", placedTexture(t, {{"texCoord", 2}})}});
     EXPECT_EQ(warningsWith(b.load(), "coordinate sets"), 1);
+}
+
+TEST(Material, TexturesLieByTheirCoordinateSet) {
+    TriangleBuilder b;
+    const int t = b.texture(redBlue());
+    json placed = placedTexture(t, {{"texCoord", 0}});
+    placed["texCoord"] = 1;  // the transform's own goes before it
+    b.add("materials", {{"pbrMetallicRoughness",
+                         {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}},
+                          {"metallicRoughnessTexture", {{"index", t}, {"texCoord", 0}}}}},
+                        {"normalTexture", placedTexture(t, {{"texCoord", 1}})},
+                        {"emissiveFactor", {1, 1, 1}},
+                        {"emissiveTexture", placed}});
+    const SceneDescription scene = b.load();
+    const Material& m = scene.materials[0];
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_TRUE(m.baseColorTexture.secondSet);
+    EXPECT_FALSE(m.metallicRoughnessTexture.secondSet);
+    EXPECT_TRUE(m.normalTexture.secondSet);
+    EXPECT_FALSE(m.emissiveTexture.secondSet);
 }
 
 TEST(Material, NormalMap) {

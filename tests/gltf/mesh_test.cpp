@@ -89,9 +89,11 @@ TEST(Mesh, NormalsAndUvs) {
     TriangleBuilder b;
     b.primitive()["attributes"]["NORMAL"] = b.accessor<float>({0, 0, 2, 0, 1, 0, 1, 0, 0}, "VEC3");
     b.primitive()["attributes"]["TEXCOORD_0"] = b.accessor<float>({0, 0, 5, 6, -7, 8}, "VEC2");
+    b.primitive()["attributes"]["TEXCOORD_1"] = b.accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2");
     const SceneDescription scene = b.load();
     EXPECT_EQ(scene.meshes[0].normals, (std::vector<Vec3>{{0, 0, 2}, {0, 1, 0}, {1, 0, 0}}));
     EXPECT_EQ(scene.meshes[0].uvs, (std::vector<Vec2>{{0, 0}, {5, 6}, {-7, 8}}));
+    EXPECT_EQ(scene.meshes[0].uvs1, (std::vector<Vec2>{{1, 2}, {3, 4}, {5, 6}}));
     EXPECT_TRUE(scene.warnings.empty());
 }
 

@@ -307,6 +307,51 @@ TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
     }
 }
 
+TEST(SurfacePoint, TexturesLieByTheSetTheyAskFor) {
+    SceneBuilder b;
+    Texture halves;  // red and not there, then blue
+    halves.width = 2;
+    halves.height = 1;
+    halves.rgba = {255, 0, 0, 0, 0, 0, 255, 255};
+    TextureUse first = b.add(halves), second = first;
+    second.secondSet = true;
+    Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    mesh.uvs.assign(3, {0.25f, 0.5f});
+    mesh.uvs1.assign(3, {0.75f, 0.5f});
+    lacuna::Material material = matte(Rgb(1.0f));
+    material.baseColorTexture = first;
+    EXPECT_EQ(meet(b, mesh, material).bsdf().layerAlbedo(), Rgb(1, 0, 0));
+    material.baseColorTexture = second;
+    material.emission = Rgb(1.0f);
+    material.emissiveTexture = second;
+    material.alphaMode = lacuna::Material::Alpha::Mask;
+    const Met met = meet(b, mesh, material);
+    ASSERT_TRUE(met.point);  // where the first set has no surface
+    EXPECT_EQ(met.bsdf().layerAlbedo(), Rgb(0, 0, 1));
+    Rng rng(1, 0, StreamKind::LightPath, 0);
+    const Rgb exitance = met.scene->lights().samplePoint(rng).exitance;
+    EXPECT_GT(exitance.b, 1.0f);
+    EXPECT_LT(exitance.r, 1e-5f);
+    // A set that the mesh lacks is (0, 0) everywhere: the corner between both halves.
+    mesh.uvs1.clear();
+    material.alphaMode = lacuna::Material::Alpha::Opaque;
+    const Rgb corner = meet(b, mesh, material).bsdf().layerAlbedo();
+    EXPECT_NEAR(corner.r, 0.5, 1e-5);
+    EXPECT_NEAR(corner.b, 0.5, 1e-5);
+}
+
+TEST(SurfacePoint, ASecondSetTurnsNormalMaps) {
+    SceneBuilder b;
+    lacuna::Material material = matte(Rgb(0.5f));
+    material.normalTexture = b.add(tilt(255, 128, 128));  // towards growing u
+    material.normalTexture.secondSet = true;
+    Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    mesh.uvs1 = {{0, 0}, {0, 1}, {1, 0}};  // u along y
+    const Met met = meet(b, mesh, material);
+    ASSERT_TRUE(met.point);
+    EXPECT_GT(met.point->ns.y, 0.9f);
+}
+
 TEST(SurfacePoint, VertexColoursAreInterpolatedAndMultiply) {
     SceneBuilder b;
     Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(matte({0.5f, 1.0f, 1.0f})));
