@@ -152,6 +152,24 @@ struct KeptPath {
     double weight;
 };
 
+/// Copies some of the paths that it is shown.
+struct PathKeeper {
+    std::vector<std::unique_ptr<KeptPath>> kept;
+
+    void keep(const PathEvent& event) {
+        if (kept.size() >= 2000 || event.sample % 5 != 0) return;
+        auto k = std::make_unique<KeptPath>();
+        k->path = event.path;
+        k->t = event.t;
+        k->weight = event.weight;
+        for (int i = 0; i <= event.path.edges; ++i) k->vertices.push_back(*event.path.vertex[i]);
+        for (int i = 0; i <= event.path.edges; ++i) {
+            k->path.vertex[i] = &k->vertices[std::size_t(i)];
+        }
+        kept.push_back(std::move(k));
+    }
+};
+
 class PathOnly : public testing::TestWithParam<std::string> {};
 
 TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
@@ -159,20 +177,12 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     const MethodRow row = rowNamed(GetParam());
     const auto method = row.create(resolve(row, smallSettings(row, 64)));
     Frozen frozen(*method);
-    std::vector<std::unique_ptr<KeptPath>> kept;
+    PathKeeper keeper;
     Shot shot = weightShot();
     const Techniques* now = nullptr;
     shot.observer = [&](const PathEvent& event) {
         now = &event.techniques;
-        if (kept.size() >= 2000 || event.sample % 5 != 0) return;
-        auto k = std::make_unique<KeptPath>();
-        k->path = event.path;
-        k->t = event.t;
-        k->weight = event.weight;
-        for (int i = 0; i <= event.path.edges; ++i) k->vertices.push_back(*event.path.vertex[i]);
-        for (int i = 0; i <= event.path.edges; ++i)
-            k->path.vertex[i] = &k->vertices[std::size_t(i)];
-        kept.push_back(std::move(k));
+        keeper.keep(event);
     };
     Render first(*scene, row, shot, frozen);
     first.warmUp();
@@ -184,12 +194,12 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     double worst = 0;
     std::size_t judged = 0;
     const auto judge = [&](const Techniques& techniques) {
-        for (const auto& k : kept) {
+        for (const auto& k : keeper.kept) {
             worst = std::max(worst, std::fabs(misWeight(k->path, techniques, k->t) - k->weight));
             ++judged;
         }
     };
-    ASSERT_GT(kept.size(), 20u);
+    ASSERT_GT(keeper.kept.size(), 20u);
     bool done = false;
     shot.observer = [&](const PathEvent& event) {
         if (event.t == 1 || done) return;  // the pool is complete once the eye's pass has begun
@@ -199,9 +209,39 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     Render second(*scene, row, shot, frozen);
     second.iterate(0);
     if (!done) judge(*now);  // rows without an eye pass
-    EXPECT_GE(judged, kept.size());
+    EXPECT_GE(judged, keeper.kept.size());
     EXPECT_EQ(worst, 0.0);
     stabilityCase("other-pool", worst, "between a path's weights");
+}
+
+/// Weights of a method that does not learn are those of the first iteration for ever: a density
+/// that took the current pool's number of vertices would change with each.
+TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
+    const auto scene = glossyBox().builder.build();
+    const MethodRow row = rowNamed(GetParam());
+    const auto method = row.create(resolve(row, smallSettings(row, 64)));
+    if (method->learns()) GTEST_SKIP() << "learns from earlier iterations";
+    PathKeeper keeper;
+    double worst = 0;
+    std::size_t judged = 0;
+    bool keeping = true;
+    Shot shot = weightShot();
+    shot.observer = [&](const PathEvent& event) {
+        if (keeping) return keeper.keep(event);
+        if (++judged % 500 != 1) return;  // the same for all events of an iteration
+        for (const auto& k : keeper.kept) {
+            const double now = misWeight(k->path, event.techniques, k->t);
+            worst = std::max(worst, std::fabs(now - k->weight));
+        }
+    };
+    Render render(*scene, row, shot, *method);
+    render.warmUp();
+    render.iterate(0);
+    keeping = false;
+    for (const std::uint32_t iteration : {1u, 2u, 3u}) render.iterate(iteration);
+    ASSERT_GT(keeper.kept.size(), 20u);
+    ASSERT_GT(judged, 0u);
+    EXPECT_EQ(worst, 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PathOnly, testing::ValuesIn(rowNames()), ByParameter());
