@@ -77,6 +77,7 @@ GROUPS = [
              "probabilities as drawn, none of zero is drawn"),
         Case("pmf-of-nothing", "no weights, or zeros alone", "empty, and says so"),
         Case("many-entries", "twenty million equal weights", "the last is as likely as the first"),
+        Case("nonsense-skeletons", "nodes and balls anywhere, a random map", "every mean stays"),
         Case("nonsense-subspaces", "random trees, Q and Gamma", "every mean stays"),
         Case("subspace-range", "Q and populations over thirty decades", "every mean stays"),
     ]),

@@ -1,9 +1,12 @@
-// Acceptance 9: subspaces of nonsense (random trees, Q and Gamma) make a noisier picture with the
-// same mean, in both forms of the weights.
+// Acceptance 9: caches of nonsense make a noisier picture with the same mean, in all forms of the
+// weights. Subspaces of random trees, Q and Gamma; skeletons with nodes anywhere, in walls and
+// outside of the room, balls of any size and a random map.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
+#include "libcore/skeleton/node_map.h"
 #include "libcore/subspace/subspaces.h"
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
@@ -51,7 +54,29 @@ std::shared_ptr<const Subspaces> randomSubspaces(std::uint64_t seed) {
     return s;
 }
 
-TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
+std::shared_ptr<const Skeleton> randomSkeleton(std::uint64_t seed) {
+    Rng rng(seed, 0, StreamKind::User, 0);
+    const auto anywhere = [&] { return 6.0 * rng.uniformDouble() - 3.0; };
+    auto skeleton = std::make_shared<Skeleton>();
+    for (int i = 0; i < 12; ++i) {
+        // Radii from 1e-9 of the room to ten times its size.
+        const double radius = 20.0 * std::pow(1e-9, rng.uniformDouble());
+        skeleton->nodes.push_back({{anywhere(), anywhere(), anywhere()}, radius});
+    }
+    const VoxelShape shape{{9, 9, 9}, {-4, -4, -4}, 0.5};
+    std::vector<std::uint16_t> entries(shape.count());
+    for (std::uint16_t& e : entries) {
+        e = rng.below(5) == 0 ? NodeMap::kNone : std::uint16_t(rng.below(12));
+        if (rng.below(3) == 0) e |= NodeMap::kSolid;
+    }
+    skeleton->map = NodeMap(shape, std::move(entries));
+    return skeleton;
+}
+
+/// Renders with three caches each that `give` makes by their seed.
+void expectTheSameMean(const MethodRow& row, std::initializer_list<const char*> weights,
+                       std::vector<std::string> settings,
+                       const std::function<void(Method&, std::uint64_t)>& give) {
     const auto scene = diffuseBox().builder.build();
     Shot shot;
     shot.width = shot.height = 12;
@@ -61,17 +86,28 @@ TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
     const Picture reference = render(*scene, pathTracer(), shot);
     shot.seed = 1;
     shot.iterations = 300;
-    const MethodRow row = rowNamed("spcbpt");
-    for (const char* weights : {"weights=ris", "weights=paper"}) {
+    settings.push_back("");
+    for (const char* form : weights) {
+        settings.back() = form;
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
-            const std::vector<std::string> settings = {"candidates=144", weights};
             const auto method = row.create(resolve(row, settings));
-            method->useSubspaces(randomSubspaces(seed));
-            const Picture picture = Render(*scene, row, shot, *method).run();
-            expectSame(picture, reference, weights);
+            give(*method, seed);
+            expectSame(Render(*scene, row, shot, *method).run(), reference, form);
         }
     }
+}
+
+TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
+    expectTheSameMean(rowNamed("spcbpt"), {"weights=ris", "weights=paper"}, {"candidates=144"},
+                      [](Method& m, std::uint64_t seed) { m.useSubspaces(randomSubspaces(seed)); });
     stabilityCase("nonsense-subspaces", worstDeviation(), kOfAllowed);
+}
+
+TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
+    expectTheSameMean(rowNamed("skelbpt"), {"weights=aware", "weights=credit"},
+                      {"candidates=144", "node_acceptance=0"},
+                      [](Method& m, std::uint64_t seed) { m.useSkeleton(randomSkeleton(seed)); });
+    stabilityCase("nonsense-skeletons", worstDeviation(), kOfAllowed);
 }
 
 /// Q and populations over thirty decades: a Q far too small believes in its subspace, one far too
