@@ -21,6 +21,29 @@
 
 namespace lacuna {
 
+namespace {
+
+/// A GGX lobe at the half vector of two directions on one side (or one of them mirrored there).
+struct Lobe {
+    float cosine;          ///< e.h = l.h
+    float k;               ///< D / 4
+    float g2;              ///< G2 / (c_e c_l)
+    float g1Eye, g1Light;  ///< G1 / c_e, G1 / c_l
+};
+
+/// From H = e + l, of any length, and both |cosines| about ns.
+inline Lobe lobeOf(Vec3 h, Vec3 ns, float ce, float cl, float alpha) {
+    const float hn = ce + cl;
+    const float cross2 = lengthSquared(cross(h, ns));
+    const float se = ggx::smithS(ce, alpha * alpha);
+    const float sl = ggx::smithS(cl, alpha * alpha);
+    return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2)),  // |H| / 2
+            0.25f * ggx::distribution(alpha, hn, cross2), ggx::g2OverCosines(ce, se, cl, sl),
+            ggx::g1OverCosine(ce, se), ggx::g1OverCosine(cl, sl)};
+}
+
+}  // namespace
+
 // One result variable per function, filled in place: a copy of it would wait for its parts' stores.
 BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
     BsdfEvaluation out;
@@ -63,69 +86,47 @@ BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
 
 void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
                               const Choice& light, BsdfEvaluation& out) const {
-    const float ce = pair.eyeAbs();
-    const float cl = pair.lightAbs();
-    const float hn = ce + cl;
-    const float cross2 = lengthSquared(cross(toEye + toLight, ns_));
-    const float cosine = std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2));  // e.h = l.h = |H| / 2
-    const float k = 0.25f * ggx::distribution(alpha_, hn, cross2);
-    const float se = ggx::smithS(ce, alpha_ * alpha_);
-    const float sl = ggx::smithS(cl, alpha_ * alpha_);
+    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
 
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;  // given toEye, given toLight
     if (has(kRoughLayers)) {
-        reflectance = layersReflectance(cosine);
+        reflectance = layersReflectance(lobe.cosine);
         pmfEye = eye.layers;
         pmfLight = light.layers;
     }
     if (has(kRoughGlass)) {
         const bool front = pair.eye > 0.0f;
-        const float inner = fresnelDielectric(cosine, relativeIndex(front));
+        const float inner = fresnelDielectric(lobe.cosine, relativeIndex(front));
         reflectance += Rgb(glass() * inner);
         pmfEye += eye.glass * inner;
         pmfLight += light.glass * inner;
     }
-    out.f +=
-        reflectance * (through(eye, light) * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight += pmfEye * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye += pmfLight * k * ggx::g1OverCosine(cl, sl);
+    out.f += reflectance * (through(eye, light) * lobe.k * lobe.g2 * pair.adjoint);
+    out.pdfWToLight += pmfEye * lobe.k * lobe.g1Eye;
+    out.pdfWToEye += pmfLight * lobe.k * lobe.g1Light;
 }
 
 void Bsdf::addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
                              const Choice& light, BsdfEvaluation& out) const {
-    const float ce = pair.eyeAbs();
-    const float cl = pair.lightAbs();
-    const float hn = ce + cl;
-    const float cross2 = lengthSquared(cross(toEye + toLight, ns_));
-    const float cosine = std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2));
-    const float k = 0.25f * ggx::distribution(clearcoatAlpha_, hn, cross2);
-    const float se = ggx::smithS(ce, clearcoatAlpha_ * clearcoatAlpha_);
-    const float sl = ggx::smithS(cl, clearcoatAlpha_ * clearcoatAlpha_);
-    const float reflectance = clearcoat_ * fresnelDielectric(cosine, kClearcoatIor);
-    out.f += Rgb(reflectance * k * ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight += eye.clearcoat * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye += light.clearcoat * k * ggx::g1OverCosine(cl, sl);
+    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
+    const float reflectance = clearcoat_ * fresnelDielectric(lobe.cosine, kClearcoatIor);
+    out.f += Rgb(reflectance * lobe.k * lobe.g2 * pair.adjoint);
+    out.pdfWToLight += eye.clearcoat * lobe.k * lobe.g1Eye;
+    out.pdfWToEye += light.clearcoat * lobe.k * lobe.g1Light;
 }
 
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
 // Mirroring toLight about ns leaves its tangential part, hence H x n, as it is.
 void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
                                     BsdfEvaluation& out) const {
-    const float ce = pair.eyeAbs();
-    const float cl = pair.lightAbs();
-    const float hn = ce + cl;
-    const float cross2 = lengthSquared(cross(toEye + toLight, ns_));
-    const float cosine = std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2));
-    const float k = 0.25f * ggx::distribution(alpha_, hn, cross2);
-    const float se = ggx::smithS(ce, alpha_ * alpha_);
-    const float sl = ggx::smithS(cl, alpha_ * alpha_);
-    const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
-    const Choice eye = choose(ce), light = choose(cl);
-    out.f = baseColor_ * (glass() * transmit * through(eye, light) * k *
-                          ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight = eye.glass * transmit * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye = light.glass * transmit * k * ggx::g1OverCosine(cl, sl);
+    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
+    const float transmit = 1.0f - fresnelDielectric(lobe.cosine, ior_);
+    const Choice eye = choose(pair.eyeAbs()), light = choose(pair.lightAbs());
+    out.f =
+        baseColor_ * (glass() * transmit * through(eye, light) * lobe.k * lobe.g2 * pair.adjoint);
+    out.pdfWToLight = eye.glass * transmit * lobe.k * lobe.g1Eye;
+    out.pdfWToEye = light.glass * transmit * lobe.k * lobe.g1Light;
 }
 
 void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
