@@ -1,26 +1,13 @@
 #include "libcore/base/alias_table.h"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
+
+#include "libcore/base/weights.h"
 
 namespace lacuna {
 
 AliasTable::AliasTable(std::span<const double> weights) : slots_(weights.size()) {
-    double largest = 0.0;
-    std::uint32_t heaviest = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (!(weights[i] >= 0.0) || !std::isfinite(weights[i])) {
-            throw std::invalid_argument("alias table: weight " + std::to_string(i) + " is " +
-                                        std::to_string(weights[i]) +
-                                        ", expected a finite number >= 0");
-        }
-        if (weights[i] > largest) {
-            largest = weights[i];
-            heaviest = std::uint32_t(i);
-        }
-    }
+    const double largest = largestWeight(weights, "alias table");
     if (largest == 0.0) return;
     // Relative to the largest weight, so that the sum neither overflows nor goes denormal.
     double sum = 0.0;
@@ -47,6 +34,8 @@ AliasTable::AliasTable(std::span<const double> weights) : slots_(weights.size())
         small.push_back(rich);
     }
     // What is left has one slot but for rounding; a weight of zero must not get it.
+    const auto heaviest =
+        std::uint32_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
     for (const auto* left : {&small, &large}) {
         for (const std::uint32_t i : *left) {
             slots_[i].threshold = weights[i] > 0.0 ? 1.0f : 0.0f;

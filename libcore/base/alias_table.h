@@ -29,8 +29,7 @@ class AliasTable {
     struct Pick {
         std::uint32_t index;
         double pmf;
-        double
-            remapped;  ///< u, stretched to [0, 1) inside what leads to the outcome: for use again
+        double remapped;  ///< u, stretched to [0, 1) inside what leads here: for use again
     };
     /// u in [0, 1). Not to be called when empty(). Never an outcome of weight zero.
     Pick sample(double u) const {

@@ -1,22 +1,13 @@
 #include "libcore/base/discrete.h"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
+
+#include "libcore/base/weights.h"
 
 namespace lacuna {
 
 DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (!(weights[i] >= 0.0) || !std::isfinite(weights[i])) {
-            throw std::invalid_argument("discrete distribution: weight " + std::to_string(i) +
-                                        " is " + std::to_string(weights[i]) +
-                                        ", expected a finite number >= 0");
-        }
-        largest = std::max(largest, weights[i]);
-    }
+    const double largest = largestWeight(weights, "discrete distribution");
     cdf_.resize(weights.size());
     if (largest == 0.0) return;
 
