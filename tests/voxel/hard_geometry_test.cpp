@@ -12,6 +12,7 @@
 #include "libcore/voxel/surface_distance.h"
 #include "tests/scene/scene_builder.h"
 #include "tests/stability.h"
+#include "tests/voxel/triangles.h"
 
 namespace lacuna::test {
 namespace {
@@ -21,18 +22,6 @@ const std::atomic<bool> kNever{false};
 const ThreadPool& threads() {
     static const ThreadPool pool(2);
     return pool;
-}
-
-std::vector<Triangle> trianglesOf(const Mesh& mesh, const Affine& transform = {}) {
-    std::vector<Triangle> all;
-    for (const auto& t : mesh.triangles) {
-        Triangle triangle;
-        for (std::size_t c = 0; c < 3; ++c) {
-            triangle[c] = Vec3(transform.point(Vec3d(mesh.positions[t[c]])));
-        }
-        all.push_back(triangle);
-    }
-    return all;
 }
 
 std::vector<Triangle> joined(std::vector<Triangle> a, const std::vector<Triangle>& b) {

@@ -15,6 +15,7 @@
 #include "libcore/voxel/surface_distance.h"
 #include "tests/scene/scene_builder.h"
 #include "tests/stability.h"
+#include "tests/voxel/triangles.h"
 
 namespace lacuna::test {
 namespace {
@@ -43,18 +44,6 @@ TEST(Overlap, isExact) {
         together += expected ? 1 : 0;
     }
     EXPECT_GT(together, 20000);
-}
-
-std::vector<Triangle> trianglesOf(const Mesh& mesh, const Affine& transform = {}) {
-    std::vector<Triangle> all;
-    for (const auto& t : mesh.triangles) {
-        Triangle triangle;
-        for (std::size_t c = 0; c < 3; ++c) {
-            triangle[c] = Vec3(transform.point(Vec3d(mesh.positions[t[c]])));
-        }
-        all.push_back(triangle);
-    }
-    return all;
 }
 
 TEST(Voxelize, everyVoxelThatATriangleTouches) {
