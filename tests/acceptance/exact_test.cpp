@@ -58,6 +58,27 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
 // Direct light on a plane
 // --------------------------------------------------------------------------
 
+/// Radiance that arrives along a unit direction away from the camera.
+using RadianceAlong = std::function<Vec3d(Vec3d direction)>;
+
+/// Its mean over every pixel of the shot.
+std::vector<Rgb> meanOverPixels(const Camera& camera, const Shot& shot,
+                                const RadianceAlong& radiance) {
+    std::vector<Rgb> means;
+    constexpr int kSteps = 8;
+    for (int i = 0; i < shot.width * shot.height; ++i) {
+        Vec3d sum;
+        for (int j = 0; j < kSteps * kSteps; ++j) {
+            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
+                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
+            sum += radiance(Vec3d(camera.directionAt(camera.position(), raster).direction));
+        }
+        sum = sum * (1.0 / (kSteps * kSteps));
+        means.push_back({float(sum.x), float(sum.y), float(sum.z)});
+    }
+    return means;
+}
+
 /// Irradiance on the plane y = 0 at (x, z).
 using Irradiance = std::function<double(double x, double z)>;
 
@@ -76,19 +97,11 @@ void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>&
     shot.iterations = 200;
     shot.lightPaths = 1024;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
-    std::vector<Rgb> exact;
-    constexpr int kSteps = 8;
-    for (int i = 0; i < shot.width * shot.height; ++i) {
-        double sum = 0;
-        for (int j = 0; j < kSteps * kSteps; ++j) {
-            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
-                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
-            const Vec3d d(camera.directionAt(camera.position(), raster).direction);
-            const Vec3d from = Vec3d(camera.position()) + scene->centre();
-            sum += irradiance(from.x - d.x * from.y / d.y, from.z - d.z * from.y / d.y);
-        }
-        exact.push_back(Rgb(float(sum / (kSteps * kSteps) * 0.6 / std::numbers::pi)));
-    }
+    const Vec3d from = Vec3d(camera.position()) + scene->centre();
+    const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
+        const double e = irradiance(from.x - d.x * from.y / d.y, from.z - d.z * from.y / d.y);
+        return Vec3d{e, e, e} * (0.6 / std::numbers::pi);
+    });
     expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what, judge);
 }
 
@@ -235,19 +248,10 @@ TEST_P(Exact, colouredGlassFollowsBeerAndLambert) {
     shot.maxDepth = 3;
     shot.iterations = 100;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
-    std::vector<Rgb> exact;
-    constexpr int kSteps = 8;
-    for (int i = 0; i < shot.width * shot.height; ++i) {
-        Rgb sum;
-        for (int j = 0; j < kSteps * kSteps; ++j) {
-            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
-                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
-            const Vec3 d = camera.directionAt(camera.position(), raster).direction;
-            const float inside = 0.5f / std::fabs(d.z);
-            sum += Rgb(std::exp(-absorption.r * inside), std::exp(-absorption.g * inside), 1);
-        }
-        exact.push_back(sum * (2.0f / (kSteps * kSteps)));
-    }
+    const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
+        const double inside = 0.5 / std::fabs(d.z);
+        return Vec3d{std::exp(-absorption.r * inside), std::exp(-absorption.g * inside), 1} * 2.0;
+    });
     expectRadiance(render(*scene, row(), shot), exact, row().name + ", coloured slab");
 }
 
