@@ -76,6 +76,12 @@ Vec3d randomDirection(Random& random) {
     const double r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
+/// One above the plane z = 0, not quite grazing.
+Vec3d randomAbove(Random& random) {
+    Vec3d d = randomDirection(random);
+    d.z = std::abs(d.z) + 0.01;
+    return normalize(d);
+}
 
 TEST(BsdfReference, GlassFollowsWalter) {
     Random random(21);
@@ -117,11 +123,7 @@ TEST(BsdfReference, MetalAndThinGlass) {
         const Bsdf thin(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
         const double alpha = double(p.roughness) * double(p.roughness);
         for (int i = 0; i < 4000; ++i) {
-            Vec3d e = randomDirection(random), l = randomDirection(random);
-            e.z = std::abs(e.z) + 0.01;
-            l.z = std::abs(l.z) + 0.01;
-            e = normalize(e);
-            l = normalize(l);
+            const Vec3d e = randomAbove(random), l = randomAbove(random);
             const Vec3d h = normalize(e + l);
             const double eh = dot(e, h);
             const double lobe = textbookD(alpha, h.z) /
@@ -237,11 +239,7 @@ TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
                    double(clearcoatTable().directional(AlbedoTable::row(0.36f), float(mu)));
         };
         for (int i = 0; i < 1000; ++i) {
-            Vec3d e = randomDirection(random), l = randomDirection(random);
-            e.z = std::abs(e.z) + 0.01;
-            l.z = std::abs(l.z) + 0.01;
-            e = normalize(e);
-            l = normalize(l);
+            const Vec3d e = randomAbove(random), l = randomAbove(random);
             const double f = weight * textbookFresnel(e.z, 1.5);
             const double schlickF = 0.5 + 0.5 * std::pow(1 - e.z, 5);
             const BsdfEvaluation m = mirror.evaluate(Vec3(e), Vec3(Vec3d{-e.x, -e.y, e.z}),
@@ -270,11 +268,7 @@ TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
         const double most = f0 * double(maxComponent(color));
         const double brightest = (1 + std::sqrt(most)) / (1 - std::sqrt(most));
         for (int i = 0; i < 2000; ++i) {
-            Vec3d e = randomDirection(random), l = randomDirection(random);
-            e.z = std::abs(e.z) + 0.01;
-            l.z = std::abs(l.z) + 0.01;
-            e = normalize(e);
-            l = normalize(l);
+            const Vec3d e = randomAbove(random), l = randomAbove(random);
             const Vec3d h = normalize(e + l);
             const double lobe = textbookD(0.25, h.z) / (1 + lambda(0.25, e.z) + lambda(0.25, l.z)) /
                                 (4 * e.z * l.z);
