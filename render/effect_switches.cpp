@@ -31,8 +31,12 @@ void makeOpaque(SceneDescription& scene, Material::Alpha mode) {
     }
 }
 
-/// False where the effect cannot be taken out of a scene.
-bool switchOff(const std::string& name, const SwitchTargets& to) {
+void leaveOut(SceneDescription& scene, LobeKind kind) {
+    for (Material& m : scene.materials) m.without.add(kind);
+}
+
+/// Any row of effectsOf().
+void switchOff(const std::string& name, const SwitchTargets& to) {
     SceneDescription& scene = to.scene;
     if (name == "area_lights") {
         for (Material& m : scene.materials) m.emission = {};
@@ -71,16 +75,27 @@ bool switchOff(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) m.absorption = {};
     } else if (name == "thin_lens") {
         to.lensRadius = 0.0;
-    } else if (to.techniques && name == "hits") {
+    } else if (name == "diffuse") {
+        leaveOut(scene, LobeKind::Diffuse);
+    } else if (name == "glossy") {
+        leaveOut(scene, LobeKind::Glossy);
+    } else if (name == "mirror") {
+        leaveOut(scene, LobeKind::Mirror);
+    } else if (name == "rough_refraction") {
+        leaveOut(scene, LobeKind::RoughRefraction);
+    } else if (name == "smooth_refraction") {
+        leaveOut(scene, LobeKind::SmoothRefraction);
+    } else if (name == "rough_thin_transmission") {
+        leaveOut(scene, LobeKind::RoughThinTransmission);
+    } else if (name == "smooth_thin_transmission") {
+        leaveOut(scene, LobeKind::SmoothThinTransmission);
+    } else if (name == "hits") {
         to.techniques->hits = false;
-    } else if (to.techniques && name == "connections") {
+    } else if (name == "connections") {
         to.techniques->connects = false;
-    } else if (to.techniques && name == "splats") {
+    } else if (name == "splats") {
         to.techniques->splats = false;
-    } else {
-        return false;
     }
-    return true;
 }
 
 /// False where the scene has nothing that the effect's code could work on.
@@ -167,11 +182,7 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
             }
             effect->reason = "on by --set (" + effect->reason + ")";
         } else {
-            if (!switchOff(s.name, targets)) {
-                throw UsageError(option +
-                                 "=off: that is what materials are made of; change them in the "
-                                 "scene, or leave it out");
-            }
+            switchOff(s.name, targets);
             warnings.push_back(s.name + " is off though the scene calls for it (" + effect->reason +
                                "): the picture lacks what it does");
             effect->reason = "off by --set, though " + effect->reason;

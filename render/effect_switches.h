@@ -31,7 +31,7 @@ struct SwitchTargets {
 /// nothing calls for it (a white texture, a normal map that tilts nothing, a mask that hides
 /// nothing: the picture stays the same). `effects` is what effectsOf() found before; its rows then
 /// say what is done and why. Returns a warning for every effect that is off though the scene calls
-/// for it. Throws UsageError for unknown names and for what cannot be forced.
+/// for it. Throws UsageError for unknown names and for what cannot be forced on.
 std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
                                       const SwitchTargets& targets, std::vector<Effect>& effects);
 

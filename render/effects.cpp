@@ -43,7 +43,8 @@ struct Inventory {
     }
 };
 
-// A texture may take a factor to any smaller value, so it can switch lobes on as well as off.
+// A texture may take a factor to any smaller value, so it can switch lobes on as well as off. What
+// is left out by force (Material::without) is looked at where the lobes are counted.
 bool mayBeRough(const Material& m) {
     return m.roughness * m.roughness >= kMinAlpha;
 }
@@ -135,10 +136,13 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("vertex_colors", have.coloredPrimitives, "coloured primitive", "",
           "no mesh with COLOR_0");
 
-    t.add("diffuse", have.count(isDiffuse), "material", " with a diffuse lobe",
-          "no diffuse material");
+    t.add("diffuse", have.count([](const Material& m) {
+        return isDiffuse(m) && !m.without.has(LobeKind::Diffuse);
+    }),
+          "material", " with a diffuse lobe", "no diffuse material");
     t.add("glossy", have.count([](const Material& m) {
-        return (reflects(m) && mayBeRough(m)) || mayHaveRoughClearcoat(m);
+        return ((reflects(m) && mayBeRough(m)) || mayHaveRoughClearcoat(m)) &&
+               !m.without.has(LobeKind::Glossy);
     }),
           "material", " with a rough reflection", "no rough metal or coat");
     t.add("clearcoat", have.count([](const Material& m) { return m.clearcoat > 0.0f; }), "material",
@@ -148,20 +152,25 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     }),
           "material", " with a coloured coat", "no coat with a colour of its own");
     t.add("mirror", have.count([](const Material& m) {
-        return (reflects(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m);
+        return ((reflects(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m)) &&
+               !m.without.has(LobeKind::Mirror);
     }),
           "material", " with a perfectly smooth reflection", "no metal or coat of roughness 0");
-    const auto glass = [](bool thin, bool rough) {
-        return [thin, rough](const Material& m) {
-            return transmits(m) && m.thin == thin && (rough ? mayBeRough(m) : mayBeSmooth(m));
+    const auto glass = [](LobeKind kind, bool thin, bool rough) {
+        return [kind, thin, rough](const Material& m) {
+            return transmits(m) && m.thin == thin && (rough ? mayBeRough(m) : mayBeSmooth(m)) &&
+                   !m.without.has(kind);
         };
     };
     const char* none = "no transmissive solid of that kind: no refraction, no eta factor";
-    t.add("rough_refraction", have.count(glass(false, true)), "rough solid", " of glass", none);
-    t.add("smooth_refraction", have.count(glass(false, false)), "smooth solid", " of glass", none);
-    t.add("rough_thin_transmission", have.count(glass(true, true)), "rough thin sheet", "",
-          "no rough thin sheet");
-    t.add("smooth_thin_transmission", have.count(glass(true, false)), "smooth thin sheet", "",
+    t.add("rough_refraction", have.count(glass(LobeKind::RoughRefraction, false, true)),
+          "rough solid", " of glass", none);
+    t.add("smooth_refraction", have.count(glass(LobeKind::SmoothRefraction, false, false)),
+          "smooth solid", " of glass", none);
+    t.add("rough_thin_transmission", have.count(glass(LobeKind::RoughThinTransmission, true, true)),
+          "rough thin sheet", "", "no rough thin sheet");
+    t.add("smooth_thin_transmission",
+          have.count(glass(LobeKind::SmoothThinTransmission, true, false)), "smooth thin sheet", "",
           "no smooth thin sheet");
     t.add("attenuation", have.count([](const Material& m) { return !isBlack(m.absorption); }),
           "coloured solid", " of glass", "no solid of glass with an attenuation colour");

@@ -81,21 +81,34 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     tintLoss_ = (Rgb(brightest) - coat) * (1.0f / (1.0f - brightest));
     alpha_ = alphaOf(parameters.roughness);
 
+    const LobeSet& without = parameters.without;
+    const auto reflects = [&](float alpha) {
+        return !without.has(alpha > 0.0f ? LobeKind::Glossy : LobeKind::Mirror);
+    };
+    if (!reflects(clearcoatAlpha_)) clearcoat_ = clearcoatAlpha_ = 0.0f;
+    if (!reflects(alpha_)) specular_ = 0.0f;
+
     unsigned flags = 0;
     const bool coated = specular_ > 0.0f && coatIor_ > 1.0f;
     if (plastic_ > 0.0f) {
-        flags |= lacuna::isBlack(baseColor_) ? 0u : unsigned(kDiffuse);
+        const bool diffuse = !lacuna::isBlack(baseColor_) && !without.has(LobeKind::Diffuse);
+        flags |= diffuse ? unsigned(kDiffuse) : 0u;
         flags |= coated ? unsigned(kCoat) : 0u;
     }
-    if (metal_ > 0.0f) {
+    if (metal_ > 0.0f && reflects(alpha_)) {
         flags |= kMetal;
     }
-    if (transmission > 0.0f && glass() > 0.0f && !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
+    const bool thin = parameters.thin;
+    const bool roughGlass =
+        alpha_ > 0.0f && (thin || alpha_ * (ior_ - 1.0f) >= kMinRefractionSpread);
+    const LobeKind glassKind =
+        thin ? (roughGlass ? LobeKind::RoughThinTransmission : LobeKind::SmoothThinTransmission)
+             : (roughGlass ? LobeKind::RoughRefraction : LobeKind::SmoothRefraction);
+    if (transmission > 0.0f && glass() > 0.0f && !without.has(glassKind) &&
+        !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
         flags |= kGlass;
-        flags |= parameters.thin ? unsigned(kThin) : 0u;
-        if (alpha_ > 0.0f && (parameters.thin || alpha_ * (ior_ - 1.0f) >= kMinRefractionSpread)) {
-            flags |= kRoughGlass;
-        }
+        flags |= thin ? unsigned(kThin) : 0u;
+        flags |= roughGlass ? unsigned(kRoughGlass) : 0u;
     }
     if ((flags & kLayers) != 0 && alpha_ > 0.0f) {
         flags |= kRoughLayers;

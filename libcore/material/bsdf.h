@@ -30,6 +30,7 @@
 #include <optional>
 
 #include "libcore/base/vec.h"
+#include "libcore/material/lobes.h"
 
 namespace lacuna {
 
@@ -84,6 +85,9 @@ class Bsdf {
         bool thin = true;
         float clearcoat = 0.0f;  ///< weight of a layer of index kClearcoatIor over everything else
         float clearcoatRoughness = 0.0f;
+        /// Lobes that are not there: a layer leaves its light to what is under it, the others'
+        /// light is absorbed.
+        LobeSet without = {};
     };
     static constexpr float kClearcoatIor = 1.5f;  // KHR_materials_clearcoat
 

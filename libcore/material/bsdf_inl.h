@@ -52,7 +52,9 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     } else if (has(kCoat)) {
         c.open = 1.0f - specular_ * fresnelDielectric(mu, coatIor_);
     }
-    c.diffuse = plastic_ * mean(baseColor_) * c.open;
+    if (has(kDiffuse)) {
+        c.diffuse = plastic_ * mean(baseColor_) * c.open;
+    }
     if (has(kCoat)) {
         c.layers = plastic_ * (1.0f - c.open);
     }

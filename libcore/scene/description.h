@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcore/base/vec.h"
+#include "libcore/material/lobes.h"
 
 namespace lacuna {
 
@@ -68,6 +69,7 @@ struct Material {
     bool doubleSided = false;        ///< emission from both sides (geometry is never culled)
     Alpha alphaMode = Alpha::Opaque;
     float alphaCutoff = 0.5f;
+    LobeSet without;  ///< lobes to leave out, whatever the rest says
 };
 
 /// One glTF primitive: triangles only (strips and fans are unrolled), in the mesh's own

@@ -534,6 +534,7 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv, Vec2 uv1) con
     p.thin = m.thin;
     p.clearcoat = m.clearcoat;
     p.clearcoatRoughness = m.clearcoatRoughness;
+    p.without = m.without;
     if (m.baseColorTexture) {
         p.baseColor *= sample(m.baseColorTexture, uv, uv1).rgb;
     }

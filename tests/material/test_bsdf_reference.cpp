@@ -357,5 +357,91 @@ TEST(BsdfReference, SurvivalAlbedoBoundsTheMeanAlbedo) {
     }
 }
 
+/// Two materials that must be one and the same.
+void expectSame(const Bsdf::Parameters& a, const Bsdf::Parameters& b, const std::string& what) {
+    SCOPED_TRACE(what);
+    const Bsdf x(a, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+    const Bsdf y(b, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+    EXPECT_EQ(x.connectable(), y.connectable());
+    EXPECT_EQ(x.isBlack(), y.isBlack());
+    Random random(31);
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 e(randomDirection(random)), l(randomDirection(random));
+        const BsdfEvaluation p = x.evaluate(e, l), q = y.evaluate(e, l);
+        ASSERT_EQ(p.f, q.f);
+        ASSERT_EQ(p.pdfWToEye, q.pdfWToEye);
+        ASSERT_EQ(p.pdfWToLight, q.pdfWToLight);
+        const auto s = x.sample(Side::Eye, e, random.next(), random.next(), random.next());
+        ASSERT_FALSE(s && x.isBlack());
+    }
+}
+
+TEST(BsdfReference, LobesLeftOutAreNotThere) {
+    using Parameters = Bsdf::Parameters;
+    const auto without = [](Parameters p, LobeKind kind) {
+        p.without.add(kind);
+        return p;
+    };
+    const Rgb red(0.9f, 0.3f, 0.1f);
+    Parameters plastic = makeParameters(red, 0, 0);
+    plastic.roughness = 0.5f;
+    Parameters lambert = plastic;
+    lambert.specular = 0.0f;
+    expectSame(without(plastic, LobeKind::Glossy), lambert, "plastic without its coat");
+    expectSame(without(plastic, LobeKind::Mirror), plastic, "rough plastic without mirrors");
+    Parameters coat = plastic;
+    coat.baseColor = Rgb(0.0f);
+    expectSame(without(plastic, LobeKind::Diffuse), coat, "plastic without its base");
+    plastic.roughness = lambert.roughness = 0.0f;
+    expectSame(without(plastic, LobeKind::Mirror), lambert, "smooth plastic without its coat");
+
+    Parameters clear = clearcoated(plastic, 1, 0.4f);
+    expectSame(without(clear, LobeKind::Glossy), plastic, "plastic without its rough clearcoat");
+    clear.clearcoatRoughness = 0.0f;
+    expectSame(without(clear, LobeKind::Mirror), lambert, "without both smooth layers");
+
+    const Parameters black = makeParameters(Rgb(0.0f), 0, 0, 0);
+    for (const bool thin : {false, true}) {
+        for (const float roughness : {0.0f, 0.5f}) {
+            Parameters glass = makeParameters(red, 0, 1, 1, 1.5f, thin);
+            glass.roughness = roughness;
+            const LobeKind kind = roughness > 0.0f ? thin ? LobeKind::RoughThinTransmission
+                                                          : LobeKind::RoughRefraction
+                                  : thin           ? LobeKind::SmoothThinTransmission
+                                                   : LobeKind::SmoothRefraction;
+            expectSame(without(glass, kind), black, "no glass");
+        }
+    }
+    Parameters metal = makeParameters(red, 1, 0);
+    metal.roughness = 0.3f;
+    expectSame(without(metal, LobeKind::Glossy), black, "no metal");
+}
+
+TEST(BsdfReference, WhatIsLeftOfAMixtureIsItsOtherPart) {
+    // Half plastic, half metal: the metal's share is absorbed, the plastic keeps its own.
+    Bsdf::Parameters mixed = makeParameters(Rgb(0.8f, 0.4f, 0.2f), 0.5f, 0, 0);
+    mixed.roughness = 0.5f;
+    mixed.without.add(LobeKind::Glossy);
+    const Bsdf half(mixed, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+    Random random(32);
+    for (int i = 0; i < 200; ++i) {
+        const BsdfEvaluation e =
+            half.evaluate(Vec3(randomAbove(random)), Vec3(randomAbove(random)));
+        EXPECT_NEAR(e.f.r, 0.5 * 0.8 / std::numbers::pi, 1e-6);
+        EXPECT_NEAR(e.f.b, 0.5 * 0.2 / std::numbers::pi, 1e-6);
+    }
+    // Coat, base and glass without the base: only lobes that are there are chosen.
+    Bsdf::Parameters all = makeParameters(Rgb(0.8f), 0, 0.5f);
+    all.roughness = 0.5f;
+    all.without.add(LobeKind::Diffuse);
+    const Bsdf shiny(all, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+    for (int i = 0; i < 2000; ++i) {
+        const auto s = shiny.sample(Side::Eye, Vec3(randomAbove(random)), random.next(),
+                                    random.next(), random.next());
+        if (!s) continue;
+        EXPECT_GT(maxComponent(s->evaluation.f), 0.0f);
+    }
+}
+
 }  // namespace
 }  // namespace lacuna::test
