@@ -4,91 +4,10 @@
 #include <regex>
 #include <set>
 
-#include "tests/gltf/gltf_builder.h"
+#include "tests/gltf/everything.h"
 
 namespace lacuna::test {
 namespace {
-
-/// A scene that uses everything the reader knows.
-GltfBuilder everything() {
-    GltfBuilder b;
-    const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1}, "VEC3");
-    const int normals =
-        b.accessor<std::int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127, 0, 0, 127}, "VEC3", true);
-    const int uvs =
-        b.accessor<std::uint16_t>({0, 0, 65535, 0, 0, 65535, 65535, 65535}, "VEC2", true);
-    const int indices = b.accessor<std::uint16_t>({0, 1, 2, 2, 1, 3}, "SCALAR");
-    b.root["accessors"][0]["sparse"] = {
-        {"count", 1},
-        {"indices", {{"bufferView", b.view(bytesOf<std::uint16_t>({3}))}, {"componentType", 5123}}},
-        {"values", {{"bufferView", b.view(bytesOf<float>({2, 2, 2}))}}}};
-    const int texture =
-        b.texture(png(2, 2, ByteVector(16, 99)), {{"wrapS", 33071}, {"wrapT", 10497}});
-    const json info = {{"index", texture}, {"texCoord", 0}};
-    b.add("materials", {{"name", "all"},
-                        {"alphaMode", "MASK"},
-                        {"alphaCutoff", 0.5},
-                        {"doubleSided", true},
-                        {"emissiveFactor", {1, 0.5, 0.25}},
-                        {"emissiveTexture", info},
-                        {"normalTexture", info},
-                        {"occlusionTexture", info},
-                        {"pbrMetallicRoughness",
-                         {{"baseColorFactor", {0.5, 0.5, 0.5, 1}},
-                          {"metallicFactor", 0.5},
-                          {"roughnessFactor", 0.5},
-                          {"baseColorTexture", info},
-                          {"metallicRoughnessTexture", info}}},
-                        {"extensions",
-                         {{"KHR_materials_ior", {{"ior", 1.5}}},
-                          {"KHR_materials_emissive_strength", {{"emissiveStrength", 7.0}}},
-                          {"KHR_materials_specular",
-                           {{"specularFactor", 0.5}, {"specularColorFactor", {1, 1, 1}}}},
-                          {"KHR_materials_transmission",
-                           {{"transmissionFactor", 0.5}, {"transmissionTexture", info}}},
-                          {"KHR_materials_volume",
-                           {{"thicknessFactor", 1},
-                            {"attenuationDistance", 3},
-                            {"attenuationColor", {1, 0.5, 1}}}}}}});
-    const json attributes = {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}};
-    b.mesh({{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}});
-    b.root["meshes"][0]["primitives"].push_back({{"attributes", attributes}, {"mode", 5}});
-    b.add("cameras", {{"type", "perspective"},
-                      {"perspective", {{"yfov", 0.8}, {"aspectRatio", 1.5}, {"znear", 0.1}}}});
-    b.root["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "spot"},
-         {"color", {1, 1, 0.5}},
-         {"intensity", 10},
-         {"range", 100},
-         {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}}};
-    b.root["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior"};
-    b.root["extensionsRequired"] = {"KHR_lights_punctual"};
-    b.root["scene"] = 0;
-    b.rootNode({{"name", "root"}, {"children", {1, 2}}, {"scale", {1, 2, 3}}});
-    b.add("nodes", {{"mesh", 0}, {"rotation", {0, 0, 0, 1}}, {"translation", {1, 2, 3}}});
-    b.add("nodes", {{"camera", 0},
-                    {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1}},
-                    {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-    b.extras() = {
-        {"lacuna",
-         {{"width", 64}, {"height", 48}, {"max_depth", 8}, {"aperture", 0.5}, {"focus", 2}}},
-        {"author", {{"name", "x"}}}};
-    return b;
-}
-
-/// Loads `bytes`; true if they were accepted. Fails the test unless they were refused properly or
-/// gave a valid description.
-bool loadsOrIsRefused(const TempDir& dir, const ByteVector& bytes) {
-    try {
-        expectValid(loadGltf(dir.write("scene.glb", bytes)));
-        return true;
-    } catch (const InputError& error) {
-        const std::string line = error.what();
-        EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-        EXPECT_NE(line.find("expected "), std::string::npos) << line;
-        return false;
-    }
-}
 
 TEST(Malformed, TheIntactSceneLoads) {
     const SceneDescription scene = everything().load();
