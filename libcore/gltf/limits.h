@@ -14,8 +14,8 @@ struct Limits {
     static constexpr std::uint64_t kJsonBytes = 1ull << 30;
     static constexpr std::uint64_t kTotalBytes = 1ull << 34;  ///< scene file and all external files
     static constexpr int kJsonDepth = 64;                     ///< glTF itself needs about 8
-    static constexpr std::size_t kZeroElements = 1u << 24;    ///< accessor without a buffer view
-    static constexpr std::size_t kTriangles = 1u << 28;       ///< before instancing
+    static constexpr std::size_t kZeroElements = 1u << 24;  ///< read without a buffer view, in all
+    static constexpr std::size_t kTriangles = 1u << 28;     ///< before instancing
     static constexpr std::size_t kInstances = 1u << 25;
     static constexpr int kImageSide = 1 << 16;
     static constexpr std::uint64_t kImageTexels = 1ull << 28;

@@ -211,10 +211,23 @@ void readPrimitive(const Document& document, Task& task) {
     repairNormals(task);
 }
 
+/// Elements that a primitive has read although no bytes of the file stand behind them.
+std::size_t zeroElements(const Document& document, const tinygltf::Primitive& primitive) {
+    std::size_t sum = 0;
+    const auto add = [&](int index) {
+        const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
+        // Far above the limit is enough: sums must not overflow.
+        if (accessor.bufferView < 0) sum += std::min(accessor.count, Limits::kZeroElements + 1);
+    };
+    if (primitive.indices >= 0) add(primitive.indices);
+    for (const auto& [name, index] : primitive.attributes) add(index);
+    return sum;
+}
+
 /// One task per primitive of the used meshes that has triangles; refuses too many in all.
 std::vector<Task> planTasks(const Document& document, const std::vector<bool>& used) {
     std::vector<Task> tasks;
-    std::size_t triangles = 0;
+    std::size_t triangles = 0, zeros = 0;
     for (std::size_t m = 0; m < document.model.meshes.size(); ++m) {
         if (!used[m]) continue;
         for (std::size_t p = 0; p < document.model.meshes[m].primitives.size(); ++p) {
@@ -241,6 +254,13 @@ std::vector<Task> planTasks(const Document& document, const std::vector<bool>& u
                            "more", "simplify the scene");
                 }
                 triangles += more;
+                zeros += zeroElements(document, primitive);
+                if (zeros > Limits::kZeroElements) {
+                    refuse(document.file, task.place(),
+                           "at most " + std::to_string(Limits::kZeroElements) +
+                               " elements without a buffer view in all",
+                           "more");
+                }
             }
             tasks.push_back(std::move(task));
         }
