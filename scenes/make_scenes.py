@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Writes Lacuna's own scenes (.glb) and their sky (.hdr) beside this file; Python's standard library only.
 
+The one scene that Blender exports is made by make_blender_scene.py; it is only checked here.
+
   python3 scenes/make_scenes.py            writes all files, after checking each
   python3 scenes/make_scenes.py --check    compares with the files that are there; exit 1 where they differ
   python3 scenes/make_scenes.py --table    prints the table of sizes for README.md
@@ -21,6 +23,7 @@ from generator import pictures, scenes_interior, scenes_large, scenes_small, val
 
 HERE = Path(__file__).resolve().parent
 TOTAL_LIMIT = 2_000_000  # bytes; the files are kept in the repository
+EXPORTED = ("blender-still-life.glb",)  # by make_blender_scene.py: checked as they are, not made here
 
 
 def make_sky() -> bytes:
@@ -36,6 +39,8 @@ def make_files() -> dict[str, bytes]:
         for build in module.SCENES:
             scene = build()
             files[f"{scene.name}.glb"] = scene.glb()
+    for name in EXPORTED:
+        files[name] = (HERE / name).read_bytes()
     return files
 
 

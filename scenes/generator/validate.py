@@ -8,7 +8,7 @@ from typing import Any, Iterator
 
 from .vector import cross, dot, length, sub
 
-COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 FORMATS = {5126: "f", 5123: "H"}
 
 
@@ -127,7 +127,7 @@ def _extensions(glb: Glb) -> Iterator[str]:
                 visit(v)
 
     visit(glb.json)
-    if sorted(found) != glb.json.get("extensionsUsed", []):
+    if sorted(found) != sorted(glb.json.get("extensionsUsed", [])):
         yield f"extensionsUsed is {glb.json.get('extensionsUsed')}, found {sorted(found)}"
 
 
