@@ -71,10 +71,16 @@ CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::ui
     settings.crop = {0, film.width, 0, film.height};
     BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
 
+    // Only ratios of contributions matter here: in the lights' own unit no sum of them overflows.
+    const double unit = scene.lights().unit();
+    const auto inLightUnit = [unit](const Rgb& c) {
+        return Rgb(float(double(c.r) / unit), float(double(c.g) / unit), float(double(c.b) / unit));
+    };
     std::vector<Worker> workers(std::size_t(pool.threads()));
     integrator.setObserver([&](const PathEvent& event) {
         Worker& w = workers[std::size_t(pool.workerIndex())];
-        w.paths.add(event.path, event.techniques, cells, mean(event.contribution), event.pixel);
+        w.paths.add(event.path, event.techniques, cells, mean(inLightUnit(event.contribution)),
+                    event.pixel);
         if (w.paths.size() > w.samples.size()) w.samples.push_back(event.sample);
     });
 
@@ -87,7 +93,7 @@ CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::ui
         if (!integrator.render(kTrainingIteration + std::uint32_t(n), pixels, cancel, statistics)) {
             throw Error(130, "interrupted: nothing was written");
         }
-        for (std::size_t p = 0; p < pixels.size(); ++p) sum[p] += pixels[p];
+        for (std::size_t p = 0; p < pixels.size(); ++p) sum[p] += inLightUnit(pixels[p]);
 
         // In the order of samples, whatever the threads.
         std::vector<Found> found;

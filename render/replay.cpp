@@ -82,9 +82,11 @@ class Printer {
                     unsigned(v.index), nameOf(v.kind), v.infinite() ? "towards" : "at", p.x, p.y,
                     p.z, double(v.ng.x), double(v.ng.y), double(v.ng.z), nameOf(v.event));
         if (v.light != kNone) std::printf(", light %u", v.light);
+        const Rgb throughput =
+            letter == 'y' ? walker_.scene().lights().inFileUnits(v.throughput) : v.throughput;
         std::printf(", pdfA %.9g, reverse pdfA %.9g, survival %.6g, throughput %.9g %.9g %.9g\n",
-                    double(v.pdfA), double(v.pdfReverseA), double(v.survival),
-                    double(v.throughput.r), double(v.throughput.g), double(v.throughput.b));
+                    double(v.pdfA), double(v.pdfReverseA), double(v.survival), double(throughput.r),
+                    double(throughput.g), double(throughput.b));
     }
 
     /// A vertex of a closed path with the densities that its weight is made from.

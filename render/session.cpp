@@ -306,7 +306,7 @@ void Session::warnAboutDefects() {
     const IterationStatistics& s = report_.statistics;
     if (s.invalidSamples > 0) {
         progress_.warning("warning: " + std::to_string(s.invalidSamples) +
-                          " samples were not finite and left out; see one with: " +
+                          " samples were not finite, or their sums, and left out; see one with: " +
                           replayCommand(s.invalidReplays.at(0)));
     }
     if (report_.verify && !(report_.verify->maxDifference <= kVerifyTolerance)) {

@@ -45,7 +45,7 @@ GROUPS = [
         Case("huge-light", "a lamp a million times the scene", "the radiance under an endless one"),
         Case("light-near-surface", "a lamp 1e-4 off a surface", "radiance by form factor; nothing leaks from the gap"),
         Case("thin-gap", "light through a gap of a thousandth", "the gap's form factor"),
-        Case("intensities", "radiances from 1e-20 to 1e20", "the furnace's mean, in proportion"),
+        Case("intensities", "radiances from 1e-30 to 1e37", "the furnace's mean, in proportion"),
         Case("saturated-colours", "blue light on a red wall", "black"),
         Case("no-light", "no lamp, lamps that are shut in, without power, without area", "black"),
         Case("emission-side", "lamps mirrored by a negative scale", "light on the side of their winding alone"),

@@ -3,24 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "libcore/base/parallel.h"
 
 namespace lacuna {
 
-void addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
-               const ThreadPool& pool) {
+std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
+                        const ThreadPool& pool) {
     // Each band of pixels walks all lists in order: which band a pixel is in changes nothing.
     const std::size_t bands = std::size_t(pool.threads());
+    std::vector<std::uint64_t> leftOut(bands, 0);
     pool.forEach(bands, [&](std::size_t band) {
         const auto low = std::uint32_t(pixels.size() * band / bands);
         const auto high = std::uint32_t(pixels.size() * (band + 1) / bands);
         for (const std::vector<Splat>& chunk : chunks) {
             for (const Splat& s : chunk) {
-                if (s.pixel >= low && s.pixel < high) pixels[s.pixel] += s.value;
+                if (s.pixel < low || s.pixel >= high) continue;
+                const Rgb sum = pixels[s.pixel] + s.value;
+                if (isFinite(sum)) {
+                    pixels[s.pixel] = sum;
+                } else {
+                    ++leftOut[band];
+                }
             }
         }
     });
+    return std::accumulate(leftOut.begin(), leftOut.end(), std::uint64_t(0));
 }
 
 Film::Film(int width, int height)

@@ -29,9 +29,10 @@ struct Splat {
 };
 
 /// Adds the lists of splats in order: chunk by chunk, each in its own order, so that sums are the
-/// same to the last bit for any number of threads (numerics.md 26).
-void addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
-               const ThreadPool& pool);
+/// same to the last bit for any number of threads (numerics.md 26). Returns how many were left out
+/// because their pixel's sum would not have been finite.
+std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
+                        const ThreadPool& pool);
 
 /// Sums over iterations, in double: the mean picture and the variance of that mean, from iterations
 /// as independent samples.

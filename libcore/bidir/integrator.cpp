@@ -22,6 +22,8 @@ struct TechniqueSplat {
 /// What one task leaves behind; merged in the order of tasks.
 struct BidirIntegrator::Chunk {
     std::vector<Splat> splats;
+    std::vector<std::uint64_t> splatPaths;  // by splat: its light subpath
+    std::uint32_t iteration = 0;
     std::vector<TechniqueSplat> techniqueSplats;
     std::vector<PathVertex> vertices;  // of the subpaths that go into the pool
     RayTally tally;
@@ -29,6 +31,13 @@ struct BidirIntegrator::Chunk {
     std::uint64_t invalidSamples = 0;
     std::vector<std::string> invalidReplays;
 };
+
+namespace {
+/// What --replay takes for a light subpath.
+std::string lightReplay(std::uint64_t path, std::uint32_t iteration) {
+    return "light:" + std::to_string(path) + "," + std::to_string(iteration);
+}
+}  // namespace
 
 /// Scratch memory of one thread.
 struct BidirIntegrator::Worker {
@@ -268,18 +277,20 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
                               std::uint32_t pixelIndex, Rgb* ownPixel, Worker& worker,
                               Chunk& chunk) {
     const double weight = misWeight(worker.path, techniques_, closed.t);
-    const Rgb unweighted = closed.contribution * float(scale);
-    const Rgb value = unweighted * float(weight);
+    const Rgb scaled = closed.contribution * float(scale);
+    const Rgb value = scene_.lights().inFileUnits(scaled * float(weight));
     if (observer_) {
         observer_({worker.path, closed.t, weight, value, pixelIndex, proposal, techniques_,
                    iteration, sample});
     }
-    if (!isFinite(value)) {
+    // Values that are finite may add up to more than a float holds.
+    const Rgb sum = ownPixel ? *ownPixel + value : value;
+    if (!isFinite(sum)) {
         ++chunk.invalidSamples;
         if (chunk.invalidReplays.size() < kReplaysKept) {
             const int width = camera_.film().width;
             chunk.invalidReplays.push_back(
-                closed.t == 1 ? "light:" + std::to_string(sample) + "," + std::to_string(iteration)
+                closed.t == 1 ? lightReplay(sample, iteration)
                               : std::to_string(sample % std::uint64_t(width)) + "," +
                                     std::to_string(sample / std::uint64_t(width)) + "," +
                                     std::to_string(iteration));
@@ -287,11 +298,14 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
         return;
     }
     const int s = worker.path.edges + 1 - closed.t;
+    const Rgb unweighted = techniqueFilm_ ? scene_.lights().inFileUnits(scaled) : Rgb{};
     if (ownPixel) {
-        *ownPixel += value;
+        *ownPixel = sum;
         if (techniqueFilm_) techniqueFilm_->add(s, closed.t, pixelIndex, value, unweighted);
     } else {
         chunk.splats.push_back({pixelIndex, value});
+        chunk.splatPaths.push_back(sample);
+        chunk.iteration = iteration;
         if (techniqueFilm_) {
             chunk.techniqueSplats.push_back({s, {pixelIndex, value}, unweighted});
         }
@@ -314,7 +328,18 @@ void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& s
         recorded_.insert(recorded_.end(), chunk.rays.begin(), chunk.rays.end());
         splats.push_back(std::move(chunk.splats));
     }
-    if (!pixels_.empty()) addSplats(splats, pixels_, threads_);
+    if (pixels_.empty()) return;
+    const std::uint64_t leftOut = addSplats(splats, pixels_, threads_);
+    statistics.invalidSamples += leftOut;
+    // Those to name are part of a sum that is too large: they do not fit on top of what there is.
+    for (std::size_t c = 0; leftOut > 0 && c < chunks.size(); ++c) {
+        for (std::size_t i = 0; i < splats[c].size(); ++i) {
+            if (statistics.invalidReplays.size() == kReplaysKept) return;
+            if (isFinite(pixels_[splats[c][i].pixel] + splats[c][i].value)) continue;
+            statistics.invalidReplays.push_back(
+                lightReplay(chunks[c].splatPaths[i], chunks[c].iteration));
+        }
+    }
 }
 
 BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t iteration, int x, int y,

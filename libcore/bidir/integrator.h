@@ -29,7 +29,7 @@ struct PathEvent {
     FullPath& path;
     int t;
     double weight;             ///< MIS
-    Rgb contribution;          ///< as it enters the pixel: weights and 1/L included
+    Rgb contribution;          ///< as it enters the pixel: weights, 1/L, the lights' unit included
     std::uint32_t pixel;       ///< row-major in the crop
     const Proposal* proposal;  ///< connections only
     const Techniques& techniques;

@@ -1,7 +1,9 @@
 #include "libcore/scene/light.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <numeric>
 
 #include "libcore/base/sampling.h"
 #include "libcore/scene/texture.h"
@@ -10,6 +12,14 @@
 namespace lacuna {
 
 namespace {
+constexpr int kRoom = 64;  // binary orders of power that products of throughputs may go up or down
+
+/// Mean of the channels of a product that a float need not hold.
+double meanOf(const Rgb& a, const Rgb& b = Rgb(1.0f)) {
+    return (double(a.r) * double(b.r) + double(a.g) * double(b.g) + double(a.b) * double(b.b)) /
+           3.0;
+}
+
 double triangleArea(const EmissiveTriangle& t) {
     const Vec3d a(t.corners[0]);
     return 0.5 * length(cross(Vec3d(t.corners[1]) - a, Vec3d(t.corners[2]) - a));
@@ -66,47 +76,62 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
       punctual_(punctual.begin(), punctual.end()),
       environment_(environment),
       diskRadius_(sceneRadius > 0.0f ? sceneRadius * 1.0001f : 1.0f) {
-    std::vector<double> power;
-    const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
     for (const EmissiveTriangle& t : triangles_) {
-        const double a = triangleArea(t);
         triangleNormal_.push_back(triangleNormal(t.corners[0], t.corners[1], t.corners[2]));
         kinds_.push_back(LightKind::Area);
-        power.push_back(double(mean(t.radiance * meanTexture(t))) * a * std::numbers::pi *
-                        (t.twoSided ? 2.0 : 1.0));
     }
     for (const PunctualLight& l : punctual_) {
         punctualPosition_.push_back(Vec3(l.position - offset));
         punctualDirection_.push_back(Vec3(normalize(l.direction)));
-        const double intensity = mean(l.intensity);
-        switch (l.kind) {
-            case PunctualLight::Kind::Point:
-                kinds_.push_back(LightKind::Point);
-                power.push_back(intensity * 4.0 * std::numbers::pi);
-                break;
-            case PunctualLight::Kind::Spot:
-                kinds_.push_back(LightKind::Spot);
-                power.push_back(intensity * spotSolidAngle(l));
-                break;
-            case PunctualLight::Kind::Directional:
-                kinds_.push_back(LightKind::Directional);
-                power.push_back(intensity * disk);
-                break;
-        }
+        kinds_.push_back(l.kind == PunctualLight::Kind::Point  ? LightKind::Point
+                         : l.kind == PunctualLight::Kind::Spot ? LightKind::Spot
+                                                               : LightKind::Directional);
     }
     if (environment_) {
         environmentIndex_ = std::uint32_t(kinds_.size());
         kinds_.push_back(LightKind::Environment);
-        power.push_back(environment_->black() ? 0.0
-                                              : double(mean(environment_->integral())) * disk);
     }
+    const std::vector<double> power = powers();
     selection_ = DiscreteDistribution(power);
+    chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
         // A triangle without area is never picked; a ray may still run into what rounding left of
         // it.
         const double area = triangleArea(triangles_[i]);
         trianglePdfA_.push_back(area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f);
     }
+}
+
+/// In W, by light.
+std::vector<double> Lights::powers() const {
+    std::vector<double> power;
+    const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
+    for (const EmissiveTriangle& t : triangles_) {
+        power.push_back(meanOf(t.radiance, meanTexture(t)) * triangleArea(t) * std::numbers::pi *
+                        (t.twoSided ? 2.0 : 1.0));
+    }
+    for (const PunctualLight& l : punctual_) {
+        power.push_back(meanOf(l.intensity) *
+                        (l.kind == PunctualLight::Kind::Point  ? 4.0 * std::numbers::pi
+                         : l.kind == PunctualLight::Kind::Spot ? spotSolidAngle(l)
+                                                               : disk));
+    }
+    if (environment_) {
+        power.push_back(environment_->black() ? 0.0 : meanOf(environment_->integral()) * disk);
+    }
+    return power;
+}
+
+void Lights::chooseUnit(double power) {
+    if (!(power > 0.0) || std::abs(std::ilogb(power)) <= kRoom) return;
+    unit_ = std::ldexp(1.0, std::ilogb(power));
+    for (EmissiveTriangle& t : triangles_) t.radiance = scaled(t.radiance, 1.0 / unit_);
+    for (PunctualLight& l : punctual_) l.intensity = scaled(l.intensity, 1.0 / unit_);
+}
+
+Rgb Lights::skyExitance(Vec3 direction) const {
+    const Rgb radiance = environment_->radiance(direction);
+    return unit_ == 1.0 ? radiance : scaled(radiance, 1.0 / unit_);
 }
 
 Rgb Lights::triangleRadiance(const EmissiveTriangle& t, Vec2 b) const {
@@ -134,7 +159,7 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
     p.kind = LightKind::Environment;
     p.position = direction;
     p.pdf = float(selection_.pmf(environmentIndex_)) * environment_->pdfW(direction);
-    p.exitance = environment_->radiance(direction);
+    p.exitance = skyExitance(direction);
     return p;
 }
 
@@ -157,7 +182,7 @@ LightPoint Lights::samplePoint(Rng& rng) const {
             p.kind = LightKind::Environment;
             p.position = s.direction;
             p.pdf = float(pick.pmf) * s.pdfW;
-            p.exitance = environment_->radiance(s.direction);
+            p.exitance = skyExitance(s.direction);
             return p;
         }
         default:

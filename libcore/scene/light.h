@@ -9,6 +9,10 @@
 // `beta` of y_0 is its (spatial) exitance over that density; the emission profile
 // f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's density
 // is that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
+//
+// Exitances are in units of unit(), which is 1 for all but extreme scenes: what a path carries is
+// the power of the lights times densities, and lights of 1e37 W/m^2 leave a float no room for that.
+// A contribution goes back into the file's units at the very end, by inFileUnits().
 #pragma once
 
 #include <cstdint>
@@ -45,7 +49,8 @@ struct LightPoint {
     Vec3 ng;        ///< area lights: the emitting side
     Vec2 uv;        ///< barycentric (area lights)
     float pdf = 0;  ///< in the light's own measure, see above; includes the selection pmf
-    Rgb exitance;   ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr)
+    Rgb exitance;   ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr); per
+                    ///< Lights::unit()
 };
 
 inline bool isInfinite(LightKind k) {
@@ -73,6 +78,11 @@ class Lights {
     std::uint32_t environmentIndex() const { return environmentIndex_; }
     /// Probability of picking this light (proportional to its power).
     double pmf(std::uint32_t light) const { return selection_.pmf(light); }
+    /// What exitances are divided by: a power of two, so that nothing is rounded; 1 where the power
+    /// of all lights together is within 2^64 and 2^-64 W.
+    double unit() const { return unit_; }
+    /// A product of an exitance and anything else.
+    Rgb inFileUnits(const Rgb& c) const { return scaled(c, unit_); }
 
     /// Draws y_0. Not to be called when empty().
     LightPoint samplePoint(Rng& rng) const;
@@ -108,6 +118,13 @@ class Lights {
     float diskRadius() const { return diskRadius_; }
 
   private:
+    /// The unit itself may be beyond a float.
+    static Rgb scaled(const Rgb& c, double s) {
+        return {float(double(c.r) * s), float(double(c.g) * s), float(double(c.b) * s)};
+    }
+    std::vector<double> powers() const;
+    void chooseUnit(double power);
+    Rgb skyExitance(Vec3 direction) const;
     Rgb triangleRadiance(const EmissiveTriangle& t, Vec2 barycentric) const;
     Emission spotEmission(const PunctualLight& light, Vec3 direction) const;
 
@@ -121,6 +138,7 @@ class Lights {
     std::uint32_t environmentIndex_ = kNone;  // the last one
     DiscreteDistribution selection_;
     float diskRadius_;
+    double unit_ = 1.0;
 };
 
 }  // namespace lacuna

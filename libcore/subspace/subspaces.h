@@ -22,7 +22,7 @@ struct Subspaces {
     DecisionTree lightTree, eyeTree;
     std::uint32_t lightCount = 1, eyeCount = 1;
     /// Q(i) = (1/M') sum of mean(beta) over the vertices in i of M' light subpaths [Su22 eq 19];
-    /// empty: not measured.
+    /// empty: not measured. In the lights' unit (Lights::unit), as beta is.
     std::vector<double> q;
     /// Vertices in i per light subpath, measured with Q; as many as of Q.
     std::vector<double> population;

@@ -2,6 +2,8 @@
 // this file.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <vector>
 
@@ -114,6 +116,45 @@ TEST(LightSelection, NothingToPick) {
     const LightPoint sky = lights.environmentPoint({0, 1, 0});
     EXPECT_EQ(sky.pdf, 0.0f);
     EXPECT_TRUE(isBlack(sky.exitance));
+}
+
+/// Exitances of lights that are too bright or too dark for a float's room come in another unit: the
+/// same numbers, for powers of two. Ordinary ones are what the file says.
+TEST(LightUnit, KeepsThePowerNearOne) {
+    struct Found {
+        double unit;
+        std::vector<Rgb> exitance;
+    };
+    const auto found = [](float brightness) {
+        Image sky(4, 2);
+        for (Rgb& c : sky.pixels) c = Rgb(2, 3, 4) * brightness;
+        const Environment environment(sky, 1, 0, "sky");
+        const std::vector<PunctualLight> punctual{pointLight({}, Rgb(0.5f * brightness))};
+        const Lights lights({emissive({}, {1, 0, 0}, {0, 1, 0}, Rgb(5, 6, 7) * brightness)},
+                            punctual, {}, &environment, 1.0f);
+        Found f{lights.unit(), {lights.environmentPoint({0, 1, 0}).exitance}};
+        for (unsigned i = 0; i < 50; ++i) {
+            Rng rng(4, 0, StreamKind::User, i);
+            f.exitance.push_back(lights.samplePoint(rng).exitance);
+        }
+        return f;
+    };
+    const Found one = found(1);
+    EXPECT_EQ(one.unit, 1.0);
+    EXPECT_EQ(one.exitance[0], Rgb(2, 3, 4));
+    for (const int exponent : {-100, -80, -50, 50, 80, 100, 120}) {
+        const Found f = found(std::ldexp(1.0f, exponent));
+        EXPECT_EQ(f.unit == 1.0, std::abs(exponent) == 50) << exponent;
+        for (std::size_t i = 0; i < f.exitance.size(); ++i) {
+            const Rgb& c = f.exitance[i];
+            const double inFile = std::ldexp(f.unit, -exponent);
+            EXPECT_EQ(double(c.r) * inFile, double(one.exitance[i].r)) << exponent;
+            EXPECT_EQ(double(c.b) * inFile, double(one.exitance[i].b)) << exponent;
+            if (f.unit == 1.0) continue;
+            EXPECT_LT(c.r, 100.0f) << exponent;
+            EXPECT_GT(c.r, 0.001f) << exponent;
+        }
+    }
 }
 
 TEST(AreaLight, PointsAgainstDensity) {

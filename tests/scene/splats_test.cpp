@@ -35,10 +35,24 @@ TEST(AddSplats, SameBitsForAnyNumberOfThreads) {
         }
         for (const int threads : {1, 2, 7}) {
             std::vector<Rgb> image(pixels, Rgb(0.25f));
-            addSplats(chunks, image, ThreadPool(threads));
+            EXPECT_EQ(addSplats(chunks, image, ThreadPool(threads)), 0u);
             EXPECT_EQ(std::memcmp(image.data(), expected.data(), pixels * sizeof(Rgb)), 0)
                 << pixels << " pixels, " << threads << " threads";
         }
+    }
+}
+
+/// Of three splats that are finite, and whose sum is not, the last one is left out and counted.
+TEST(AddSplats, SumsStayFinite) {
+    std::vector<std::vector<Splat>> chunks(2);
+    for (const float value : {2e38f, 1e38f}) chunks[0].push_back({1, {value, 0, 1}});
+    chunks[1].push_back({1, {3e38f, 0, 5}});
+    chunks[1].push_back({0, Rgb(1.0f)});
+    for (const int threads : {1, 2, 7}) {
+        std::vector<Rgb> image(2);
+        EXPECT_EQ(addSplats(chunks, image, ThreadPool(threads)), 1u) << threads;
+        EXPECT_EQ(image[0], Rgb(1.0f));
+        EXPECT_EQ(image[1], Rgb(2e38f + 1e38f, 0, 2)) << threads;
     }
 }
 
