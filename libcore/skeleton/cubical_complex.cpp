@@ -5,29 +5,40 @@ namespace lacuna {
 CubicalComplex::CubicalComplex(const VoxelSpace& space) {
     const VoxelIndex& size = space.shape.size;
     // Corners are one more than voxels; a border of one on either side.
-    step_ = {1, std::size_t(size[0] + 3), std::size_t(size[0] + 3) * std::size_t(size[1] + 3)};
-    cells_.assign(step_[2] * std::size_t(size[2] + 3), 0);
-    for (std::size_t i = 0; i < space.state.size(); ++i) {
-        if (space.state[i] != VoxelState::Empty) continue;
-        const Corner c = corner(space.shape.indexOf(i));
-        for (unsigned far = 0; far < 8; ++far) {
-            // Cells at this corner of the cube: those that extend along none of the far axes.
-            Corner at = c;
-            for (int a = 0; a < 3; ++a) at += far >> a & 1u ? step(a) : 0;
-            for (CellAxes axes = 0; axes < 8; ++axes) {
-                if (!(axes & far)) cells_[at] |= std::uint8_t(1u << axes);
+    const std::size_t row = (std::size_t(size[0] + 3) + 63) / 64 * 64;
+    step_ = {1, row, row * std::size_t(size[1] + 3)};
+    cells_.resize(step_[2] * std::size_t(size[2] + 3) / 64 + 1);
+    std::size_t voxel = 0;
+    for (int z = 0; z < size[2]; ++z) {
+        for (int y = 0; y < size[1]; ++y) {
+            const Corner begin = corner({0, y, z});
+            for (Corner c = begin; c < begin + std::size_t(size[0]); ++c) {
+                const bool empty = space.state[voxel++] == VoxelState::Empty;
+                cells_[c / 64 + 1].of[7] |= Word(empty) << c % 64;
             }
+        }
+    }
+    // A cell is there if a cube about it is. Only border comes before the first corner's word.
+    for (std::size_t w = corner({0, 0, 0}) / 64; w < words(); ++w) {
+        for (CellAxes axes = 0; axes < 7; ++axes) {
+            Word any = 0;
+            for (CellAxes back = 0; back < 8; ++back) {
+                if (back & axes) continue;
+                Shift to;
+                for (int a = 0; a < 3; ++a) to = back >> a & 1u ? to + shift(a, -1) : to;
+                any |= word(w, 7, to);
+            }
+            cells_[w + 1].of[axes] = any;
         }
     }
 }
 
 std::size_t CubicalComplex::count(int dimension) const {
-    std::uint8_t mask = 0;
-    for (CellAxes axes = 0; axes < 8; ++axes) {
-        if (std::popcount(axes) == dimension) mask |= std::uint8_t(1u << axes);
-    }
     std::size_t n = 0;
-    for (const std::uint8_t c : cells_) n += std::size_t(std::popcount(std::uint8_t(c & mask)));
+    for (CellAxes axes = 0; axes < 8; ++axes) {
+        if (std::popcount(axes) != dimension) continue;
+        for (std::size_t w = 0; w < words(); ++w) n += std::size_t(std::popcount(word(w, axes)));
+    }
     return n;
 }
 

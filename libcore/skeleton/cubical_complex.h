@@ -4,6 +4,7 @@
 // touches any of its cells: whatever is left of it after thinning lies in empty space.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 
@@ -14,17 +15,27 @@ namespace lacuna {
 /// Axes that a cell extends along, as bits (1 = x, 2 = y, 4 = z): 0 point, 7 cube.
 using CellAxes = unsigned;
 
-/// A cell is the lattice corner with the lowest coordinates and its axes; a byte per corner says
-/// which of its eight cells there are. The array has a border of absent cells, so that neighbours
-/// need no test.
+/// A cell is the lattice corner with the lowest coordinates and its axes. Cells are bits, in words
+/// of 64 corners along x, so that one operation asks a word of them; rows of corners are whole
+/// words. The array has a border of absent cells, so that neighbours need no test.
 class CubicalComplex {
   public:
     using Corner = std::size_t;  ///< index into the bordered array
+    using Word = std::uint64_t;  ///< a bit for each of the corners 64 w .. 64 w + 63
+
+    /// A displacement by at most one corner along each axis: so many words, then so many bits.
+    struct Shift {
+        std::ptrdiff_t words = 0;
+        int bits = 0;  ///< -1, 0, 1
+
+        friend Shift operator+(Shift a, Shift b) { return {a.words + b.words, a.bits + b.bits}; }
+    };
 
     /// All cells of the Empty voxels.
     explicit CubicalComplex(const VoxelSpace& space);
 
-    std::size_t corners() const { return cells_.size(); }
+    std::size_t corners() const { return words() * 64; }
+    std::size_t words() const { return cells_.size() - 1; }
     Corner corner(const VoxelIndex& v) const {
         return (std::size_t(v[2] + 1) * step_[2]) + std::size_t(v[1] + 1) * step_[1] +
                std::size_t(v[0] + 1);
@@ -34,25 +45,34 @@ class CubicalComplex {
     }
     /// What to add to a Corner for its neighbour along `axis` (0, 1, 2).
     std::size_t step(int axis) const { return step_[std::size_t(axis)]; }
-
-    std::uint8_t cells(Corner c) const { return cells_[c]; }
-    bool has(Corner c, CellAxes axes) const { return cells_[c] >> axes & 1u; }
-    /// Safe from many threads at once.
-    void remove(Corner c, CellAxes axes) {
-        std::atomic_ref(cells_[c]).fetch_and(std::uint8_t(~(1u << axes)),
-                                             std::memory_order_relaxed);
+    Shift shift(int axis, int sign) const {
+        return axis == 0 ? Shift{0, sign} : Shift{sign * std::ptrdiff_t(step(axis) / 64), 0};
     }
 
-    /// How many cells of one dimension more have the cell as a face.
-    int cofaces(Corner c, CellAxes axes) const {
-        int n = 0;
-        for (int a = 0; a < 3; ++a) {
-            const CellAxes bit = 1u << a;
-            if (axes & bit) continue;
-            n += int(has(c, axes | bit)) + int(has(c - step(a), axes | bit));
-        }
-        return n;
+    bool has(Corner c, CellAxes axes) const { return word(c / 64, axes) >> (c % 64) & 1u; }
+    Word word(std::size_t w, CellAxes axes) const { return cells_[w + 1].of[axes]; }
+    /// Bit b says whether the corner at `shift` from corner 64 w + b has the cell.
+    Word word(std::size_t w, CellAxes axes, Shift shift) const {
+        return shifted([&](std::size_t at) { return word(at, axes); }, w, shift);
     }
+    /// The same for any set of corners: wordAt(w) holds its bits of word w.
+    template <class WordAt>
+    static Word shifted(const WordAt& wordAt, std::size_t w, Shift shift) {
+        const std::size_t at = w + std::size_t(shift.words);
+        if (shift.bits > 0) return wordAt(at) >> 1 | wordAt(at + 1) << 63;
+        if (shift.bits < 0) return wordAt(at) << 1 | wordAt(at - 1) >> 63;
+        return wordAt(at);
+    }
+
+    /// Asks the cache for the cells of a word that will be looked at soon.
+    void prefetch(std::size_t w) const { __builtin_prefetch(&cells_[w + 1]); }
+
+    void remove(Corner c, CellAxes axes) { remove(c / 64, axes, Word(1) << c % 64); }
+    /// Removes the cells of all corners in `corners`. Safe from many threads at once.
+    void remove(std::size_t w, CellAxes axes, Word corners) {
+        std::atomic_ref(cells_[w + 1].of[axes]).fetch_and(~corners, std::memory_order_relaxed);
+    }
+
     /// Largest of `values` (one per corner: of the cube there) over the cubes about the cell.
     template <class T>
     T largestAround(Corner c, CellAxes axes, const std::vector<T>& values) const {
@@ -71,8 +91,14 @@ class CubicalComplex {
     std::size_t count(int dimension) const;
 
   private:
+    /// Of a word, by axes: a cache line.
+    struct alignas(64) Cells {
+        std::array<Word, 8> of{};
+    };
+
     std::array<std::size_t, 3> step_;
-    std::vector<std::uint8_t> cells_;
+    // By word, after one before the first: a shift from the first cell may reach there.
+    std::vector<Cells> cells_;
 };
 
 }  // namespace lacuna

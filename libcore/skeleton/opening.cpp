@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <deque>
+#include <span>
 
 #include "libcore/base/parallel.h"
 #include "libcore/skeleton/thinning.h"
@@ -9,75 +9,125 @@ namespace lacuna {
 namespace {
 
 /// Chebyshev distance to the nearest voxel that is not Empty, the outside included: forward and
-/// backward over all voxels with one half of the 26 neighbours each.
+/// backward over all voxels with one half of the 26 neighbours each. What the four neighbouring
+/// rows of a half say is put together first, for a row at a time.
 std::vector<std::uint16_t> chebyshevDistance(const VoxelSpace& space) {
     const VoxelShape& shape = space.shape;
-    std::vector<std::uint16_t> d(shape.count(), 0);
-    const auto relax = [&](std::size_t i, int sign) {
-        if (space.state[i] != VoxelState::Empty) return;
-        const VoxelIndex v = shape.indexOf(i);
-        int best = sign > 0 ? 65534 : d[i] - 1;
-        for (int n = 0; n < 13; ++n) {
-            // Offsets that come before (0, 0, 0) in the order of the array.
-            const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;
-            const VoxelIndex u{v[0] + sign * dx, v[1] + sign * dy, v[2] + sign * dz};
-            best = std::min(best, shape.contains(u) ? int(d[shape.at(u)]) : 0);
-        }
-        d[i] = std::uint16_t(best + 1);
+    const auto width = std::size_t(shape.size[0]);
+    // Rows with a zero at either end, and rows of zeros all round.
+    const std::size_t row = width + 2, layer = row * std::size_t(shape.size[1] + 2);
+    std::vector<std::uint16_t> d(layer * std::size_t(shape.size[2] + 2), 0), rows(row);
+    const std::size_t lines = std::size_t(shape.size[1]) * std::size_t(shape.size[2]);
+    const auto rowOf = [&](std::size_t line) {
+        const auto y = line % std::size_t(shape.size[1]), z = line / std::size_t(shape.size[1]);
+        return d.data() + (z + 1) * layer + (y + 1) * row;
     };
-    for (std::size_t i = 0; i < d.size(); ++i) relax(i, 1);
-    for (std::size_t i = d.size(); i-- > 0;) relax(i, -1);
-    return d;
-}
-
-/// result[i] = largest value[u] with |i - u| < value[u], along one line. Candidates wait in a queue
-/// whose values fall: a later and larger one covers all that an earlier and smaller one does.
-void dilateLine(std::vector<std::uint16_t>& value, std::vector<std::uint16_t>& result) {
-    const std::size_t n = value.size();
-    std::fill(result.begin(), result.end(), std::uint16_t(0));
-    std::deque<std::size_t> queue;
-    for (const bool forward : {true, false}) {
-        queue.clear();
-        for (std::size_t step = 0; step < n; ++step) {
-            const std::size_t i = forward ? step : n - 1 - step;
-            while (!queue.empty() && value[queue.back()] <= value[i]) queue.pop_back();
-            queue.push_back(i);
-            const auto away = [&](std::size_t u) { return u > i ? u - i : i - u; };
-            while (!queue.empty() && away(queue.front()) >= value[queue.front()]) queue.pop_front();
-            if (!queue.empty()) result[i] = std::max(result[i], value[queue.front()]);
+    const auto nearest = [&](const std::uint16_t* own, std::ptrdiff_t sign) {
+        const std::ptrdiff_t up = sign * std::ptrdiff_t(layer), along = sign * std::ptrdiff_t(row);
+        for (std::size_t x = 0; x < row; ++x) {
+            const std::uint16_t* at = own + x;
+            rows[x] =
+                std::min(std::min(at[along], at[up]), std::min(at[up - along], at[up + along]));
+        }
+    };
+    for (std::size_t line = 0; line < lines; ++line) {
+        std::uint16_t* own = rowOf(line);
+        const VoxelState* state = space.state.data() + line * width;
+        nearest(own, -1);
+        for (std::size_t x = 1; x <= width; ++x) {
+            const int least = std::min({rows[x - 1], rows[x], rows[x + 1], own[x - 1]});
+            const bool empty = state[x - 1] == VoxelState::Empty;
+            own[x] = std::uint16_t(empty ? std::min(least, 65534) + 1 : 0);
         }
     }
+    std::vector<std::uint16_t> result(shape.count());
+    for (std::size_t line = lines; line-- > 0;) {
+        std::uint16_t* own = rowOf(line);
+        nearest(own, 1);
+        for (std::size_t x = width; x > 0; --x) {
+            const int least = std::min({rows[x - 1], rows[x], rows[x + 1], own[x + 1]});
+            own[x] = std::uint16_t(std::min(int(own[x]), least + 1));
+        }
+        std::copy_n(own + 1, width, result.data() + line * width);
+    }
+    return result;
 }
+
+/// Dilation along lines: each entry becomes the largest value[u] with |i - u| < value[u].
+class LineDilation {
+  public:
+    void operator()(std::span<std::uint16_t> line) {
+        value_.assign(line.begin(), line.end());
+        const std::size_t n = line.size();
+        pass(
+            n, [&](std::size_t i) { return i; }, line);
+        pass(
+            n, [&](std::size_t i) { return n - 1 - i; }, line);
+    }
+
+  private:
+    struct Candidate {
+        std::uint16_t value;
+        std::size_t end;  // of what it covers
+    };
+
+    /// Candidates wait in a queue whose values fall: a later and larger one covers all that an
+    /// earlier and smaller one does.
+    template <class At>
+    void pass(std::size_t n, const At& at, std::span<std::uint16_t> line) {
+        queue_.resize(n);
+        std::size_t first = 0, last = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint16_t value = value_[at(i)];
+            while (last > first && queue_[last - 1].value <= value) --last;
+            queue_[last++] = {value, i + value};
+            while (first < last && queue_[first].end <= i) ++first;
+            if (first < last) line[at(i)] = std::max(line[at(i)], queue_[first].value);
+        }
+    }
+
+    std::vector<std::uint16_t> value_;
+    std::vector<Candidate> queue_;
+};
 
 }  // namespace
 
 std::vector<std::uint16_t> openingMap(const VoxelSpace& space, const ThreadPool& pool) {
     const VoxelShape& shape = space.shape;
     std::vector<std::uint16_t> map = chebyshevDistance(space);
+    const auto x = std::size_t(shape.size[0]), y = std::size_t(shape.size[1]);
+    const auto z = std::size_t(shape.size[2]);
     // Dilating by cubes of the voxels' own sizes axis by axis: where values meet, the larger one
-    // also reaches farther, so nothing is lost by keeping it alone.
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
-        pool.forEach(std::size_t(shape.size[c]), [&](std::size_t k) {
-            std::vector<std::uint16_t> line(std::size_t(shape.size[axis])), result(line.size());
-            for (int j = 0; j < shape.size[b]; ++j) {
-                VoxelIndex v;
-                v[b] = j;
-                v[c] = int(k);
-                for (std::size_t i = 0; i < line.size(); ++i) {
-                    v[axis] = int(i);
-                    line[i] = map[shape.at(v)];
-                }
-                dilateLine(line, result);
-                for (std::size_t i = 0; i < line.size(); ++i) {
-                    v[axis] = int(i);
-                    const std::size_t at = shape.at(v);
-                    // A cube of Empty voxels covers Empty voxels alone.
-                    map[at] = result[i];
+    // also reaches farther, so nothing is lost by keeping it alone. A cube of Empty voxels covers
+    // Empty voxels alone.
+    pool.forEach(z, [&](std::size_t k) {
+        LineDilation dilate;
+        for (std::size_t j = 0; j < y; ++j) dilate(std::span(map).subspan((k * y + j) * x, x));
+    });
+    // Lines along y and z by kLines side by side, which share cache lines.
+    const auto dilateAcross = [&](std::size_t begin, std::size_t length, std::size_t step) {
+        constexpr std::size_t kLines = 32;
+        std::vector<std::uint16_t> lines(kLines * length);
+        LineDilation dilate;
+        for (std::size_t i = 0; i < x; i += kLines) {
+            const std::size_t count = std::min(kLines, x - i);
+            for (std::size_t n = 0; n < length; ++n) {
+                for (std::size_t l = 0; l < count; ++l) {
+                    lines[l * length + n] = map[begin + n * step + i + l];
                 }
             }
-        });
-    }
+            for (std::size_t l = 0; l < count; ++l) {
+                dilate(std::span(lines).subspan(l * length, length));
+            }
+            for (std::size_t n = 0; n < length; ++n) {
+                for (std::size_t l = 0; l < count; ++l) {
+                    map[begin + n * step + i + l] = lines[l * length + n];
+                }
+            }
+        }
+    };
+    pool.forEach(z, [&](std::size_t k) { dilateAcross(k * x * y, y, x); });
+    pool.forEach(y, [&](std::size_t j) { dilateAcross(j * x, z, x * y); });
     return map;
 }
 

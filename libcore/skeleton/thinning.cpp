@@ -1,6 +1,8 @@
 #include "libcore/skeleton/thinning.h"
 
 #include <algorithm>
+#include <array>
+#include <compare>
 #include <unordered_map>
 
 #include "libcore/base/parallel.h"
@@ -12,26 +14,42 @@ namespace lacuna {
 namespace {
 
 using Corner = CubicalComplex::Corner;
-constexpr std::size_t kPerTask = 4096;
+using Word = CubicalComplex::Word;
+using Shift = CubicalComplex::Shift;
+constexpr std::size_t kPerTask = 512;
+constexpr std::size_t kAhead = 8;  // words
 
-struct Pair {
-    Corner cell, face;
-    CellAxes cellAxes, faceAxes;
+/// Some of the corners of a word.
+struct Some {
+    std::size_t word;
+    Word corners;
+};
+
+/// body(corner) for each of them.
+template <class Body>
+void forEachCorner(Some some, const Body& body) {
+    for (Word left = some.corners; left != 0; left &= left - 1) {
+        body(some.word * 64 + std::size_t(std::countr_zero(left)));
+    }
+}
+
+/// What a step finds in some words.
+struct Found {
+    struct Pairs {
+        Some some;
+        CellAxes axes;  // of the larger cell
+    };
+    std::vector<Pairs> pairs;                             // that go
+    std::vector<std::pair<std::size_t, Corner>> waiting;  // for that round
 };
 
 class Thinning {
   public:
     Thinning(const VoxelSpace& space, const ThreadPool& pool, const std::atomic<bool>& cancel)
-        : space_(space), pool_(pool), cancel_(cancel), result_{CubicalComplex(space)} {
-        for (std::size_t n = 0; n < 27; ++n) {
-            // Differences wrap around, as sums with them do.
-            neighbour_[n] = n % 3 + complex().step(1) * (n / 3 % 3) + complex().step(2) * (n / 9) -
-                            complex().step(0) - complex().step(1) - complex().step(2);
-        }
-        const std::vector<std::uint16_t> opening = openingMap(space, pool);
+        : pool_(pool), cancel_(cancel), result_{CubicalComplex(space)} {
         layer_.assign(complex().corners(), 0);
         opening_.assign(complex().corners(), 0);
-        stamp_.assign(complex().corners(), 0);
+        const std::vector<std::uint16_t> opening = openingMap(space, pool);
         for (std::size_t i = 0; i < space.state.size(); ++i) {
             if (space.state[i] != VoxelState::Empty) continue;
             const Corner c = complex().corner(space.shape.indexOf(i));
@@ -40,13 +58,19 @@ class Thinning {
             opening_[c] = opening[i];
             lastLayer_ = std::max<std::size_t>(lastLayer_, layer_[c]);
         }
+        const std::size_t words = complex().words();
+        active_.assign(words, 0);
+        allowed_.assign(words, 0);
+        for (auto& w : recorded_) w.assign(words, 0);
+        for (auto& w : born_) w.assign(words, 0);
         waiting_.resize(lastLayer_ + 1);
-        // Free pairs lie at or next to corners that some cube is missing at.
-        std::vector<Corner> border;
+        opens_.resize(lastLayer_ + 1);
         for (Corner c = 0; c < layer_.size(); ++c) {
-            if (complex().cells(c) != 0 && !surrounded(c)) border.push_back(c);
+            std::vector<std::size_t>& opens = opens_[layer_[c]];
+            if (opens.empty() || opens.back() != c / 64) opens.push_back(c / 64);
         }
-        activate(border, Reach::Neighbours, 1);
+        allow(0);  // where no cube is, none is in the way
+        activateBorder();
     }
 
     Thinned run() {
@@ -61,13 +85,38 @@ class Thinning {
     CubicalComplex& complex() { return result_.complex; }
     const CubicalComplex& complex() const { return result_.complex; }
 
-    bool surrounded(Corner c) const {
-        for (unsigned back = 0; back < 8; ++back) {
-            Corner cube = c;
-            for (int a = 0; a < 3; ++a) cube -= back >> a & 1u ? complex().step(a) : 0;
-            if (layer_[cube] == 0) return false;
+    /// Free pairs lie at or next to corners that some cube is missing at.
+    void activateBorder() {
+        std::vector<Some> border;
+        for (std::size_t w = 0; w < complex().words(); ++w) {
+            const Word points = complex().word(w, 0);
+            if (points == 0) continue;
+            Word surrounded = ~Word(0);
+            for (unsigned back = 0; back < 8; ++back) {
+                surrounded &= complex().word(w, 7, backwards(back));
+            }
+            if (points & ~surrounded) border.push_back({w, points & ~surrounded});
         }
-        return true;
+        activateAround(border);
+    }
+
+    /// The displacement by minus one along each of the axes.
+    Shift backwards(CellAxes axes) const {
+        Shift shift;
+        for (int a = 0; a < 3; ++a) {
+            if (axes >> a & 1u) shift = shift + complex().shift(a, -1);
+        }
+        return shift;
+    }
+
+    /// Cubes of that layer may go from now on.
+    void allow(std::size_t layer) {
+        for (const std::size_t w : opens_[layer]) {
+            for (std::size_t b = 0; b < 64; ++b) {
+                allowed_[w] |= Word(layer_[w * 64 + b] == layer) << b;
+            }
+        }
+        opens_[layer] = {};
     }
 
     /// Rounds until nothing changes and all layers had their turn.
@@ -76,10 +125,13 @@ class Thinning {
             throwIfCancelled(cancel_);
             const std::size_t round = ++result_.rounds;
             if (round <= lastLayer_) {
-                activate(waiting_[round], Reach::Itself, round);
+                allow(round);
+                for (const Corner c : waiting_[round]) {
+                    if (complex().has(c, 0)) activate({c / 64, Word(1) << c % 64}, activeWords_);
+                }
                 waiting_[round] = {};
             }
-            changed_.clear();
+            changed_.assign(activeWords_.size(), 0);
             for (int axis = 0; axis < 3; ++axis) {
                 for (const bool high : {false, true}) {
                     for (int dimension = 3; dimension >= 1; --dimension) {
@@ -87,103 +139,149 @@ class Thinning {
                     }
                 }
             }
-            active_.clear();
-            activate(changed_, Reach::Neighbours, round + 1);
+            std::vector<Some> changed;
+            for (std::size_t i = 0; i < activeWords_.size(); ++i) {
+                active_[activeWords_[i]] = 0;
+                if (changed_[i] != 0) changed.push_back({activeWords_[i], changed_[i]});
+            }
+            activeWords_.clear();
+            activateAround(changed);
             rememberBirths(round);
-            if (changed_.empty() && round >= lastLayer_) return;
+            if (changed.empty() && round >= lastLayer_) return;
         }
     }
 
-    enum class Reach { Itself, Neighbours };
-    /// The corners, and their 26 neighbours where asked for, join that round's list, each once.
-    void activate(const std::vector<Corner>& centres, Reach reach, std::size_t round) {
-        const auto mark = std::uint16_t(round % 65535 + 1);
-        std::vector<std::vector<Corner>> parts((centres.size() + kPerTask - 1) / kPerTask);
+    /// The corners join the next round's; a word that had none of them joins `words`.
+    void activate(Some some, std::vector<std::size_t>& words) {
+        if (some.corners == 0) return;
+        const std::atomic_ref active(active_[some.word]);
+        if (active.fetch_or(some.corners, std::memory_order_relaxed) == 0) {
+            words.push_back(some.word);
+        }
+    }
+
+    /// The corners and their 26 neighbours join the next round's, as far as there are cells at
+    /// them.
+    void activateAround(const std::vector<Some>& centres) {
+        std::vector<std::vector<std::size_t>> parts((centres.size() + kPerTask - 1) / kPerTask);
         pool_.forEach(parts.size(), [&](std::size_t task) {
             const std::size_t end = std::min(centres.size(), (task + 1) * kPerTask);
             for (std::size_t i = task * kPerTask; i < end; ++i) {
-                const bool alone = reach == Reach::Itself;
-                for (int n = alone ? 13 : 0; n < (alone ? 14 : 27); ++n) {
-                    const Corner c = centres[i] + neighbour_[std::size_t(n)];
-                    const std::atomic_ref stamp(stamp_[c]);
-                    // Most are in the list already: a look is cheaper than an exchange.
-                    if (stamp.load(std::memory_order_relaxed) == mark || complex().cells(c) == 0) {
-                        continue;
-                    }
-                    if (stamp.exchange(mark, std::memory_order_relaxed) != mark) {
-                        parts[task].push_back(c);
+                const Word own = centres[i].corners;
+                const Word along[3] = {own << 63, own | own << 1 | own >> 1, own >> 63};
+                for (int row = 0; row < 9; ++row) {
+                    const Shift to =
+                        complex().shift(1, row % 3 - 1) + complex().shift(2, row / 3 - 1);
+                    for (std::size_t n = 0; n < 3; ++n) {
+                        if (along[n] == 0) continue;
+                        const std::size_t w = centres[i].word + std::size_t(to.words) + n - 1;
+                        activate({w, along[n] & complex().word(w, 0)}, parts[task]);
                     }
                 }
             }
         });
-        for (const auto& p : parts) active_.insert(active_.end(), p.begin(), p.end());
+        for (const auto& p : parts) activeWords_.insert(activeWords_.end(), p.begin(), p.end());
     }
 
     /// Removes all pairs that are free in this direction and dimension. Finding and removing are
-    /// two loops: what one removal frees waits for the next round.
+    /// two loops: what one removal frees waits for the next step.
     void step(int axis, bool high, int dimension) {
-        struct Found {
-            std::vector<Pair> pairs;
-            std::vector<std::pair<std::size_t, Corner>> waiting;  // for that round
-        };
         std::vector<CellAxes> kinds;
-        unsigned mask = 0;
         for (CellAxes axes = 1; axes < 8; ++axes) {
-            if (std::popcount(axes) != dimension || !(axes >> axis & 1u)) continue;
-            kinds.push_back(axes);
-            mask |= 1u << axes;
+            if (std::popcount(axes) == dimension && (axes >> axis & 1u)) kinds.push_back(axes);
         }
-        std::vector<Found> found((active_.size() + kPerTask - 1) / kPerTask);
-        pool_.forEach(found.size(), [&](std::size_t task) {
-            const std::size_t end = std::min(active_.size(), (task + 1) * kPerTask);
+        found_.resize((activeWords_.size() + kPerTask - 1) / kPerTask);
+        pool_.forEach(found_.size(), [&](std::size_t task) {
+            Found& found = found_[task];
+            found.pairs.clear();
+            found.waiting.clear();
+            const std::size_t end = std::min(activeWords_.size(), (task + 1) * kPerTask);
             for (std::size_t i = task * kPerTask; i < end; ++i) {
-                const Corner c = active_[i];
-                if (!(complex().cells(c) & mask)) continue;
+                // Words lie anywhere: most of the time would be spent waiting for their cells.
+                if (i + kAhead < end) complex().prefetch(activeWords_[i + kAhead]);
                 for (const CellAxes axes : kinds) {
-                    const Pair pair{c, high ? c + complex().step(axis) : c, axes,
-                                    axes & ~(1u << axis)};
-                    if (!complex().has(c, axes) ||
-                        complex().cofaces(pair.face, pair.faceAxes) != 1) {
-                        continue;
-                    }
-                    const std::size_t layer = complex().largestAround(c, axes, layer_);
-                    if (layer > result_.rounds) {
-                        found[task].waiting.push_back({layer, c});
-                    } else if (!isEnd(pair)) {
-                        found[task].pairs.push_back(pair);
-                    }
+                    const Word free = mayGo(activeWords_[i], axes, axis, high, found.waiting);
+                    if (free == 0) continue;
+                    found.pairs.push_back({{activeWords_[i], free}, axes});
+                    changed_[i] |= free;
                 }
             }
         });
-        pool_.forEach(found.size(), [&](std::size_t task) {
-            for (const Pair& p : found[task].pairs) {
-                complex().remove(p.cell, p.cellAxes);
-                complex().remove(p.face, p.faceAxes);
+        const Shift toFace = high ? complex().shift(axis, 1) : Shift{};
+        pool_.forEach(found_.size(), [&](std::size_t task) {
+            for (const auto& [some, axes] : found_[task].pairs) {
+                complex().remove(some.word, axes, some.corners);
+                const CellAxes face = axes & ~(1u << axis);
+                const std::size_t at = some.word + std::size_t(toFace.words);
+                complex().remove(at, face, toFace.bits ? some.corners << 1 : some.corners);
+                if (toFace.bits && some.corners >> 63) complex().remove(at + 1, face, 1);
             }
         });
-        for (const Found& f : found) {
-            for (const Pair& p : f.pairs) changed_.push_back(p.cell);
+        for (const Found& f : found_) {
             for (const auto& [layer, c] : f.waiting) waiting_[layer].push_back(c);
         }
     }
 
-    /// Whether the free pair is an edge that has lived long enough to be the end of a branch.
-    bool isEnd(const Pair& p) const {
-        if (std::popcount(p.cellAxes) > 1) return false;
-        const auto birth = birth_.find(edgeKey(p.cell, p.cellAxes));
-        if (birth == birth_.end()) return false;
-        return result_.rounds - birth->second >
-               complex().largestAround(p.cell, p.cellAxes, opening_);
+    /// Active corners of the word whose cell along `axes` makes a free pair with its face at the
+    /// low or high end of `axis`, and may go. What has to wait for its layer is recorded, once.
+    Word mayGo(std::size_t w, CellAxes axes, int axis, bool high,
+               std::vector<std::pair<std::size_t, Corner>>& waiting) {
+        Word free = complex().word(w, axes) & active_[w];
+        if (free == 0) return 0;
+        // A pair is free if the face belongs to no other cell.
+        const Shift beyond = complex().shift(axis, high ? 1 : -1);
+        const Shift toFace = high ? beyond : Shift{};
+        free &= ~complex().word(w, axes, beyond);
+        for (int a = 0; a < 3; ++a) {
+            if (axes >> a & 1u) continue;
+            const CellAxes other = (axes & ~(1u << axis)) | 1u << a;
+            free &= ~(complex().word(w, other, toFace) |
+                      complex().word(w, other, toFace + complex().shift(a, -1)));
+        }
+        if (free == 0) return 0;
+        Word allowed = ~Word(0);
+        for (CellAxes back = 0; back < 8; ++back) {
+            if (back & axes) continue;
+            allowed &= CubicalComplex::shifted([&](std::size_t at) { return allowed_[at]; }, w,
+                                               backwards(back));
+        }
+        Word& recorded = recorded_[axes][w];
+        forEachCorner({w, free & ~allowed & ~recorded}, [&](Corner c) {
+            waiting.push_back({complex().largestAround(c, axes, layer_), c});
+        });
+        recorded |= free & ~allowed;
+        free &= allowed;
+        if (std::popcount(axes) == 1) {
+            forEachCorner({w, free & born_[std::size_t(axis)][w]}, [&](Corner c) {
+                if (isEnd(c, axes)) free &= ~(Word(1) << c % 64);
+            });
+        }
+        return free;
+    }
+
+    /// Whether an edge that no square is left at has lived long enough to be the end of a branch.
+    bool isEnd(Corner c, CellAxes axes) const {
+        return result_.rounds - birth_.at(edgeKey(c, axes)) >
+               complex().largestAround(c, axes, opening_);
     }
 
     static std::uint64_t edgeKey(Corner c, CellAxes axes) { return std::uint64_t(c) * 8 + axes; }
 
     void rememberBirths(std::size_t round) {
-        for (const Corner c : active_) {
-            for (const CellAxes axes : {1u, 2u, 4u}) {
-                if (complex().has(c, axes) && complex().cofaces(c, axes) == 0) {
-                    birth_.try_emplace(edgeKey(c, axes), round);
+        for (const std::size_t w : activeWords_) {
+            for (int a = 0; a < 3; ++a) {
+                const CellAxes axes = 1u << a;
+                Word& born = born_[std::size_t(a)][w];
+                Word alone = complex().word(w, axes) & active_[w] & ~born;
+                for (int b = 0; b < 3 && alone != 0; ++b) {
+                    if (b == a) continue;
+                    const CellAxes square = axes | 1u << b;
+                    alone &= ~(complex().word(w, square) |
+                               complex().word(w, square, complex().shift(b, -1)));
                 }
+                born |= alone;
+                forEachCorner({w, alone},
+                              [&](Corner c) { birth_.emplace(edgeKey(c, axes), round); });
             }
         }
     }
@@ -191,19 +289,22 @@ class Thinning {
     /// Takes one square out of every sheet about a cavity. The regions are those of the complement
     /// of the complex: cubes that are not there, joined through squares that are not there.
     std::size_t puncture() {
-        std::vector<Pair> squares;
-        for (Corner c = 0; c < complex().corners(); ++c) {
+        struct Square {
+            std::size_t layer;
+            Corner corner;
+            CellAxes axes;
+            auto operator<=>(const Square&) const = default;
+        };
+        std::vector<Square> squares;
+        for (std::size_t w = 0; w < complex().words(); ++w) {
             for (const CellAxes axes : {3u, 5u, 6u}) {
-                if (complex().has(c, axes)) squares.push_back({c, c, axes, axes});
+                forEachCorner({w, complex().word(w, axes)}, [&](Corner c) {
+                    squares.push_back({complex().largestAround(c, axes, layer_), c, axes});
+                });
             }
         }
         if (squares.empty()) return 0;
-        const auto place = [&](const Pair& p) {
-            return std::pair(complex().largestAround(p.cell, p.cellAxes, layer_),
-                             edgeKey(p.cell, p.cellAxes));
-        };
-        std::sort(squares.begin(), squares.end(),
-                  [&](const Pair& a, const Pair& b) { return place(a) < place(b); });
+        std::sort(squares.begin(), squares.end());
 
         const std::size_t n = complex().corners();
         std::vector<std::uint32_t> parent(n);
@@ -220,32 +321,38 @@ class Thinning {
                 parent[std::max(a, b)] = std::uint32_t(std::min(a, b));
             }
         }
-        std::vector<Corner> opened;
-        for (const Pair& p : squares) {
-            const std::size_t a = find(p.cell);
-            const std::size_t b = find(p.cell - complex().step(normalOf(p.cellAxes)));
+        std::vector<Some> opened;
+        for (const Square& s : squares) {
+            const std::size_t a = find(s.corner);
+            const std::size_t b = find(s.corner - complex().step(normalOf(s.axes)));
             if (a == b) continue;
             parent[std::max(a, b)] = std::uint32_t(std::min(a, b));
-            complex().remove(p.cell, p.cellAxes);
-            opened.push_back(p.cell);
+            complex().remove(s.corner, s.axes);
+            opened.push_back({s.corner / 64, Word(1) << s.corner % 64});
         }
         result_.punctures += opened.size();
-        activate(opened, Reach::Neighbours, result_.rounds + 1);
+        activateAround(opened);
         return opened.size();
     }
 
-    const VoxelSpace& space_;
     const ThreadPool& pool_;
     const std::atomic<bool>& cancel_;
     Thinned result_;
-    std::array<std::size_t, 27> neighbour_;  // what to add to a corner
     // By corner, of the cube there.
     std::vector<std::uint16_t> layer_;  // round from which on it may go
     std::vector<std::uint16_t> opening_;
-    std::vector<std::uint16_t> stamp_;          // by corner: last round whose list it joined
-    std::vector<std::vector<Corner>> waiting_;  // by round: free pairs whose layer comes then
     std::size_t lastLayer_ = 0;
-    std::vector<Corner> active_, changed_;
+    // By layer: words that have cubes of it, and corners of free pairs whose turn comes then.
+    std::vector<std::vector<std::size_t>> opens_;
+    std::vector<std::vector<Corner>> waiting_;
+    // By word, a bit per corner: may a cube there go; does the corner belong to this round; has its
+    // cell (by axes) been put on a waiting list; has its edge (by axis) an entry in birth_.
+    std::vector<Word> allowed_, active_;
+    std::array<std::vector<Word>, 8> recorded_;
+    std::array<std::vector<Word>, 3> born_;
+    std::vector<std::size_t> activeWords_;  // that have active corners
+    std::vector<Word> changed_;             // by those words: corners that lost a cell
+    std::vector<Found> found_;              // by task: scratch of step()
     std::unordered_map<std::uint64_t, std::size_t> birth_;  // round in which an edge was left alone
 };
 

@@ -345,5 +345,30 @@ TEST(Skeleton, isTheSameForAnyThreadsAndMovesWithTheShape) {
                 0.15 * double(one.raw.nodes.size()));
 }
 
+TEST(Skeleton, movesWithTheShapeAcrossWordsOfCorners) {
+    // A room of 10 x 7 x 6 voxels in solid, about the 64th corner along x.
+    const VoxelIndex size{10, 7, 6};
+    const auto at = [&](int offset) {
+        return drawn({76, 9, 8}, [&](int x, int y, int z) {
+            const int rx = x - offset, ry = y - 1, rz = z - 1;
+            if (rx < 0 || ry < 0 || rz < 0 || rx >= size[0] || ry >= size[1] || rz >= size[2]) {
+                return true;
+            }
+            return (rx * 7 + ry * 13 + rz * 5) % 23 < 2;
+        });
+    };
+    const Graphs first = skeletonOf(at(1));
+    EXPECT_GE(first.raw.nodes.size(), 10u);
+    for (const int offset : {52, 54, 57, 60, 61, 62, 63, 64}) {
+        const Graphs moved = skeletonOf(at(offset));
+        ASSERT_EQ(moved.raw.nodes.size(), first.raw.nodes.size()) << offset;
+        EXPECT_EQ(moved.raw.edges, first.raw.edges) << offset;
+        for (std::size_t i = 0; i < first.raw.nodes.size(); ++i) {
+            const Vec3d by{double(offset - 1), 0, 0};
+            EXPECT_EQ(moved.raw.nodes[i].position, first.raw.nodes[i].position + by) << offset;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace lacuna::test
