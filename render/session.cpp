@@ -127,11 +127,17 @@ Session::~Session() = default;
 
 void Session::describeStage() const {
     const Scene& scene = *stage_.scene;
+    const auto& phases = stage_.phaseSeconds;
+    char setup[128];
+    std::snprintf(setup, sizeof setup,
+                  ", setup %.3g s: parse %.3g, decode %.3g, meshes %.3g, build %.3g",
+                  report_.setupSeconds, phases.at("parse"), phases.at("decode"),
+                  phases.at("meshes"), phases.at("build"));
     progress_.remark(std::to_string(scene.triangleCount()) + " triangles, " +
                      std::to_string(scene.lights().size()) + " lights, radius " +
                      std::to_string(scene.radius()) + ", " + std::to_string(report_.threads) +
                      " threads, " + std::to_string(report_.lightPaths) +
-                     " light paths per iteration, setup " + durationText(report_.setupSeconds));
+                     " light paths per iteration" + setup);
 }
 
 void Session::loadReference() {

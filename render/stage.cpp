@@ -104,6 +104,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     progress.phase("loading");
     SceneDescription description;
     pool.run([&] { description = describeScene(options); });
+    stage.phaseSeconds = description.phaseSeconds;
     stage.phaseSeconds["load"] = secondsSince(start);
     const auto warn = [&](const std::string& text) {
         stage.warnings.push_back(text);

@@ -95,6 +95,9 @@ TEST_F(RenderOutput, JsonHasItsKeys) {
           "warmup_iterations", "rays_by_kind", "phases", "effects", "stopped"}) {
         EXPECT_TRUE(j.contains(key)) << key;
     }
+    for (const char* phase : {"load", "parse", "decode", "meshes", "build"}) {
+        EXPECT_TRUE(j["phases"].contains(phase)) << phase;
+    }
     EXPECT_FALSE(j.contains("verify"));
     EXPECT_EQ(j["method"], "lvcbpt");
     EXPECT_EQ(j["iterations"], 2);

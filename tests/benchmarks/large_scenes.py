@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Time and memory that large scenes take to load; Python's standard library only.
+
+  python3 tests/benchmarks/large_scenes.py [LACUNA-RENDER]      default: build/render/lacuna-render
+
+Makes each scene in a temporary directory, has one small picture of it rendered, and prints what lacuna-render measured:
+seconds for parsing (JSON, hierarchy, materials), decoding (textures), meshes (accessors to triangles) and building (world
+space, lights, hierarchy of boxes), and the peak of its memory. `file` is what has to be read at least.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+import subprocess
+import sys
+import tempfile
+from array import array
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def write_glb(path: Path, root: dict, parts: list[array]) -> None:
+    """`parts`: a buffer view each, in the order of the views' numbers."""
+    sizes = [len(p) * p.itemsize for p in parts]
+    root["bufferViews"] = [{"buffer": 0, "byteOffset": sum(sizes[:i]), "byteLength": s} for i, s in enumerate(sizes)]
+    root["buffers"] = [{"byteLength": sum(sizes)}]
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    with path.open("wb") as file:
+        file.write(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + sum(sizes), len(text), 0x4E4F534A))
+        file.write(text)
+        file.write(struct.pack("<II", sum(sizes), 0x004E4942))
+        for part in parts:
+            part.tofile(file)
+
+
+def terrain(side: int) -> tuple[array, array, array]:
+    """Positions, normals and indices of a hilly square of 2 side^2 triangles, 20 units wide, about the origin."""
+    wave = [math.sin(0.02 * i) for i in range(side + 1)]
+    slope = [0.02 * math.cos(0.02 * i) * side / 20 for i in range(side + 1)]
+    at = [20 * (i / side - 0.5) for i in range(side + 1)]
+    positions, normals, indices = array("f"), array("f"), array("I")
+    for y in range(side + 1):
+        for x in range(side + 1):
+            positions.extend((at[x], 0.1 * (wave[x] + wave[y]), at[y]))
+            normals.extend((-0.1 * slope[x], 1.0, -0.1 * slope[y]))
+    row = [i for x in range(side) for i in (x, x + side + 1, x + 1, x + 1, x + side + 1, x + side + 2)]
+    for y in range(side):
+        first = y * (side + 1)
+        indices.extend([first + i for i in row])
+    return positions, normals, indices
+
+
+def scene(side: int, nodes: list[dict]) -> tuple[dict, list[array]]:
+    """The terrain under these nodes, in sunlight, seen from above its near edge."""
+    positions, normals, indices = terrain(side)
+    count = (side + 1) ** 2
+    nodes = nodes + [{"camera": 0, "translation": [0, 6, 16], "rotation": [-0.2, 0, 0, 0.98]},
+                     {"extensions": {"KHR_lights_punctual": {"light": 0}}, "rotation": [-0.6, 0, 0, 0.8]}]
+    root = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+            "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}},
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5126, "count": count, "type": "VEC3"},
+                          {"bufferView": 2, "componentType": 5125, "count": len(indices), "type": "SCALAR"}]}
+    return root, [positions, normals, indices]
+
+
+def many(count: int) -> list[dict]:
+    """That many small copies on a square, turned and stretched."""
+    side = math.isqrt(count - 1) + 1
+    return [{"mesh": 0, "translation": [20 * (i % side / side - 0.5), 0, 20 * (i // side / side - 0.5)],
+             "rotation": [0, math.sin(i), 0, math.cos(i)], "scale": [0.002, 0.002 + 1e-7 * (i % 1000), 0.002]}
+            for i in range(count)]
+
+
+SCENES = {
+    "10 million triangles, one mesh": lambda: scene(2237, [{"mesh": 0}]),
+    "100,000 instances of 200 triangles": lambda: scene(10, many(100_000)),
+}
+
+
+def main() -> int:
+    tool = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build/render/lacuna-render"
+    print("| scene | file | parse | decode | meshes | build | peak memory |\n|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        glb, report = Path(folder) / "scene.glb", Path(folder) / "report.json"
+        for name, make in SCENES.items():
+            write_glb(glb, *make())
+            subprocess.run([tool, glb, "-o", Path(folder) / "picture.pfm", "--method", "pt", "--width", "64", "--height", "36",
+                            "--iterations", "1", "--quiet", "--json", report], check=True, stdout=subprocess.DEVNULL)
+            result = json.loads(report.read_text())
+            times = " | ".join(f"{result['phases'][phase]:.2f} s" for phase in ("parse", "decode", "meshes", "build"))
+            print(f"| {name} | {glb.stat().st_size / 1e6:.0f} MB | {times} | {result['peak_bytes'] / 1e6:.0f} MB |", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
