@@ -13,8 +13,7 @@ namespace lacuna {
 
 namespace {
 
-constexpr double kLightShare = 0.2;  // of the subspaces that divide the lights [Su22 7.2.1]
-constexpr int kPicks = 3;            // N that Gamma is optimised for
+constexpr int kPicks = 3;  // N that Gamma is optimised for
 constexpr std::size_t kTreeSamples = 400'000, kJudgedSamples = 100'000;
 constexpr std::size_t kSamplesPerTask = 4096;
 constexpr std::uint64_t kLightPathsPerTask = 8192;
@@ -82,9 +81,10 @@ class Classification {
     std::span<const SubpathEnd> ends() const { return train_.end; }
 
     /// Labels count from `first`; at most `count` different ones, at least one.
-    void label(std::uint32_t first, std::size_t count, float sigma2, Rng& rng,
-               const ThreadPool& pool) {
-        const Centroids centroids(drawCentroids(train_.end, train_.weight, count, rng), sigma2);
+    void label(std::uint32_t first, std::size_t count, float sigma2, float directionWeight,
+               Rng& rng, const ThreadPool& pool) {
+        const Centroids centroids(drawCentroids(train_.end, train_.weight, count, rng), sigma2,
+                                  directionWeight);
         report_.centroids = centroids.size();
         labelCount_ = first + std::max<std::uint32_t>(1, std::uint32_t(centroids.size()));
         labels_ = labelsOf(centroids, train_.end, first, pool);
@@ -182,7 +182,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
     };
     CollectedPaths paths;
     run("paths", [&] {
-        const auto cells = std::uint32_t(std::lround(kLightShare * double(settings.subspaces)));
+        const auto cells = std::uint32_t(std::lround(settings.lightShare * settings.subspaces));
         s.cells = LightCells(scene.lights(), std::max(1u, cells));
         paths = collectPaths(scene, s.cells, settings.paths, settings.seed, pool, cancel);
         result.trainPaths = paths.train.size();
@@ -199,8 +199,9 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         // One subspace in all: the lights' cell is the subpaths' as well.
         const std::uint32_t first = settings.subspaces == 1 ? 0 : s.cells.count();
         const std::uint32_t rest = settings.subspaces > first ? settings.subspaces - first : 1;
-        light.label(first, rest, sigma2, lightRng, pool);
-        eye.label(0, settings.subspaces, sigma2, eyeRng, pool);
+        const auto directionWeight = float(settings.directionWeight);
+        light.label(first, rest, sigma2, directionWeight, lightRng, pool);
+        eye.label(0, settings.subspaces, sigma2, directionWeight, eyeRng, pool);
         s.lightCount = std::max(light.labelCount(), s.cells.count());
         s.eyeCount = eye.labelCount();
     });

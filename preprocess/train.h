@@ -8,16 +8,10 @@
 
 namespace lacuna {
 
-struct TrainSettings {
-    std::uint64_t paths = 1'000'000;
-    std::uint32_t subspaces = 1000;
-    std::uint64_t lightPaths = 2'000'000;
-    int epochs = 20;
-    std::uint64_t seed = 1;  ///< not part of the stamp
+struct TrainSettings : SubspaceSettings {
+    std::uint64_t seed = 1;
 
-    CacheStamp stamp(const std::string& sceneHash) const {
-        return subspaceStamp(sceneHash, paths, subspaces, lightPaths, epochs);
-    }
+    CacheStamp stamp(const std::string& sceneHash) const { return subspaceStamp(sceneHash, *this); }
 };
 
 /// One of the two trees against the nearest centroid.

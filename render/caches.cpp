@@ -84,11 +84,11 @@ void loadSubspaces(const Loading& l, Caches& caches) {
     t.subspaces = std::uint32_t(l.settings.integer("train.subspaces"));
     t.lightPaths = l.settings.integer("train.light_paths");
     t.epochs = int(l.settings.integer("train.epochs"));
+    t.directionWeight = l.settings.real("train.direction_weight");
+    t.lightShare = l.settings.real("train.light_share");
     const std::string path = cacheFile(l.directory(), t.stamp(l.hash()), "subspaces");
     const std::string remedy =
-        "add --prepare, or run lacuna-train --paths " + std::to_string(t.paths) + " --subspaces " +
-        std::to_string(t.subspaces) + " --light-paths " + std::to_string(t.lightPaths) +
-        " --epochs " + std::to_string(t.epochs) + " " + l.options.scene;
+        "add --prepare, or run lacuna-train " + trainOptions(t) + " " + l.options.scene;
     std::optional<SubspaceFile> file;
     l.phases.run("read subspaces", [&] {
         file = readOrNothing<SubspaceFile>([&] { return readSubspaceFile(path, l.hash(), remedy); },

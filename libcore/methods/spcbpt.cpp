@@ -350,6 +350,10 @@ MethodRow subspaceRow() {
         {"train.subspaces", Kind::Integer, 1000, 1, 4000, "subspaces of light and of eye subpaths"},
         {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
         {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},
+        {"train.direction_weight", Kind::Real, 0.05, 0, 1000,
+         "weight of incident directions in the distance that subspaces divide paths by, k_d"},
+        {"train.light_share", Kind::Real, 0.2, 0, 1,
+         "share of the light subspaces that divide the lights themselves"},
         presetParameter()};
     row.paper = {{"weights", 1}, {"reuse", 200}};
     row.create = [](const Settings& s) {

@@ -7,8 +7,11 @@
 
 namespace lacuna {
 
-Centroids::Centroids(std::span<const SubpathEnd> centres, float sigma2)
-    : size_(centres.size()), sigma2_(sigma2), value_(SubpathEnd::kAttributes * centres.size()) {
+Centroids::Centroids(std::span<const SubpathEnd> centres, float sigma2, float directionWeight)
+    : size_(centres.size()),
+      sigma2_(sigma2),
+      directionWeight_(directionWeight),
+      value_(SubpathEnd::kAttributes * centres.size()) {
     for (std::size_t a = 0; a < SubpathEnd::kAttributes; ++a) {
         for (std::size_t i = 0; i < size_; ++i) value_[a * size_ + i] = centres[i].value[a];
     }
@@ -21,7 +24,7 @@ float Centroids::distance(std::uint32_t index, const SubpathEnd& end) const {
     const float cosN = p[3] * c[3 * size_] + p[4] * c[4 * size_] + p[5] * c[5 * size_];
     const float cosD = p[6] * c[6 * size_] + p[7] * c[7 * size_] + p[8] * c[8 * size_];
     return x * x + y * y + z * z +
-           sigma2_ * ((1.0f - cosN) + kDirectionWeight * (1.0f - cosD));  // [Su22 eq 18]
+           sigma2_ * ((1.0f - cosN) + directionWeight_ * (1.0f - cosD));  // [Su22 eq 18]
 }
 
 std::uint32_t Centroids::nearest(const SubpathEnd& end) const {

@@ -18,11 +18,10 @@ namespace lacuna {
 
 class Centroids {
   public:
-    static constexpr float kDirectionWeight = 0.05f;  ///< k_d
-
     /// No centroid: nearest() is 0 for everything.
     Centroids() = default;
-    Centroids(std::span<const SubpathEnd> centres, float sigma2);
+    /// `directionWeight`: k_d.
+    Centroids(std::span<const SubpathEnd> centres, float sigma2, float directionWeight = 0.05f);
 
     std::size_t size() const { return size_; }
     /// Index of the nearest; of equally near ones the first.
@@ -31,7 +30,7 @@ class Centroids {
 
   private:
     std::size_t size_ = 0;
-    float sigma2_ = 0.0f;
+    float sigma2_ = 0.0f, directionWeight_ = 0.0f;
     std::vector<float> value_;  // attribute by attribute, so that a loop over centroids is a vector
 };
 

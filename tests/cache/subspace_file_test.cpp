@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "libcore/base/error.h"
@@ -49,7 +50,7 @@ class SubspaceFiles : public testing::Test {
 
 SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
     SubspaceFile file;
-    file.stamp = subspaceStamp("0123abc", 1000, light, 2000, 2);
+    file.stamp = subspaceStamp("0123abc", {1000, light, 2000, 2});
     Subspaces& s = file.subspaces;
     s.lightCount = light;
     s.eyeCount = eye;
@@ -107,8 +108,26 @@ TEST_F(SubspaceFiles, damagedOnesAreRefused) {
 TEST_F(SubspaceFiles, foreignOnesAreRefused) {
     writeSubspaceFile(path(), example(5, 3));
     expectRefused("another scene's", "another");
-    EXPECT_NE(cacheFile("d", subspaceStamp("a", 1, 2, 3, 4), "x"),
-              cacheFile("d", subspaceStamp("a", 1, 2, 3, 5), "x"));
+}
+
+/// Every setting is part of the name, and of the command that makes the cache anew.
+TEST(SubspaceSettings, settingsTellFilesApart) {
+    const SubspaceSettings base;
+    std::vector<SubspaceSettings> others(6, base);
+    others[0].paths = 7;
+    others[1].subspaces = 7;
+    others[2].lightPaths = 7;
+    others[3].epochs = 7;
+    others[4].directionWeight = 0.07;
+    others[5].lightShare = 0.07;
+    std::set<std::string> names{cacheFile("d", subspaceStamp("a", base), "x")};
+    for (const SubspaceSettings& s : others) {
+        EXPECT_TRUE(names.insert(cacheFile("d", subspaceStamp("a", s), "x")).second);
+        EXPECT_NE(trainOptions(s), trainOptions(base));
+    }
+    EXPECT_EQ(trainOptions(base),
+              "--paths 1000000 --subspaces 1000 --light-paths 2000000 --epochs 20 "
+              "--direction-weight 0.05 --light-share 0.2");
 }
 
 /// A good checksum over numbers that do not fit together.

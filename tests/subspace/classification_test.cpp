@@ -70,6 +70,16 @@ TEST(Centroids, nearestIsTheLeastByEquation18) {
         for (const SubpathEnd& c : centres) EXPECT_GE(d(c), d(centres[found]) - 1e-4);
     }
     EXPECT_EQ(Centroids().nearest(asked[0]), 0u);
+    // Directions count for more where they are said to.
+    const Centroids directed(centres, float(kSigma2), 3.0f);
+    std::size_t moved = 0;
+    for (const SubpathEnd& e : asked) {
+        const double turned = 1 - double(dot(centres[7].direction(), e.direction()));
+        EXPECT_NEAR(double(directed.distance(7, e) - centroids.distance(7, e)),
+                    2.95 * kSigma2 * turned, 1e-4);
+        moved += directed.nearest(e) != centroids.nearest(e);
+    }
+    EXPECT_GT(moved, asked.size() / 4);
 }
 
 TEST(Centroids, areDrawnByWeightAndDiffer) {
