@@ -111,6 +111,11 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
         progress.warning("warning: " + options.scene + ": " + text);
     };
     for (const std::string& text : description.warnings) warn(text);
+    if (method.biased) {
+        warn(method.name +
+             " is BIASED, an experiment of its paper: the picture is wrong, however "
+             "long it renders");
+    }
 
     // Everything that may refuse the command line comes before the long work.
     const Camera::Film film = filmOf(options, description);

@@ -15,6 +15,7 @@ MethodRow twoStageResamplingRow();        // tsr.cpp
 MethodRow importanceCachingRow();         // icbpt.cpp
 MethodRow skeletonRow();                  // skelbpt.cpp
 MethodRow subspaceRow();                  // spcbpt.cpp
+MethodRow subspaceQueueRow();             // spcbpt.cpp; biased
 
 /// `light_paths`: L, the light subpaths per iteration that splat (t = 1).
 Parameter lightPathsParameter();

@@ -19,7 +19,8 @@ std::span<const MethodRow> methods() {
                                                 twoStageResamplingRow(),
                                                 importanceCachingRow(),
                                                 skeletonRow(),
-                                                subspaceRow()};
+                                                subspaceRow(),
+                                                subspaceQueueRow()};
     return rows;
 }
 

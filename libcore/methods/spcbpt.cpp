@@ -10,8 +10,11 @@
 //             an empty LVC_i is a zero sample that counts among the N
 //   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
 //             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
-//             1/(min(j, W_i) M) in iteration j, and M W_i in r. Unlike a queue of M_0 vertices
-//             [eq 20], which is biased where subpaths have several vertices in one subspace
+//             1/(min(j, W_i) M) in iteration j, and M W_i in r
+//   queue     spcbpt_fifo, an experiment: subspace i keeps its last M_0 vertices, R_i of the C_i
+//             that all j iterations have put there: 1/M becomes C_i / (R_i j M) [eq 20, 21; without
+//             the M_r in eq 20's denominator]. Biased, because C_i and R_i depend on the vertices
+//             that are picked from: several of one subpath may lie in one subspace
 //   MIS       paper: r = N Gamma beta / Q(i)                                  [eq 11, 12]
 //             ris:   r = [ (1/(N Gamma)) (1/M + (1 - 1/M) Q(i)/beta) + (1 - 1/N)/M ]^-1, which
 //             knows that one of M subpaths is not always there: the paper's where beta << M Q(i)
@@ -45,6 +48,7 @@ struct Options {
     int picks;               ///< N
     bool resamplingAware;    ///< the weights: ris, or the paper's
     std::uint64_t reuse;     ///< M_0, 0: none
+    bool queue;              ///< keep M_0 vertices, not whole iterations: biased
 };
 
 /// Both subspaces of a vertex in one tag: that of its own walk's role, and that of the other role,
@@ -209,6 +213,7 @@ class SubspaceConnections final : public Method {
         });
         const std::uint32_t count = classes_.lightCount();
         cells_.resize(count);
+        ++iterations_;
         for (Cell& cell : cells_) cell.members.clear();
         for (std::size_t n = 0; n < entries.size(); ++n) {
             cells_[labels[n]].members.push_back(pool.prefix(entries[n]));
@@ -216,18 +221,25 @@ class SubspaceConnections final : public Method {
         context.threads.forEach(count, [&](std::size_t i) {
             Cell& cell = cells_[i];
             cell.fresh = cell.members.size();
+            cell.generated += cell.fresh;
             for (const Kept& kept : kept_[i]) {
                 for (std::size_t end = 0; const std::uint32_t length : kept.lengths) {
                     end += length;
                     cell.members.push_back({kept.vertices.data() + end - length, length});
                 }
             }
+            cell.iterations = double(kept_[i].size() + 1);
+            if (options_.queue) {
+                // The order of an iteration's subpaths is random: the first count as the youngest.
+                cell.members.resize(std::min(cell.members.size(), std::size_t(options_.reuse)));
+                cell.iterations = double(iterations_) * double(cell.members.size()) /
+                                  double(std::max<std::uint64_t>(cell.generated, 1));
+            }
             std::vector<double> weights;
             for (const Subpath& y : cell.members) {
                 weights.push_back(double(mean(y.back().throughput)));
             }
             cell.within = AliasTable(weights);
-            cell.iterations = double(kept_[i].size() + 1);
         });
     }
 
@@ -284,7 +296,7 @@ class SubspaceConnections final : public Method {
     }
 
   private:
-    /// Prefixes of one iteration that end in a subspace, one after the other.
+    /// Prefixes of one iteration (queue: of all) that end in a subspace, one after the other.
     struct Kept {
         std::vector<PathVertex> vertices;
         std::vector<std::uint32_t> lengths;
@@ -293,7 +305,8 @@ class SubspaceConnections final : public Method {
     struct Cell {
         std::vector<Subpath> members;  ///< of the pool first, then the kept ones
         std::size_t fresh = 0;         ///< those of the pool
-        double iterations = 1.0;       ///< that they are from: min(j, W_i)
+        std::uint64_t generated = 0;   ///< C_i: of all iterations so far
+        double iterations = 1.0;       ///< that they stand for: min(j, W_i); queue: j R_i / C_i
         AliasTable within;             ///< P_r
     };
 
@@ -301,15 +314,24 @@ class SubspaceConnections final : public Method {
     void keep(const ThreadPool& threads) {
         threads.forEach(kept_.size(), [&](std::size_t i) {
             const std::uint32_t window = classes_.window(std::uint32_t(i));
-            if (window == 1) return;
-            Kept kept;
-            for (const Subpath& y : std::span(cells_[i].members).first(cells_[i].fresh)) {
-                kept.vertices.insert(kept.vertices.end(), y.begin(), y.end());
-                kept.lengths.push_back(std::uint32_t(y.size()));
+            const auto members = std::span<const Subpath>(cells_[i].members);
+            if (options_.queue) {
+                const Kept all = copyOf(members);  // some of them lie in what it replaces
+                kept_[i].assign(1, all);
+            } else if (window > 1) {
+                kept_[i].push_back(copyOf(members.first(cells_[i].fresh)));
+                if (kept_[i].size() == window) kept_[i].pop_front();
             }
-            kept_[i].push_back(std::move(kept));
-            if (kept_[i].size() == window) kept_[i].pop_front();
         });
+    }
+
+    static Kept copyOf(std::span<const Subpath> members) {
+        Kept kept;
+        for (const Subpath& y : members) {
+            kept.vertices.insert(kept.vertices.end(), y.begin(), y.end());
+            kept.lengths.push_back(std::uint32_t(y.size()));
+        }
+        return kept;
     }
 
     static std::size_t tasksFor(std::size_t entries) {
@@ -319,18 +341,23 @@ class SubspaceConnections final : public Method {
     Options options_;
     Classes classes_;
     SubspaceDensity density_;
+    std::uint64_t iterations_ = 0;                                           // j, with the warm-up
     std::vector<Cell> cells_;                                                // by light subspace
     std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
 };
 
 }  // namespace
 
-MethodRow subspaceRow() {
+namespace {
+MethodRow rowOf(bool queue) {
     using Kind = Parameter::Kind;
     MethodRow row;
-    row.name = "spcbpt";
+    row.name = queue ? "spcbpt_fifo" : "spcbpt";
     row.reference = "Su22";
-    row.summary = "light vertices resampled in two stages, by trained subspaces of light subpaths";
+    row.summary = queue ? "spcbpt with the paper's queues of light vertices across iterations"
+                        : "light vertices resampled in two stages, by trained subspaces of light "
+                          "subpaths";
+    row.biased = queue;
     row.techniques = {.hits = true, .connects = true, .splats = true};
     row.needsSubspaces = true;
     row.parameters = {
@@ -344,8 +371,9 @@ MethodRow subspaceRow() {
          1,
          "density that the weights see: resampling-aware, or the target alone (the paper)",
          {"ris", "paper"}},
-        {"reuse", Kind::Integer, 0, 0, 1e6,
-         "vertices kept per subspace across iterations, M_0; 0: none"},
+        queue ? Parameter{"reuse", Kind::Integer, 200, 1, 1e6, "vertices kept per subspace, M_0"}
+              : Parameter{"reuse", Kind::Integer, 0, 0, 1e6,
+                          "vertices kept per subspace across iterations, M_0; 0: none"},
         {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
         {"train.subspaces", Kind::Integer, 1000, 1, 4000, "subspaces of light and of eye subpaths"},
         {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
@@ -356,12 +384,21 @@ MethodRow subspaceRow() {
          "share of the light subspaces that divide the lights themselves"},
         presetParameter()};
     row.paper = {{"weights", 1}, {"reuse", 200}};
-    row.create = [](const Settings& s) {
+    row.create = [queue](const Settings& s) {
         return std::make_unique<SubspaceConnections>(
             Options{s.integer("candidates"), int(s.integer("connections")),
-                    s.integer("weights") == 0, s.integer("reuse")});
+                    s.integer("weights") == 0, s.integer("reuse"), queue});
     };
     return row;
+}
+}  // namespace
+
+MethodRow subspaceRow() {
+    return rowOf(false);
+}
+
+MethodRow subspaceQueueRow() {
+    return rowOf(true);
 }
 
 }  // namespace lacuna

@@ -267,6 +267,28 @@ TEST_F(RenderOutput, SizeDepthAndLensComeFromTheSceneUnlessGiven) {
     EXPECT_TRUE(has("left_out"));
 }
 
+/// Experiments say so wherever somebody may look: list, help, stderr, header, JSON.
+TEST_F(RenderOutput, BiasedMethodsSaySo) {
+    std::size_t biased = 0;
+    for (const MethodRow& row : methods()) {
+        if (!row.biased) continue;
+        ++biased;
+        const Outcome o = run(quick(row.name, "--json @o.json --quiet"));
+        ASSERT_EQ(o.exitCode, 0) << o.err;
+        EXPECT_NE(o.err.find(row.name + " is BIASED"), std::string::npos) << o.err;
+        EXPECT_NE(json("o.json")["warnings"].dump().find("BIASED"), std::string::npos);
+        EXPECT_EQ(json("o.json")["biased"], true);
+        EXPECT_TRUE(readExrLayers(path("out.exr")).attributes.contains("biased"));
+        EXPECT_NE(run("--help-method " + row.name).out.find("biased"), std::string::npos);
+        const std::string list = run("--list-methods").out;
+        const std::size_t line = list.find(row.name + " ");
+        ASSERT_NE(line, std::string::npos);
+        EXPECT_NE(list.substr(line, list.find('\n', line) - line).find("biased"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(biased, 1u);
+}
+
 TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
     TinyScene scene;
     scene.lamp = false;
@@ -276,7 +298,7 @@ TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
             run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 2 --method " + row.name +
                 cheap(row.name));
         EXPECT_EQ(o.exitCode, 0) << o.err;
-        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), row.biased ? 2 : 1) << o.err;
         EXPECT_NE(o.err.find("light"), std::string::npos) << o.err;
         for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
     }
