@@ -112,9 +112,8 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     };
     for (const std::string& text : description.warnings) warn(text);
     if (method.biased) {
-        warn(method.name +
-             " is BIASED, an experiment of its paper: the picture is wrong, however "
-             "long it renders");
+        warn("method " + method.name + " is BIASED: an experiment of a paper (" + method.reference +
+             "), its picture is wrong on purpose");
     }
 
     // Everything that may refuse the command line comes before the long work.

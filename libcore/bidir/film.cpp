@@ -132,6 +132,8 @@ Image TechniqueFilm::mean(int s, int t, bool unweighted) const {
 }
 
 void TechniqueFilm::writeTo(LayeredImage& image) const {
+    const std::size_t pixels = std::size_t(width_) * std::size_t(height_);
+    std::vector<double> total(pixels, 0.0), first(pixels, 0.0);  // of the channels, over layers
     for (int k = 1; k <= maxDepth_; ++k) {
         for (int s = 0; s <= k; ++s) {
             const int t = k + 1 - s;
@@ -139,7 +141,17 @@ void TechniqueFilm::writeTo(LayeredImage& image) const {
             if (std::all_of(weighted.begin(), weighted.end(), isBlack)) continue;
             image.setRgb("weighted." + layerName(s, t), mean(s, t, false));
             image.setRgb("unweighted." + layerName(s, t), mean(s, t, true));
+            const std::vector<Rgb>& added = layers_[2 * indexOf(s, t)];
+            for (std::size_t i = 0; i < pixels; ++i) {
+                const double sum = double(added[i].r) + double(added[i].g) + double(added[i].b);
+                total[i] += sum;
+                if (t == 2 && s > 0) first[i] += sum;
+            }
         }
+    }
+    std::vector<float>& share = image.channel("share.t02");
+    for (std::size_t i = 0; i < pixels; ++i) {
+        share[i] = total[i] > 0.0 ? float(first[i] / total[i]) : 0.0f;
     }
 }
 

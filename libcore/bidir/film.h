@@ -75,7 +75,9 @@ class TechniqueFilm {
     /// Adds to one pixel; different pixels may be added to at the same time.
     void add(int s, int t, std::uint32_t pixel, const Rgb& weighted, const Rgb& unweighted);
     void countIteration() { ++iterations_; }
-    /// Layers weighted.sSStTT and unweighted.sSStTT, of techniques that ever contributed.
+    /// Layers weighted.sSStTT and unweighted.sSStTT, of techniques that ever contributed, and the
+    /// channel share.t02: what connections of the first eye vertex (t = 2, s > 0) add to the
+    /// pixel's mean over the channels, as a share of it [Nabata20a fig 2]; 0 where it is black.
     void writeTo(LayeredImage& image) const;
     Image weighted(int s, int t) const { return mean(s, t, false); }
     Image unweighted(int s, int t) const { return mean(s, t, true); }

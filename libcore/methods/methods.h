@@ -11,6 +11,7 @@ MethodRow bidirectionalRow();             // bpt.cpp
 MethodRow lvcRow();                       // lvcbpt.cpp
 MethodRow probabilisticConnectionsRow();  // pcbpt.cpp
 MethodRow resamplingAwareRow();           // risbpt.cpp
+MethodRow currentSetRow();                // risbpt.cpp, biased
 MethodRow twoStageResamplingRow();        // tsr.cpp
 MethodRow importanceCachingRow();         // icbpt.cpp
 MethodRow skeletonRow();                  // skelbpt.cpp

@@ -16,6 +16,7 @@ std::span<const MethodRow> methods() {
                                                 lvcRow(),
                                                 probabilisticConnectionsRow(),
                                                 resamplingAwareRow(),
+                                                currentSetRow(),
                                                 twoStageResamplingRow(),
                                                 importanceCachingRow(),
                                                 skeletonRow(),

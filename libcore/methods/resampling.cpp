@@ -99,6 +99,7 @@ class Resampling final : public Method {
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
         pmfs_ = CachePmfs(rows);
+        if (options_.currentQ) std::copy(flow_.begin(), flow_.end(), q_.begin());
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {

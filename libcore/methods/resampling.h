@@ -8,7 +8,8 @@
 //                 h(y) / (M N Pbar(y)),   Pbar = (sum_c P_c + 1/|Y|) / (n' + 1),
 //             over the n' points whose pmf is not empty                            (methods.md 2)
 //   Q(c)      (1/M) sum over Y of q*(y, c); an iteration's weights see the mean Q of the
-//             earlier ones at the new cache points (as printed: of the one before)
+//             earlier ones at the new cache points (as printed: of the one before). Read off Y
+//             itself (risbpt-current) it makes w depend on what it weighs: E[w h] is not E[w] h
 //   MIS       plain: r = 1 [Popov15]; ris: the mean over the N_c + 1 choices of
 //                 [ 1/M + (1/N) (1 - 1/M) p/q ]^-1,   p/q = max(clamp, Q(c) / q*(y, z)),
 //             with V = 1, and N M / Vbar for the virtual point     [Nabata20a eq 14 and 5.2]
@@ -34,6 +35,7 @@ struct ResamplingOptions {
     int qPoints = 3;     ///< N_q
     int qSets = 1;       ///< earlier iterations whose Q are averaged
     double clamp = 1e-3;
+    bool currentQ = false;  ///< biased: Q of the current pool at each point
 };
 
 std::unique_ptr<Method> makeResampling(const ResamplingOptions& options);

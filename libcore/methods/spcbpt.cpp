@@ -11,7 +11,7 @@
 //   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
 //             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
 //             1/(min(j, W_i) M) in iteration j, and M W_i in r
-//   queue     spcbpt_fifo, an experiment: subspace i keeps its last M_0 vertices, R_i of the C_i
+//   queue     spcbpt-fifo, an experiment: subspace i keeps its last M_0 vertices, R_i of the C_i
 //             that all j iterations have put there: 1/M becomes C_i / (R_i j M) [eq 20, 21; without
 //             the M_r in eq 20's denominator]. Biased, because C_i and R_i depend on the vertices
 //             that are picked from: several of one subpath may lie in one subspace
@@ -352,7 +352,7 @@ namespace {
 MethodRow rowOf(bool queue) {
     using Kind = Parameter::Kind;
     MethodRow row;
-    row.name = queue ? "spcbpt_fifo" : "spcbpt";
+    row.name = queue ? "spcbpt-fifo" : "spcbpt";
     row.reference = "Su22";
     row.summary = queue ? "spcbpt with the paper's queues of light vertices across iterations"
                         : "light vertices resampled in two stages, by trained subspaces of light "

@@ -177,7 +177,7 @@ TEST_F(SubspaceReuse, leavesTheMeanAsItIs) {
 /// Here all vertices that are not on lights lie in one subspace, so that a short queue holds the
 /// beginnings of subpaths only: what they carry stands for everything.
 TEST_F(SubspaceReuse, queuesAreBiasedAndTheLongerTheLess) {
-    const MethodRow& row = findMethod("spcbpt_fifo");
+    const MethodRow& row = findMethod("spcbpt-fifo");
     EXPECT_TRUE(row.biased);
     auto subspaces = std::make_shared<Subspaces>();
     subspaces->lightTree = DecisionTree({{0.0f, 1u << 4 | DecisionTree::kLeaf}}, 2);

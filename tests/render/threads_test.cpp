@@ -1,4 +1,6 @@
 // The same command gives the same pixels, bit for bit, whatever the number of threads.
+#include <algorithm>
+
 #include "libcore/image/exr.h"
 #include "libcore/methods/registry.h"
 #include "tests/render/render_tool.h"
@@ -45,11 +47,16 @@ std::vector<std::string> names() {
     return all;
 }
 
+std::string nameOf(const ::testing::TestParamInfo<std::string>& method) {
+    std::string name = method.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
 TEST_P(RenderThreads, PixelsAreTheSame) {
     expectTheSame(quick(GetParam(), "--width 50 --height 37 --iterations 3 --techniques"));
 }
-INSTANTIATE_TEST_SUITE_P(Methods, RenderThreads, ::testing::ValuesIn(names()),
-                         [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Methods, RenderThreads, ::testing::ValuesIn(names()), nameOf);
 
 TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
     for (const char* scene : {"cornell-box", "kitchen-glass", "light-environment"}) {
@@ -59,8 +66,7 @@ TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
                       GetParam() + preparing(GetParam()));
     }
 }
-INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()),
-                         [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()), nameOf);
 
 class RenderSeed : public RenderTool {};
 

@@ -36,6 +36,7 @@ TEST_F(RenderUsage, MethodsAreListedWithTheirParameters) {
         const Outcome help = run("--help-method " + row.name);
         EXPECT_EQ(help.exitCode, 0);
         EXPECT_NE(help.out.find(row.summary), std::string::npos) << row.name;
+        EXPECT_EQ(help.out.find("\nbiased") != std::string::npos, row.biased) << row.name;
         for (const Parameter& p : row.parameters) {
             EXPECT_NE(help.out.find("  " + p.name + " "), std::string::npos) << p.name;
             EXPECT_NE(help.out.find(p.help), std::string::npos) << p.name;
