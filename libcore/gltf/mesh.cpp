@@ -144,6 +144,18 @@ void repairNormals(Task& task) {
     }
 }
 
+/// TANGENT where it has a use: with a normal map and with normals (glTF 2.0, 3.7.2.1).
+void readTangents(const Document& document, Task& task, std::size_t count,
+                  const std::vector<std::uint32_t>& which) {
+    const tinygltf::Primitive& primitive = primitiveOf(document, task);
+    const int tangents = attribute(primitive, "TANGENT");
+    if (tangents < 0 || primitive.material < 0 || task.result.normals.empty()) return;
+    const auto& material = document.model.materials[std::size_t(primitive.material)];
+    if (material.normalTexture.index < 0) return;
+    task.result.tangents =
+        readVertices<std::array<float, 4>, 4>(document, task, "TANGENT", tangents, count, which);
+}
+
 /// COLOR_0 has three components or four; values outside [0, 1] are cut off.
 void readColors(const Document& document, Task& task, int accessor, std::size_t count,
                 const std::vector<std::uint32_t>& which) {
@@ -187,6 +199,7 @@ void readPrimitive(const Document& document, Task& task) {
     if (const int normals = attribute(primitive, "NORMAL"); normals >= 0) {
         mesh.normals = readVertices<Vec3, 3>(document, task, "NORMAL", normals, vertexCount, which);
     }
+    readTangents(document, task, vertexCount, which);
     if (const int uvs = attribute(primitive, "TEXCOORD_0"); uvs >= 0) {
         mesh.uvs = readVertices<Vec2, 2>(document, task, "TEXCOORD_0", uvs, vertexCount, which);
     }

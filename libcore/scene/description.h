@@ -77,8 +77,11 @@ struct Material {
 struct Mesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty, or one per position (not necessarily unit)
-    std::vector<Vec2> uvs;      ///< empty, or one per position (TEXCOORD_0)
-    std::vector<Vec2> uvs1;     ///< likewise (TEXCOORD_1)
+    /// Empty, or one per position (TANGENT), only where there are normals: the direction of the
+    /// normal map's right edge, and the sign of its upper one, cross(normal, tangent).
+    std::vector<std::array<float, 4>> tangents;
+    std::vector<Vec2> uvs;   ///< empty, or one per position (TEXCOORD_0)
+    std::vector<Vec2> uvs1;  ///< likewise (TEXCOORD_1)
     /// Empty, or one per position (COLOR_0): linear factors on base colour and alpha.
     std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -17,6 +17,7 @@ namespace lacuna {
 struct Scene::WorldMesh {
     std::vector<Vec3> positions;  // one more than there are vertices (accel.h)
     std::vector<Vec3> normals;
+    std::vector<std::array<float, 4>> tangents;  // as in the file, but in this mesh's space
     std::vector<Vec2> uvs, uvs1;
     std::vector<std::array<float, 4>> colors;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -27,6 +28,29 @@ struct Scene::WorldMesh {
     /// The coordinates by which a texture lies on the mesh; may be empty.
     const std::vector<Vec2>& uvsOf(const TextureUse& use) const {
         return use.secondSet ? uvs1 : uvs;
+    }
+    Vec3 tangentAt(const std::array<std::uint32_t, 3>& t, float u, float v) const {
+        const auto at = [&](std::uint32_t corner) {
+            return Vec3{tangents[corner][0], tangents[corner][1], tangents[corner][2]};
+        };
+        return at(t[0]) * (1.0f - u - v) + at(t[1]) * u + at(t[2]) * v;
+    }
+};
+
+/// How a normal map lies at a point: the directions, of any length, of the image's right and upper
+/// edge.
+struct Scene::MapAxes {
+    Vec3 right, up;
+
+    /// The directions in which the triangle's texture coordinates grow. glTF's bitangent points to
+    /// the image's upper edge, against v [glTF 2.0, 3.9.3].
+    static MapAxes byCoordinates(const std::array<Vec3, 3>& corners,
+                                 const std::array<Vec2, 3>& uvs) {
+        const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+        const Vec2 d1 = uvs[1] - uvs[0], d2 = uvs[2] - uvs[0];
+        // The determinant's sign is enough: lengths are normalised away.
+        const float side = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;
+        return {(e1 * d2.y - e2 * d1.y) * side, (e1 * d2.x - e2 * d1.x) * side};
     }
 };
 
@@ -41,6 +65,7 @@ struct Scene::Object {
     Vec3 point(Vec3 p) const {
         return toWorld[0] * p.x + toWorld[1] * p.y + toWorld[2] * p.z + toWorld[3];
     }
+    Vec3 vector(Vec3 v) const { return toWorld[0] * v.x + toWorld[1] * v.y + toWorld[2] * v.z; }
     Vec3 normalTo(Vec3 n) const { return normal[0] * n.x + normal[1] * n.y + normal[2] * n.z; }
 };
 
@@ -183,6 +208,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         const Affine normals = normalTransform(transform);
         for (const Vec3& n : from.normals) {
             to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
+        }
+        to.tangents = std::move(from.tangents);
+        for (auto& t : to.tangents) {
+            const Vec3 along(transform.vector(normalize(Vec3d{t[0], t[1], t[2]})));
+            // A mirror turns the image over, but not the cross product that stands for its up.
+            t = {along.x, along.y, along.z, mirroredMesh[m] ? -t[3] : t[3]};
         }
         to.uvs = std::move(from.uvs);
         if (usesSecondSet(d.materials[from.material])) to.uvs1 = std::move(from.uvs1);
@@ -388,13 +419,15 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
         s.barycentric = {hit.v, hit.u};
     }
     s.ns = s.ng;
+    bool turned = false;
     if (!mesh.normals.empty()) {
         Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
         if (object.instanced) n = object.normalTo(n);
         n = normalize(n);
         const float side = dot(n, s.ng);
         // Normals that contradict the winding are turned; ones at a right angle say nothing.
-        if (std::fabs(side) > 1e-3f) s.ns = side < 0.0f ? -n : n;
+        turned = side < 0.0f;
+        if (std::fabs(side) > 1e-3f) s.ns = turned ? -n : n;
     }
     s.uv = uvAt(mesh.uvs, t, hit.u, hit.v);
     s.material = mesh.material;
@@ -411,25 +444,28 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     const Material& material = description_.materials[mesh.material];
     const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
     if (material.normalTexture && !uvs.empty()) {
-        s.ns = bumped(s, material.normalTexture, material.normalScale, {p0, p1, p2},
-                      {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+        MapAxes axes = MapAxes::byCoordinates({p0, p1, p2}, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+        if (!mesh.tangents.empty()) {
+            Vec3 right = mesh.tangentAt(t, hit.u, hit.v);
+            bool over = (mesh.tangents[t[0]][3] < 0.0f) != turned;
+            if (object.instanced) {
+                right = object.vector(right);
+                over = over != object.mirrored;
+            }
+            // Tangents that say nothing (zero or NaN) leave it to the coordinates.
+            const Vec3 up = cross(s.ns, right) * (over ? -1.0f : 1.0f);
+            if (lengthSquared(up) > 0.0f) axes = {right, up};
+        }
+        s.ns = bumped(s, material.normalTexture, material.normalScale, axes);
     }
 }
 
-/// Shading normal by a normal map. The tangents are the directions in which the triangle's texture
-/// coordinates grow, made perpendicular to the interpolated normal.
+/// Shading normal by a normal map, whose axes are made perpendicular to the interpolated normal.
 Vec3 Scene::bumped(const SurfacePoint& point, const TextureUse& map, float scale,
-                   const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& uvs) const {
-    const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
-    const Vec2 d1 = uvs[1] - uvs[0], d2 = uvs[2] - uvs[0];
-    // The determinant's sign is enough: lengths are normalised away.
-    const float side = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;
-    const Vec3 along = (e1 * d2.y - e2 * d1.y) * side;
-    const Vec3 tangent = normalize(along - point.ns * dot(point.ns, along));
-    const Vec3 down = (e2 * d1.x - e1 * d2.x) * side;
+                   const MapAxes& axes) const {
+    const Vec3 tangent = normalize(axes.right - point.ns * dot(point.ns, axes.right));
     Vec3 bitangent = cross(point.ns, tangent);
-    // glTF's bitangent points to the image's upper edge, against v [glTF 2.0, 3.9.3].
-    if (dot(bitangent, down) > 0.0f) bitangent = -bitangent;
+    if (dot(bitangent, axes.up) < 0.0f) bitangent = -bitangent;
     const Rgb texel = sample(map, point.uv, point.uv1).rgb;
     const Vec3 n = tangent * ((2.0f * texel.r - 1.0f) * scale) +
                    bitangent * ((2.0f * texel.g - 1.0f) * scale) +

@@ -83,10 +83,11 @@ class Scene {
   private:
     struct Object;
     struct WorldMesh;
+    struct MapAxes;
 
     void surfaceAt(const Hit& hit, SurfacePoint& out) const;
     Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
-                const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& uvs) const;
+                const MapAxes& axes) const;
     /// Whether rays can pass through some of the mesh's points.
     bool hasHoles(const Material& material, const WorldMesh& mesh) const;
     float opacity(const Hit& hit) const;

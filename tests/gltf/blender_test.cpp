@@ -32,6 +32,10 @@ TEST(Blender, TheStillLifeArrives) {
     EXPECT_TRUE(named(scene, "tiles").baseColorTexture);
     EXPECT_TRUE(named(scene, "enamel").metallicRoughnessTexture);
     EXPECT_TRUE(named(scene, "copper").normalTexture);
+    // Tangents are exported of all, read where a normal map uses them.
+    EXPECT_EQ(std::count_if(scene.meshes.begin(), scene.meshes.end(),
+                            [](const Mesh& m) { return !m.tangents.empty(); }),
+              1);
     const Material& panel = named(scene, "panel");
     EXPECT_NEAR(panel.emission.r, 12.0f, 1e-5f);
     EXPECT_FALSE(panel.doubleSided);

@@ -15,6 +15,8 @@ GltfBuilder everything() {
         b.accessor<std::int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127, 0, 0, 127}, "VEC3", true);
     const int uvs =
         b.accessor<std::uint16_t>({0, 0, 65535, 0, 0, 65535, 65535, 65535}, "VEC2", true);
+    const int tangents =
+        b.accessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 0}, "VEC4");
     const int colors = b.accessor<std::uint8_t>(ByteVector(12, 200), "VEC3", true);
     const int indices = b.accessor<std::uint16_t>({0, 1, 2, 2, 1, 3}, "SCALAR");
     b.root["accessors"][0]["sparse"] = {
@@ -59,11 +61,8 @@ GltfBuilder everything() {
                            {{"thicknessFactor", 1},
                             {"attenuationDistance", 3},
                             {"attenuationColor", {1, 0.5, 1}}}}}}});
-    const json attributes = {{"POSITION", positions},
-                             {"NORMAL", normals},
-                             {"TEXCOORD_0", uvs},
-                             {"TEXCOORD_1", uvs},
-                             {"COLOR_0", colors}};
+    const json attributes = {{"POSITION", positions}, {"NORMAL", normals}, {"TANGENT", tangents},
+                             {"TEXCOORD_0", uvs},     {"TEXCOORD_1", uvs}, {"COLOR_0", colors}};
     b.mesh({{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}});
     b.root["meshes"][0]["primitives"].push_back({{"attributes", attributes}, {"mode", 5}});
     b.add("cameras", {{"type", "perspective"},

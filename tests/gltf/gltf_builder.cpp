@@ -170,6 +170,8 @@ void expectValid(const SceneDescription& scene) {
         EXPECT_LT(mesh.material, scene.materials.size());
         EXPECT_FALSE(mesh.triangles.empty());
         EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+        EXPECT_TRUE(mesh.tangents.empty() || (mesh.tangents.size() == mesh.positions.size() &&
+                                              mesh.normals.size() == mesh.positions.size()));
         EXPECT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
         bool finite = true, inRange = true;
         for (const Vec3& p : mesh.positions) finite = finite && isFinite(p);

@@ -97,6 +97,27 @@ TEST(Mesh, NormalsAndUvs) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(Mesh, TangentsAreReadWhereANormalMapUsesThem) {
+    const auto load = [](bool normals, bool map) {
+        TriangleBuilder b;
+        const int texture = b.texture(png(1, 1, ByteVector(4, 128)));
+        b.add("materials", map ? json{{"normalTexture", {{"index", texture}}}} : json::object());
+        b.primitive()["material"] = 0;
+        b.primitive()["attributes"]["TANGENT"] =
+            b.accessor<float>({1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, -1}, "VEC4");
+        if (normals) {
+            b.primitive()["attributes"]["NORMAL"] =
+                b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+        }
+        return b.load().meshes.at(0).tangents;
+    };
+    const std::vector<std::array<float, 4>> tangents = load(true, true);
+    ASSERT_EQ(tangents.size(), 3u);
+    EXPECT_EQ(tangents[2], (std::array<float, 4>{0, 0, 1, -1}));
+    EXPECT_TRUE(load(false, true).empty());  // without normals they have to be ignored
+    EXPECT_TRUE(load(true, false).empty());
+}
+
 TEST(Mesh, ZeroNormalsBecomeFaceNormals) {
     TriangleBuilder b;
     b.primitive()["attributes"]["NORMAL"] = b.accessor<float>({0, 0, 0, 0, 1, 0, 0, 0, 0}, "VEC3");

@@ -238,6 +238,64 @@ TEST(SurfacePoint, NormalMapsTiltTowardsTheImagesRightAndTop) {
     }
 }
 
+TEST(SurfacePoint, TangentsSayHowANormalMapLies) {
+    for (const NamedTransform& transform : transforms()) {
+        for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+            for (const float handed : {1.0f, -1.0f}) {
+                for (const float side : {1.0f, -1.0f}) {  // normals with and against the winding
+                    SceneBuilder b;
+                    lacuna::Material m = matte(Rgb(0.5f));
+                    m.normalTexture = b.add(tilt(191, 153, 255));
+                    Mesh mesh = quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m));
+                    mesh.normals.assign(4, {0, 0, side});
+                    mesh.tangents.assign(4, {-0.6f, 0.8f, 0, handed});
+                    place(b, mesh, transform.toWorld, placement);
+                    const auto scene = b.build();
+
+                    // The map is on the surface before the surface is moved.
+                    const Affine& a = transform.toWorld;
+                    const Vec3d right{-0.6, 0.8, 0}, along = a.vector(right);
+                    const Vec3d edge = a.vector(cross(Vec3d{0, 0, side}, right) * handed);
+                    const Vec3d n = normalize(a.normal({0, 0, 1}) * (a.determinant() < 0 ? -1 : 1));
+                    const Vec3d tangent = normalize(along - n * dot(n, along));
+                    Vec3d up = cross(n, tangent);
+                    if (dot(up, edge) < 0) up = -up;
+                    const Vec3d exact =
+                        normalize(tangent * (2 * 191 / 255.0 - 1) + up * (2 * 153 / 255.0 - 1) + n);
+                    RayTally tally;
+                    const Vec3d at = a.point({0.3, 0.2, 0}) - scene->centre();
+                    const double reach = 0.01 * length(a.vector({1, 0, 0}));
+                    const auto hit = scene->intersect(Vec3(at + n * reach), {}, Vec3(-n),
+                                                      RayKind::Camera, tally);
+                    ASSERT_TRUE(hit) << transform.name;
+                    // As for the corners above; that the frame turns with ng is in it.
+                    const double size =
+                        2 * std::min(length(a.vector({1, 0, 0})), length(a.vector({0, 1, 0})));
+                    EXPECT_LT(length(Vec3d(hit->ns) - exact),
+                              1e-5 + 2 * std::sqrt(3.0) * 6e-7 / size)
+                        << transform.name << " " << handed << " " << side;
+                }
+            }
+        }
+    }
+}
+
+TEST(SurfacePoint, TangentsThatSayNothingLeaveItToTheCoordinates) {
+    SceneBuilder b;
+    lacuna::Material m = matte(Rgb(0.5f));
+    m.normalTexture = b.add(tilt(255, 128, 128));
+    Mesh mesh = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(m));
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.tangents.assign(4, {0, 0, 0, 1});
+    b.add(mesh);
+    const auto scene = b.build();
+    RayTally tally;
+    const auto hit = scene->intersect(Vec3(Vec3d{0.5, 0.4, 1} - scene->centre()), {}, {0, 0, -1},
+                                      RayKind::Camera, tally);
+    ASSERT_TRUE(hit);
+    EXPECT_GT(hit->ns.x, 0.9f);
+}
+
 TEST(SurfacePoint, NormalMapsThatSayNothingAreIgnored) {
     SceneBuilder b;
     lacuna::Material below = matte(Rgb(0.5f)), plain = below;
