@@ -1,6 +1,7 @@
 #include "libcore/gltf/gltf.h"
 
 #include <chrono>
+#include <cmath>
 #include <new>
 
 #include "libcore/gltf/document.h"
@@ -31,8 +32,8 @@ class Stopwatch {
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// One instance per placed primitive. Negative determinants stay in toWorld; without one there is
-/// no surface to hit.
+/// One instance per placed primitive and copy. Negative determinants stay in toWorld; without one
+/// there is no surface to hit.
 void addInstances(const Document& document, const Placement& placement, const MeshTable& table,
                   SceneDescription& scene, Warnings& warnings) {
     const int mesh = document.model.nodes[placement.node].mesh;
@@ -40,18 +41,26 @@ void addInstances(const Document& document, const Placement& placement, const Me
     const std::string place = "nodes[" + std::to_string(placement.node) + "]";
     warnings.add("skins are not rendered: the mesh keeps its own pose",
                  document.model.nodes[placement.node].skin >= 0, place);
-    if (placement.toWorld.determinant() == 0.0) {
-        warnings.add("objects scaled to nothing are left out", 1, place);
-        return;
-    }
-    for (const std::uint32_t index : table.ofPrimitive[std::size_t(mesh)]) {
-        if (index == MeshTable::kNone) continue;
-        if (scene.instances.size() >= Limits::kInstances) {
-            refuse(document.file, place,
-                   "at most " + std::to_string(Limits::kInstances) + " instances", "more",
-                   "simplify the scene");
+    for (const Affine& copy : meshCopies(document, placement.node)) {
+        const Affine toWorld = placement.toWorld * copy;
+        const double determinant = toWorld.determinant();
+        if (!std::isfinite(determinant)) {
+            refuse(document.file, place, "a finite transform", "one that overflows",
+                   "check the scales in the hierarchy");
         }
-        scene.instances.push_back({index, placement.toWorld});
+        if (determinant == 0.0) {
+            warnings.add("objects scaled to nothing are left out", 1, place);
+            continue;
+        }
+        for (const std::uint32_t index : table.ofPrimitive[std::size_t(mesh)]) {
+            if (index == MeshTable::kNone) continue;
+            if (scene.instances.size() >= Limits::kInstances) {
+                refuse(document.file, place,
+                       "at most " + std::to_string(Limits::kInstances) + " instances", "more",
+                       "simplify the scene");
+            }
+            scene.instances.push_back({index, toWorld});
+        }
     }
 }
 

@@ -10,12 +10,12 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 9> kSupported = {
+constexpr std::array<std::string_view, 10> kSupported = {
     "KHR_lights_punctual",     "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_specular",
     "KHR_materials_volume",    "KHR_materials_transmission",
     "KHR_materials_clearcoat", "KHR_mesh_quantization",
-    "KHR_texture_transform",
+    "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
 };
 
 bool isSupported(const std::string& name) {

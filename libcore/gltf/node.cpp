@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/gltf/accessor.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -113,7 +115,58 @@ std::vector<std::size_t> sceneRoots(const Document& document, std::vector<bool> 
     return roots;
 }
 
+/// One attribute of EXT_mesh_gpu_instancing, as `components` floats per copy; empty if it is not
+/// there. `count`: copies so far known, 0 at first.
+std::vector<float> readCopies(const Document& document, const tinygltf::Value& attributes,
+                              const char* name, int components, const std::string& place,
+                              std::size_t& count) {
+    if (!attributes.Has(name)) return {};
+    const AccessorView view =
+        viewAccessor(document, attributes.Get(name).GetNumberAsInt(), components);
+    if (count != 0 && view.count != count) {
+        refuse(document.file, place + "." + name,
+               std::to_string(count) + " elements, as many as the others have",
+               std::to_string(view.count));
+    }
+    count = view.count;
+    return readFloats(view);
+}
+
 }  // namespace
+
+std::vector<Affine> meshCopies(const Document& document, std::size_t node) {
+    const auto& extensions = document.model.nodes[node].extensions;
+    const auto extension = extensions.find("EXT_mesh_gpu_instancing");
+    if (extension == extensions.end() || !extension->second.Has("attributes")) return {Affine{}};
+    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    const std::string place = placeOf(node) + ".extensions.EXT_mesh_gpu_instancing";
+
+    std::size_t count = 0;
+    const auto read = [&](const char* name, int components) {
+        return readCopies(document, attributes, name, components, place, count);
+    };
+    const std::vector<float> moves = read("TRANSLATION", 3), turns = read("ROTATION", 4),
+                             scales = read("SCALE", 3);
+    if (count == 0) return {Affine{}};
+    std::vector<Affine> copies;
+    copies.reserve(count);
+    tinygltf::Node copy;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto take = [i](const std::vector<float>& from, std::size_t n,
+                              std::vector<double>& to) {
+            if (!from.empty()) to.assign(&from[i * n], &from[i * n] + n);
+        };
+        take(moves, 3, copy.translation);
+        take(turns, 4, copy.rotation);
+        take(scales, 3, copy.scale);
+        copies.push_back(fromTrs(document, node, copy));
+        if (!isFinite(copies.back())) {
+            refuse(document.file, place, "finite transforms",
+                   "another one, of copy " + std::to_string(i));
+        }
+    }
+    return copies;
+}
 
 std::vector<Placement> flattenScene(const Document& document, Warnings& warnings) {
     const auto& nodes = document.model.nodes;

@@ -19,4 +19,9 @@ struct Placement {
 /// not affine.
 std::vector<Placement> flattenScene(const Document& document, Warnings& warnings);
 
+/// Where EXT_mesh_gpu_instancing draws the mesh of `node`, in the node's own coordinates; the
+/// identity alone where the node does not have it. Throws InputError for attributes of different
+/// lengths and transforms that are not finite.
+std::vector<Affine> meshCopies(const Document& document, std::size_t node);
+
 }  // namespace lacuna::gltf

@@ -99,6 +99,9 @@ constexpr Rule kRules[] = {
     {"nodes/*/extensions", Shape::Object},
     {"nodes/*/extensions/KHR_lights_punctual", Shape::Object},
     {"nodes/*/extensions/KHR_lights_punctual/light", Shape::Index, 0, kLights},
+    {"nodes/*/extensions/EXT_mesh_gpu_instancing", Shape::Object},
+    {"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes", Shape::Object},
+    {"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*", Shape::Index, 0, "accessors"},
 
     {"scene", Shape::Index, 0, "scenes"},
     {"scenes", Shape::Array},

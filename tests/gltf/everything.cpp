@@ -18,6 +18,7 @@ GltfBuilder everything() {
     const int tangents =
         b.accessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 0}, "VEC4");
     const int colors = b.accessor<std::uint8_t>(ByteVector(12, 200), "VEC3", true);
+    const int places = b.accessor<float>({1, 2, 3}, "VEC3");
     const int indices = b.accessor<std::uint16_t>({0, 1, 2, 2, 1, 3}, "SCALAR");
     b.root["accessors"][0]["sparse"] = {
         {"count", 1},
@@ -77,7 +78,11 @@ GltfBuilder everything() {
     b.root["extensionsRequired"] = {"KHR_lights_punctual"};
     b.root["scene"] = 0;
     b.rootNode({{"name", "root"}, {"children", {1, 2}}, {"scale", {1, 2, 3}}});
-    b.add("nodes", {{"mesh", 0}, {"rotation", {0, 0, 0, 1}}, {"translation", {1, 2, 3}}});
+    b.add("nodes", {{"mesh", 0},
+                    {"rotation", {0, 0, 0, 1}},
+                    {"translation", {1, 2, 3}},
+                    {"extensions",
+                     {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
     b.add("nodes", {{"camera", 0},
                     {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1}},
                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});

@@ -32,6 +32,28 @@ TEST(Node, NoTransformIsTheIdentity) {
     EXPECT_EQ(a.point({1, 2, 3}), Vec3d(1, 2, 3));
 }
 
+TEST(Node, GpuInstancesAreCopiesInTheNodesCoordinates) {
+    TriangleBuilder b = withNode({{"scale", {2, 2, 2}}});
+    // A quarter turn about +Z, as normalised bytes.
+    const json attributes = {
+        {"TRANSLATION", b.accessor<float>({1, 0, 0, 0, 5, 0, 0, 0, 7}, "VEC3")},
+        {"ROTATION",
+         b.accessor<std::int8_t>({0, 0, 0, 127, 0, 0, 90, 90, 0, 0, 0, 127}, "VEC4", true)},
+        {"SCALE", b.accessor<float>({1, 1, 1, 1, 2, 3, 0, 1, 1}, "VEC3")}};
+    b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+    b.root["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    const SceneDescription scene = b.load();
+    ASSERT_EQ(scene.instances.size(), 2u);  // the third is scaled to nothing
+    EXPECT_EQ(warningsWith(scene, "scaled to nothing"), 1);
+    EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
+    expectNear(scene.instances[0].toWorld.point({1, 1, 1}), {4, 2, 2});
+    expectNear(scene.instances[1].toWorld.point({0, 1, 1}), {-4, 10, 6});
+
+    b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
+        b.accessor<float>({1, 1, 1}, "VEC3");
+    expectRefused(b, {"EXT_mesh_gpu_instancing.SCALE", "3 elements"});
+}
+
 TEST(Node, TrsScalesThenRotatesThenTranslates) {
     const double s = std::sqrt(0.5);  // a quarter turn about +Z
     const Affine a = loadTransform(
