@@ -121,8 +121,12 @@ std::vector<float> readCopies(const Document& document, const tinygltf::Value& a
                               const char* name, int components, const std::string& place,
                               std::size_t& count) {
     if (!attributes.Has(name)) return {};
-    const AccessorView view =
-        viewAccessor(document, attributes.Get(name).GetNumberAsInt(), components);
+    const int accessor = attributes.Get(name).GetNumberAsInt();
+    // Copies in one place are no use, and no bytes of the file would bound how many there are.
+    if (document.model.accessors[std::size_t(accessor)].bufferView < 0) {
+        refuse(document.file, place + "." + name, "an accessor with a buffer view", "none");
+    }
+    const AccessorView view = viewAccessor(document, accessor, components);
     if (count != 0 && view.count != count) {
         refuse(document.file, place + "." + name,
                std::to_string(count) + " elements, as many as the others have",

@@ -52,6 +52,12 @@ TEST(Node, GpuInstancesAreCopiesInTheNodesCoordinates) {
     b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
         b.accessor<float>({1, 1, 1}, "VEC3");
     expectRefused(b, {"EXT_mesh_gpu_instancing.SCALE", "3 elements"});
+
+    // Millions of copies out of a few bytes.
+    b.root["accessors"].push_back({{"componentType", 5126}, {"count", 1 << 24}, {"type", "VEC3"}});
+    b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+        {"SCALE", b.root["accessors"].size() - 1}};
+    expectRefused(b, {"EXT_mesh_gpu_instancing.SCALE", "buffer view"});
 }
 
 TEST(Node, TrsScalesThenRotatesThenTranslates) {
