@@ -43,6 +43,10 @@ struct Case {
     MethodRow row;
     std::vector<std::string> settings;
 };
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.row.name;
+    for (const std::string& s : c.settings) *out << ' ' << s;
+}
 
 class FiniteSpaceRow : public testing::TestWithParam<Case> {};
 class FiniteSpacePoolsSlow : public testing::TestWithParam<Case> {};
@@ -92,8 +96,7 @@ std::vector<Case> tinyPools() {
 }
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
-    std::string name = info.param.row.name;
-    for (const std::string& s : info.param.settings) name += "_" + s;
+    std::string name = testing::PrintToString(info.param);
     for (char& c : name) {
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
     }
