@@ -55,6 +55,7 @@ SceneDescription everything() {
         scene.materials[i].thin = i < 4;
     }
     scene.materials[0].roughness = 0.0f;
+    scene.materials[1].metallic = 0.5f;
     scene.meshes.resize(6);
     for (std::uint32_t i = 0; i < 6; ++i) {
         scene.meshes[i].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
