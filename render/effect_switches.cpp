@@ -1,6 +1,8 @@
 #include "render/effect_switches.h"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "libcore/base/error.h"
 
@@ -8,6 +10,16 @@ namespace lacuna {
 namespace {
 
 const std::string kPrefix = "effects.";
+
+constexpr std::pair<std::string_view, LobeKind> kLobes[] = {
+    {"diffuse", LobeKind::Diffuse},
+    {"glossy", LobeKind::Glossy},
+    {"mirror", LobeKind::Mirror},
+    {"rough_refraction", LobeKind::RoughRefraction},
+    {"smooth_refraction", LobeKind::SmoothRefraction},
+    {"rough_thin_transmission", LobeKind::RoughThinTransmission},
+    {"smooth_thin_transmission", LobeKind::SmoothThinTransmission},
+};
 
 /// A texture of one texel.
 TextureUse addTexel(SceneDescription& scene, bool srgb) {
@@ -29,10 +41,6 @@ void makeOpaque(SceneDescription& scene, Material::Alpha mode) {
     for (Material& m : scene.materials) {
         if (m.alphaMode == mode) m.alphaMode = Material::Alpha::Opaque;
     }
-}
-
-void leaveOut(SceneDescription& scene, LobeKind kind) {
-    for (Material& m : scene.materials) m.without.add(kind);
 }
 
 /// Any row of effectsOf().
@@ -75,26 +83,16 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) m.absorption = {};
     } else if (name == "thin_lens") {
         to.lensRadius = 0.0;
-    } else if (name == "diffuse") {
-        leaveOut(scene, LobeKind::Diffuse);
-    } else if (name == "glossy") {
-        leaveOut(scene, LobeKind::Glossy);
-    } else if (name == "mirror") {
-        leaveOut(scene, LobeKind::Mirror);
-    } else if (name == "rough_refraction") {
-        leaveOut(scene, LobeKind::RoughRefraction);
-    } else if (name == "smooth_refraction") {
-        leaveOut(scene, LobeKind::SmoothRefraction);
-    } else if (name == "rough_thin_transmission") {
-        leaveOut(scene, LobeKind::RoughThinTransmission);
-    } else if (name == "smooth_thin_transmission") {
-        leaveOut(scene, LobeKind::SmoothThinTransmission);
     } else if (name == "hits") {
         to.techniques->hits = false;
     } else if (name == "connections") {
         to.techniques->connects = false;
     } else if (name == "splats") {
         to.techniques->splats = false;
+    }
+    for (const auto& [lobe, kind] : kLobes) {
+        if (name != lobe) continue;
+        for (Material& m : scene.materials) m.without.add(kind);
     }
 }
 
