@@ -40,7 +40,9 @@ class AliasTable {
         return {slot.alias, double(slot.aliasPmf), below1((inside - edge) / (1.0 - edge))};
     }
     /// Asks the cache for what sample(u) will look at. Harmless when empty().
-    void prefetch(double u) const { __builtin_prefetch(slots_.data() + slotOf(u)); }
+    void prefetch(double u) const {
+        __builtin_prefetch(slots_.data() + std::size_t(u * double(slots_.size())));
+    }
 
   private:
     struct Slot {
