@@ -23,7 +23,6 @@ struct TechniqueSplat {
 struct BidirIntegrator::Chunk {
     std::vector<Splat> splats;
     std::vector<std::uint64_t> splatPaths;  // by splat: its light subpath
-    std::uint32_t iteration = 0;
     std::vector<TechniqueSplat> techniqueSplats;
     std::vector<PathVertex> vertices;  // of the subpaths that go into the pool
     RayTally tally;
@@ -166,7 +165,7 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
         if (cancel) return false;
 
         for (const Chunk& chunk : chunks) pool_.add(chunk.vertices, settings_.limits.maxDepth);
-        collect(chunks, statistics);
+        collect(chunks, iteration, statistics);
     }
     return true;
 }
@@ -198,7 +197,7 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
             }
         });
         if (cancel) return false;
-        collect(chunks, statistics);
+        collect(chunks, iteration, statistics);
     }
     return true;
 }
@@ -305,14 +304,14 @@ void BidirIntegrator::deliver(const Closed& closed, const Proposal* proposal, do
     } else {
         chunk.splats.push_back({pixelIndex, value});
         chunk.splatPaths.push_back(sample);
-        chunk.iteration = iteration;
         if (techniqueFilm_) {
             chunk.techniqueSplats.push_back({s, {pixelIndex, value}, unweighted});
         }
     }
 }
 
-void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& statistics) {
+void BidirIntegrator::collect(std::vector<Chunk>& chunks, std::uint32_t iteration,
+                              IterationStatistics& statistics) {
     std::vector<std::vector<Splat>> splats;
     for (Chunk& chunk : chunks) {
         statistics.add(chunk.tally);
@@ -336,8 +335,7 @@ void BidirIntegrator::collect(std::vector<Chunk>& chunks, IterationStatistics& s
         for (std::size_t i = 0; i < splats[c].size(); ++i) {
             if (statistics.invalidReplays.size() == kReplaysKept) return;
             if (isFinite(pixels_[splats[c][i].pixel] + splats[c][i].value)) continue;
-            statistics.invalidReplays.push_back(
-                lightReplay(chunks[c].splatPaths[i], chunks[c].iteration));
+            statistics.invalidReplays.push_back(lightReplay(chunks[c].splatPaths[i], iteration));
         }
     }
 }

@@ -90,7 +90,8 @@ class BidirIntegrator {
     void deliver(const Closed& closed, const Proposal* proposal, double scale,
                  std::uint32_t iteration, std::uint64_t sample, std::uint32_t pixelIndex,
                  Rgb* ownPixel, Worker& worker, Chunk& chunk);
-    void collect(std::vector<Chunk>& chunks, IterationStatistics& statistics);
+    void collect(std::vector<Chunk>& chunks, std::uint32_t iteration,
+                 IterationStatistics& statistics);
     Techniques freeze(std::uint32_t iteration);
     IterationContext context(IterationStatistics& statistics) const;
 
