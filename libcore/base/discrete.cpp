@@ -31,14 +31,4 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
     guide_.push_back(std::uint32_t(lastPositive));
 }
 
-DiscreteDistribution::Pick DiscreteDistribution::sample(double u) const {
-    const std::size_t k = std::min(bucket(u), cdf_.size() - 1);
-    // First entry above u: an outcome of zero width can never be it. All entries of smaller buckets
-    // are at most u, and the first one of a larger bucket is above it.
-    const auto it = std::upper_bound(cdf_.begin() + guide_[k], cdf_.begin() + guide_[k + 1], u);
-    const auto index = std::size_t(it - cdf_.begin());
-    const double below = index == 0 ? 0.0 : cdf_[index - 1];
-    return {std::uint32_t(index), cdf_[index] - below, u - below};
-}
-
 }  // namespace lacuna

@@ -39,7 +39,16 @@ class DiscreteDistribution {
         double remapped() const { return std::clamp(rest / pmf, 0.0, 0x1.fffffffffffffp-1); }
     };
     /// u in [0, 1). Not to be called when empty().
-    Pick sample(double u) const;
+    Pick sample(double u) const {
+        const std::size_t k = std::min(bucket(u), cdf_.size() - 1);
+        // First entry above u: an outcome of zero width can never be it. All entries of smaller
+        // buckets are at most u, and the first one of a larger bucket is above it.
+        const double* const it =
+            std::upper_bound(cdf_.data() + guide_[k], cdf_.data() + guide_[k + 1], u);
+        const auto index = std::size_t(it - cdf_.data());
+        const double below = index == 0 ? 0.0 : cdf_[index - 1];
+        return {std::uint32_t(index), cdf_[index] - below, u - below};
+    }
 
   private:
     /// Which guide entry serves u; monotonic, whatever rounding does.

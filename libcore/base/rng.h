@@ -40,11 +40,26 @@ class Rng {
         return block_.v[used_++];
     }
     /// Uniform float in [0, 1): 24 bits, never 1.
-    float uniform() { return float(bits() >> 8) * 0x1p-24f; }
+    float uniform() { return floatOf(bits()); }
     /// Uniform double in [0, 1): 53 bits, for choices among very many or very unequal outcomes.
     double uniformDouble() {
-        const std::uint64_t high = bits(), low = bits();
-        return double((high << 32 | low) >> 11) * 0x1p-53;
+        const std::uint32_t high = bits(), low = bits();
+        return doubleOf(high, low);
+    }
+    /// What uniformDouble() and two uniform() would give in turn, for less.
+    struct Draw {
+        double pick;
+        float u1, u2;
+    };
+    Draw draw() {
+        if (used_ != 4) {
+            const double pick = uniformDouble();
+            const float u1 = uniform(), u2 = uniform();
+            return {pick, u1, u2};
+        }
+        const Philox::ctr_type b = generate_(counter_, key_);
+        ++counter_.v[0];
+        return {doubleOf(b.v[0], b.v[1]), floatOf(b.v[2]), floatOf(b.v[3])};
     }
     /// Uniform integer in [0, n), n >= 1, without the bias of a remainder beyond 2^-64 n.
     std::uint32_t below(std::uint32_t n) {
@@ -53,6 +68,11 @@ class Rng {
 
   private:
     using Philox = r123::Philox4x32_R<7>;
+    static float floatOf(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+    static double doubleOf(std::uint64_t high, std::uint64_t low) {
+        return double((high << 32 | low) >> 11) * 0x1p-53;
+    }
+
     Philox generate_{};
     Philox::key_type key_;
     Philox::ctr_type counter_;

@@ -26,9 +26,11 @@
 //   the back.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
+#include "libcore/base/sampling.h"
 #include "libcore/base/vec.h"
 #include "libcore/material/lobes.h"
 
@@ -108,16 +110,23 @@ class Bsdf {
     }
 
     /// Value and densities of the Smooth event (all lobes with a density together).
-    BsdfEvaluation evaluate(Vec3 toEye, Vec3 toLight) const;
+    BsdfEvaluation evaluate(const Vec3& toEye, const Vec3& toLight) const {
+        return has(kDiffuse) && has(kOneLobe) ? lambert(toEye, toLight)
+                                              : evaluateLobes(toEye, toLight);
+    }
     /// Generalised value and densities of one delta event; `toLight` must be the direction that the
     /// event leads to from `toEye` (not checked). Zero for Smooth.
-    BsdfEvaluation evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event) const;
+    BsdfEvaluation evaluateDelta(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const;
     /// Dispatch on the event.
-    BsdfEvaluation evaluate(Vec3 toEye, Vec3 toLight, ScatterEvent event) const;
+    BsdfEvaluation evaluate(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const {
+        return event == ScatterEvent::Smooth ? evaluate(toEye, toLight)
+                                             : evaluateDelta(toEye, toLight, event);
+    }
 
     /// Samples the direction of `side`'s walk, given `from` (toEye for Side::Eye, toLight for
     /// Side::Light). uLobe, u1, u2 in [0, 1). Empty where the draw scatters nothing.
-    std::optional<BsdfSample> sample(Side side, Vec3 from, float uLobe, float u1, float u2) const;
+    std::optional<BsdfSample> sample(Side side, const Vec3& from, float uLobe, float u1,
+                                     float u2) const;
 
     /// Whether any lobe has a density: only then may a path be connected here.
     bool connectable() const {
@@ -168,7 +177,29 @@ class Bsdf {
     };
 
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
-    bool makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const;
+    /// False where the pair scatters nothing: grazing, or on different sides of ng and ns.
+    bool makePair(const Vec3& toEye, const Vec3& toLight, Pair& pair) const {
+        const float eyeG = dot(toEye, ng_);
+        const float lightG = dot(toLight, ng_);
+        pair.eye = dot(toEye, ns_);
+        pair.light = dot(toLight, ns_);
+        pair.adjoint = pair.light / lightG;
+        // Bitwise: one branch. NaN fails every comparison.
+        return (std::abs(eyeG) >= kMinCosine) & (std::abs(lightG) >= kMinCosine) &
+               (std::abs(pair.eye) >= kMinCosine) & (std::abs(pair.light) >= kMinCosine) &
+               (eyeG * pair.eye > 0.0f) & (lightG * pair.light > 0.0f);
+    }
+    /// evaluate() of a diffuse lobe alone, where most of the time goes: inline.
+    BsdfEvaluation lambert(const Vec3& toEye, const Vec3& toLight) const {
+        BsdfEvaluation out;
+        Pair pair;
+        if (!makePair(toEye, toLight, pair) || !pair.reflects()) return out;
+        out.f = baseColor_ * (diffuseScale_ * pair.adjoint);
+        out.pdfWToLight = pair.lightAbs() * kInvPi;
+        out.pdfWToEye = pair.eyeAbs() * kInvPi;
+        return out;
+    }
+    BsdfEvaluation evaluateLobes(const Vec3& toEye, const Vec3& toLight) const;
     float coatAlbedo(float mu) const;
     float clearcoatAlbedo(float mu) const;
     float openAverage(float coatAverage) const;
@@ -179,13 +210,14 @@ class Bsdf {
     /// Transmitted over incident index for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
 
-    void addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
-                            const Choice& light, BsdfEvaluation& out) const;
-    void addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
-                           const Choice& light, BsdfEvaluation& out) const;
-    void addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
+    void addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                            const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
+    void addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                           const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
+    void addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                                   BsdfEvaluation& out) const;
-    void addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair, BsdfEvaluation& out) const;
+    void addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                            BsdfEvaluation& out) const;
 
     // 96 bytes: it lives in every path vertex.
     const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse

@@ -45,7 +45,7 @@ inline Lobe lobeOf(Vec3 h, Vec3 ns, float ce, float cl, float alpha) {
 }  // namespace
 
 // One result variable per function, filled in place: a copy of it would wait for its parts' stores.
-BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
+BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const {
     BsdfEvaluation out;
     Pair pair;
     if (!connectable() || !makePair(toEye, toLight, pair)) {
@@ -59,12 +59,6 @@ BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
                 addRoughRefraction(toEye, toLight, pair, out);
             }
         }
-        return out;
-    }
-    if ((flags_ & (kDiffuse | kOneLobe)) == (kDiffuse | kOneLobe)) {
-        out.f = baseColor_ * (diffuseScale_ * pair.adjoint);
-        out.pdfWToLight = pair.lightAbs() * kInvPi;
-        out.pdfWToEye = pair.eyeAbs() * kInvPi;
         return out;
     }
     const Choice eye = choose(pair.eyeAbs());
@@ -84,8 +78,8 @@ BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight) const {
     return out;
 }
 
-void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
-                              const Choice& light, BsdfEvaluation& out) const {
+void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                              const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
     const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
 
     Rgb reflectance(0.0f);
@@ -107,8 +101,8 @@ void Bsdf::addRoughReflection(Vec3 toEye, Vec3 toLight, const Pair& pair, const 
     out.pdfWToEye += pmfLight * lobe.k * lobe.g1Light;
 }
 
-void Bsdf::addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const Choice& eye,
-                             const Choice& light, BsdfEvaluation& out) const {
+void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                             const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
     const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
     const float reflectance = clearcoat_ * fresnelDielectric(lobe.cosine, kClearcoatIor);
     out.f += Rgb(reflectance * lobe.k * lobe.g2 * pair.adjoint);
@@ -118,7 +112,7 @@ void Bsdf::addRoughClearcoat(Vec3 toEye, Vec3 toLight, const Pair& pair, const C
 
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
 // Mirroring toLight about ns leaves its tangential part, hence H x n, as it is.
-void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
+void Bsdf::addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                                     BsdfEvaluation& out) const {
     const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
     const float transmit = 1.0f - fresnelDielectric(lobe.cosine, ior_);
@@ -129,7 +123,7 @@ void Bsdf::addRoughThinTransmission(Vec3 toEye, Vec3 toLight, const Pair& pair,
     out.pdfWToEye = light.glass * transmit * lobe.k * lobe.g1Light;
 }
 
-void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
+void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                               BsdfEvaluation& out) const {
     const bool eyeOutside = pair.eye > 0.0f;
     const Vec3 o = eyeOutside ? toEye : toLight;
@@ -162,7 +156,8 @@ void Bsdf::addRoughRefraction(Vec3 toEye, Vec3 toLight, const Pair& pair,
     out.pdfWToEye = light.glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
 }
 
-BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event) const {
+BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
+                                   ScatterEvent event) const {
     BsdfEvaluation out;
     Pair pair;
     if (event == ScatterEvent::Smooth || !makePair(toEye, toLight, pair) ||
@@ -217,11 +212,6 @@ BsdfEvaluation Bsdf::evaluateDelta(Vec3 toEye, Vec3 toLight, ScatterEvent event)
     out.pdfWToLight = pmfEye * cl;
     out.pdfWToEye = pmfLight * ce;
     return out;
-}
-
-BsdfEvaluation Bsdf::evaluate(Vec3 toEye, Vec3 toLight, ScatterEvent event) const {
-    return event == ScatterEvent::Smooth ? evaluate(toEye, toLight)
-                                         : evaluateDelta(toEye, toLight, event);
 }
 
 }  // namespace lacuna

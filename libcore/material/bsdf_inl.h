@@ -11,19 +11,6 @@
 
 namespace lacuna {
 
-/// False where the pair scatters nothing: grazing, or on different sides of ng and ns.
-inline bool Bsdf::makePair(Vec3 toEye, Vec3 toLight, Pair& pair) const {
-    const float eyeG = dot(toEye, ng_);
-    const float lightG = dot(toLight, ng_);
-    pair.eye = dot(toEye, ns_);
-    pair.light = dot(toLight, ns_);
-    pair.adjoint = pair.light / lightG;
-    // Bitwise: one branch. NaN fails every comparison.
-    return (std::abs(eyeG) >= kMinCosine) & (std::abs(lightG) >= kMinCosine) &
-           (std::abs(pair.eye) >= kMinCosine) & (std::abs(pair.light) >= kMinCosine) &
-           (eyeG * pair.eye > 0.0f) & (lightG * pair.light > 0.0f);
-}
-
 /// E(mu) of the dielectric layer's brightest channel with specular factor 1.
 inline float Bsdf::coatAlbedo(float mu) const {
     return table_ ? table_->directional({rowIndex_, rowFraction_}, mu)

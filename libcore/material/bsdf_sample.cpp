@@ -40,7 +40,7 @@ Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float
 
 }  // namespace
 
-std::optional<BsdfSample> Bsdf::sample(Side side, Vec3 from, float uLobe, float u1,
+std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe, float u1,
                                        float u2) const {
     std::optional<BsdfSample> result;
     const float fromS = dot(from, ns_);
@@ -98,8 +98,7 @@ std::optional<BsdfSample> Bsdf::sample(Side side, Vec3 from, float uLobe, float 
     BsdfSample& s = result.emplace();
     s.to = to;
     s.event = event;
-    s.evaluation = event == ScatterEvent::Smooth ? evaluate(toEye, toLight)
-                                                 : evaluateDelta(toEye, toLight, event);
+    s.evaluation = evaluate(toEye, toLight, event);
     if (!((side == Side::Eye ? s.evaluation.pdfWToLight : s.evaluation.pdfWToEye) > 0.0f)) {
         result.reset();
     }

@@ -29,7 +29,7 @@ Vec3 Camera::sampleLens(Vec2 u) const {
     return position_ + right_ * d.x + up_ * d.y;
 }
 
-Camera::Direction Camera::directionAt(Vec3 lensPoint, Vec2 raster) const {
+Camera::Direction Camera::directionAt(const Vec3& lensPoint, Vec2 raster) const {
     const float x = (2.0f * raster.x / float(film_.width) - 1.0f) * tanX_;
     const float y = (1.0f - 2.0f * raster.y / float(film_.height)) * tanY_;
     Vec3 direction = forward_ + right_ * x + up_ * y;
@@ -42,7 +42,8 @@ Camera::Direction Camera::directionAt(Vec3 lensPoint, Vec2 raster) const {
     return {direction, 1.0f / (pixelArea_ * cosine * cosine * cosine)};
 }
 
-std::optional<Camera::Projection> Camera::project(Vec3 lensPoint, Vec3 direction) const {
+std::optional<Camera::Projection> Camera::project(const Vec3& lensPoint,
+                                                  const Vec3& direction) const {
     const float cosine = dot(direction, forward_);
     if (!(cosine > 1e-6f)) return std::nullopt;
     Vec3 q =

@@ -36,7 +36,7 @@ class Camera {
         float pdfW;      ///< of that direction, per pixel, given the lens point
     };
     /// Ray from `lensPoint` through raster position (x right, y down, pixels).
-    Direction directionAt(Vec3 lensPoint, Vec2 raster) const;
+    Direction directionAt(const Vec3& lensPoint, Vec2 raster) const;
 
     struct Projection {
         Vec2 raster;
@@ -46,7 +46,7 @@ class Camera {
     };
     /// Where a ray that leaves `lensPoint` along `direction` (unit) crosses the film; empty behind
     /// the camera or outside the film.
-    std::optional<Projection> project(Vec3 lensPoint, Vec3 direction) const;
+    std::optional<Projection> project(const Vec3& lensPoint, const Vec3& direction) const;
 
   private:
     Film film_;

@@ -52,6 +52,11 @@ double spotSolidAngle(const PunctualLight& light) {
     return inner + (capSolidAngle(light.outerConeAngle) - inner) / 3.0;
 }
 
+/// Exitance over radiance.
+float perRadiance(const EmissiveTriangle& t) {
+    return t.twoSided ? 2.0f * kPi : kPi;
+}
+
 /// Mean emitted colour of a triangle, never zero where any looked-at texel is not.
 Rgb meanTexture(const EmissiveTriangle& t) {
     if (!t.texture) return Rgb(1.0f);
@@ -76,10 +81,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
       punctual_(punctual.begin(), punctual.end()),
       environment_(environment),
       diskRadius_(sceneRadius > 0.0f ? sceneRadius * 1.0001f : 1.0f) {
-    for (const EmissiveTriangle& t : triangles_) {
-        triangleNormal_.push_back(triangleNormal(t.corners[0], t.corners[1], t.corners[2]));
-        kinds_.push_back(LightKind::Area);
-    }
+    kinds_.assign(triangles_.size(), LightKind::Area);
     for (const PunctualLight& l : punctual_) {
         punctualPosition_.push_back(Vec3(l.position - offset));
         punctualDirection_.push_back(Vec3(normalize(l.direction)));
@@ -95,10 +97,19 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     selection_ = DiscreteDistribution(power);
     chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+        const EmissiveTriangle& t = triangles_[i];
+        AreaLight& a = area_.emplace_back();
+        a.corner = t.corners[0];
+        a.edge1 = t.corners[1] - t.corners[0];
+        a.edge2 = t.corners[2] - t.corners[0];
+        a.ng = triangleNormal(t.corners[0], t.corners[1], t.corners[2]);
+        a.exitance = t.radiance * perRadiance(t);
         // A triangle without area is never picked; a ray may still run into what rounding left of
         // it.
-        const double area = triangleArea(triangles_[i]);
-        trianglePdfA_.push_back(area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f);
+        const double area = triangleArea(t);
+        a.pdfA = area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
+        a.twoSided = t.twoSided;
+        a.textured = t.texture != nullptr;
     }
 }
 
@@ -134,23 +145,10 @@ Rgb Lights::skyExitance(Vec3 direction) const {
     return unit_ == 1.0 ? radiance : scaled(radiance, 1.0 / unit_);
 }
 
-Rgb Lights::triangleRadiance(const EmissiveTriangle& t, Vec2 b) const {
-    if (!t.texture) return t.radiance;
-    const Vec2 uv = t.uvs[0] * (1.0f - b.x - b.y) + t.uvs[1] * b.x + t.uvs[2] * b.y;
-    return t.radiance * sampleTexture(*t.texture, uv).rgb;
-}
-
-LightPoint Lights::areaPoint(std::uint32_t light, Vec3 position, Vec3 ng, Vec2 uv) const {
+Rgb Lights::texturedExitance(std::uint32_t light, Vec2 b) const {
     const EmissiveTriangle& t = triangles_[light];
-    LightPoint p;
-    p.light = light;
-    p.kind = LightKind::Area;
-    p.position = position;
-    p.ng = ng;
-    p.uv = uv;
-    p.pdf = trianglePdfA_[light];
-    p.exitance = triangleRadiance(t, uv) * (t.twoSided ? 2.0f * kPi : kPi);
-    return p;
+    const Vec2 uv = t.uvs[0] * (1.0f - b.x - b.y) + t.uvs[1] * b.x + t.uvs[2] * b.y;
+    return t.radiance * sampleTexture(*t.texture, uv).rgb * perRadiance(t);
 }
 
 LightPoint Lights::environmentPoint(Vec3 direction) const {
@@ -164,35 +162,27 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
 }
 
 LightPoint Lights::samplePoint(Rng& rng) const {
-    const DiscreteDistribution::Pick pick = selection_.sample(rng.uniformDouble());
+    const Rng::Draw draw = rng.draw();
+    const DiscreteDistribution::Pick pick = selection_.sample(draw.pick);
     const std::uint32_t light = pick.index;
-    const float u1 = rng.uniform(), u2 = rng.uniform();
-    switch (kinds_[light]) {
-        case LightKind::Area: {
-            const EmissiveTriangle& t = triangles_[light];
-            const float s = std::sqrt(u1);
-            const Vec2 b{1.0f - s, u2 * s};
-            const Vec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
-            return areaPoint(light, t.corners[0] + e1 * b.x + e2 * b.y, triangleNormal_[light], b);
-        }
-        case LightKind::Environment: {
-            const Environment::Sample s = environment_->sample(pick.remapped(), u1, u2);
-            LightPoint p;
-            p.light = light;
-            p.kind = LightKind::Environment;
-            p.position = s.direction;
-            p.pdf = float(pick.pmf) * s.pdfW;
-            p.exitance = skyExitance(s.direction);
-            return p;
-        }
-        default:
-            break;
+    if (light < area_.size()) {
+        const AreaLight& a = area_[light];
+        const float s = std::sqrt(draw.u1);
+        const Vec2 b{1.0f - s, draw.u2 * s};
+        return areaPoint(light, a.corner + a.edge1 * b.x + a.edge2 * b.y, a.ng, b);
     }
-    const std::size_t i = light - triangles_.size();
-    const PunctualLight& l = punctual_[i];
     LightPoint p;
     p.light = light;
     p.kind = kinds_[light];
+    if (p.kind == LightKind::Environment) {
+        const Environment::Sample s = environment_->sample(pick.remapped(), draw.u1, draw.u2);
+        p.position = s.direction;
+        p.pdf = float(pick.pmf) * s.pdfW;
+        p.exitance = skyExitance(s.direction);
+        return p;
+    }
+    const std::size_t i = light - triangles_.size();
+    const PunctualLight& l = punctual_[i];
     p.pdf = float(pick.pmf);
     if (p.kind == LightKind::Directional) {
         p.position = -punctualDirection_[i];
@@ -215,23 +205,11 @@ Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) co
     return {Rgb(float(falloff / spotSolidAngle(l))), float(1.0 / capSolidAngle(l.outerConeAngle))};
 }
 
-Lights::Emission Lights::emission(std::uint32_t light, Vec3 ng, Vec3 direction) const {
-    switch (kinds_[light]) {
-        case LightKind::Area: {
-            const float cosine = dot(ng, direction);
-            if (triangles_[light].twoSided) {
-                return {Rgb(0.5f / kPi), std::fabs(cosine) * (0.5f / kPi)};
-            }
-            if (cosine <= 0.0f) return {};
-            return {Rgb(1.0f / kPi), cosine / kPi};
-        }
-        case LightKind::Point:
-            return {Rgb(0.25f / kPi), 0.25f / kPi};
-        case LightKind::Spot:
-            return spotEmission(punctual_[light - triangles_.size()], direction);
-        case LightKind::Directional:
-        case LightKind::Environment:
-            break;
+/// Of lights without a surface.
+Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& direction) const {
+    if (kinds_[light] == LightKind::Point) return {Rgb(0.25f / kPi), 0.25f / kPi};
+    if (kinds_[light] == LightKind::Spot) {
+        return spotEmission(punctual_[light - triangles_.size()], direction);
     }
     return {Rgb(1.0f), 1.0f / (kPi * diskRadius_ * diskRadius_)};
 }
@@ -240,7 +218,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
     const float u1 = rng.uniform(), u2 = rng.uniform();
     switch (point.kind) {
         case LightKind::Area: {
-            const bool twoSided = triangles_[point.light].twoSided;
+            const bool twoSided = area_[point.light].twoSided;
             const bool back = twoSided && u1 >= 0.5f;
             const float u = twoSided ? (back ? 2.0f * u1 - 1.0f : 2.0f * u1) : u1;
             const Vec3 normal = back ? -point.ng : point.ng;

@@ -15,6 +15,7 @@
 // A contribution goes back into the file's units at the very end, by inFileUnits().
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +23,7 @@
 
 #include "libcore/base/discrete.h"
 #include "libcore/base/rng.h"
+#include "libcore/base/sampling.h"
 #include "libcore/base/vec.h"
 #include "libcore/scene/description.h"
 #include "libcore/scene/environment.h"
@@ -89,7 +91,18 @@ class Lights {
 
     /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
     /// included).
-    LightPoint areaPoint(std::uint32_t light, Vec3 position, Vec3 ng, Vec2 uv) const;
+    LightPoint areaPoint(std::uint32_t light, const Vec3& position, const Vec3& ng, Vec2 uv) const {
+        const AreaLight& a = area_[light];
+        LightPoint p;
+        p.light = light;
+        p.kind = LightKind::Area;
+        p.position = position;
+        p.ng = ng;
+        p.uv = uv;
+        p.pdf = a.pdfA;
+        p.exitance = a.textured ? texturedExitance(light, uv) : a.exitance;
+        return p;
+    }
     /// The environment in `direction`, likewise. There must be one.
     LightPoint environmentPoint(Vec3 direction) const;
 
@@ -100,11 +113,19 @@ class Lights {
     };
     /// Profile and density for light that leaves `point` along the unit `direction`. At infinity
     /// the direction is the light's own and is not read.
-    Emission emission(const LightPoint& point, Vec3 direction) const {
+    Emission emission(const LightPoint& point, const Vec3& direction) const {
         return emission(point.light, point.ng, direction);
     }
     /// The same; nothing else about the point matters.
-    Emission emission(std::uint32_t light, Vec3 ng, Vec3 direction) const;
+    Emission emission(std::uint32_t light, const Vec3& ng, const Vec3& direction) const {
+        if (light >= area_.size()) return otherEmission(light, direction);
+        const float cosine = dot(ng, direction);
+        if (area_[light].twoSided) {
+            return {Rgb(0.5f / kPi), std::fabs(cosine) * (0.5f / kPi)};
+        }
+        if (cosine <= 0.0f) return {};
+        return {Rgb(1.0f / kPi), cosine / kPi};
+    }
 
     struct EmissionRay {
         Vec3 origin;
@@ -125,15 +146,24 @@ class Lights {
     std::vector<double> powers() const;
     void chooseUnit(double power);
     Rgb skyExitance(Vec3 direction) const;
-    Rgb triangleRadiance(const EmissiveTriangle& t, Vec2 barycentric) const;
+    Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
+    Emission otherEmission(std::uint32_t light, const Vec3& direction) const;
     Emission spotEmission(const PunctualLight& light, Vec3 direction) const;
+
+    /// What sampling reads of an emissive triangle.
+    struct AreaLight {
+        Vec3 corner, edge1, edge2;
+        Vec3 ng;
+        Rgb exitance;  ///< where it has no texture
+        float pdfA;    ///< selection included
+        bool twoSided, textured;
+    };
 
     std::vector<LightKind> kinds_;
     std::vector<EmissiveTriangle> triangles_;  // lights [0, triangles)
+    std::vector<AreaLight> area_;              // those again
     std::vector<PunctualLight> punctual_;      // then the punctual ones
     std::vector<Vec3> punctualPosition_, punctualDirection_;
-    std::vector<Vec3> triangleNormal_;
-    std::vector<float> trianglePdfA_;  // selection included
     const Environment* environment_;
     std::uint32_t environmentIndex_ = kNone;  // the last one
     DiscreteDistribution selection_;
