@@ -120,7 +120,7 @@ constexpr float maxComponent(const Rgb& c) {
     return std::max(c.r, std::max(c.g, c.b));
 }
 constexpr bool isBlack(const Rgb& c) {
-    return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f;
+    return bool(int(c.r == 0.0f) & int(c.g == 0.0f) & int(c.b == 0.0f));  // one branch
 }
 inline bool isFinite(const Rgb& c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);

@@ -54,15 +54,6 @@ void setSource(FullPath& path, const Scene& scene, const PathVertex& source, con
 
 }  // namespace
 
-EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye) {
-    if (y.index == 0) {
-        const Lights::Emission e = emissionOf(lights, y, toEye);
-        return {e.profile, e.pdfW, 0.0f};
-    }
-    const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
-    return {e.f, e.pdfWToEye, e.pdfWToLight};
-}
-
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
     const PathVertex& z = eye.back();
     if (z.light == kNone || z.index == 0) return std::nullopt;

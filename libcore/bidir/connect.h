@@ -27,7 +27,14 @@ struct EndValue {
     float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
 };
 /// That of a light subpath's last vertex; `toEye` is unit.
-EndValue lightEnd(const Lights& lights, const PathVertex& y, Vec3 toEye);
+inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye) {
+    if (y.index == 0) {
+        const Lights::Emission e = emissionOf(lights, y, toEye);
+        return {e.profile, e.pdfW, 0.0f};
+    }
+    const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
+    return {e.f, e.pdfWToEye, e.pdfWToLight};
+}
 
 /// s = 0: the eye path's last vertex lies on a light. Empty where it emits nothing this way. Fills
 /// `path`.

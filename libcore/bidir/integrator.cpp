@@ -1,6 +1,7 @@
 #include "libcore/bidir/integrator.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace lacuna {
@@ -38,9 +39,9 @@ std::string lightReplay(std::uint64_t path, std::uint32_t iteration) {
 }
 }  // namespace
 
-/// Scratch memory of one thread.
+/// Scratch memory of one thread: the subpaths of a tile's row of pixels.
 struct BidirIntegrator::Worker {
-    std::vector<PathVertex> eye, light;
+    std::array<std::vector<PathVertex>, kTile> eye, light;
     ProposalSink proposals;
     FullPath path;
 };
@@ -60,8 +61,12 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
                       : std::uint64_t(camera.film().width) * std::uint64_t(camera.film().height)) {
     for (int i = 0; i < pool.threads(); ++i) {
         workers_.push_back(std::make_unique<Worker>());
-        workers_.back()->eye.reserve(std::size_t(settings.limits.maxDepth) + 1);
-        workers_.back()->light.reserve(std::size_t(settings.limits.maxDepth) + 1);
+        for (auto& path : workers_.back()->eye) {
+            path.reserve(std::size_t(settings.limits.maxDepth) + 1);
+        }
+        for (auto& path : workers_.back()->light) {
+            path.reserve(std::size_t(settings.limits.maxDepth) + 1);
+        }
     }
 }
 
@@ -147,18 +152,18 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
             Chunk& chunk = chunks[c];
             if (recording_) chunk.tally.recording = &chunk.rays;
             Worker& worker = *workers_[std::size_t(threads_.workerIndex())];
+            std::vector<PathVertex>& path = worker.light[0];
             const std::uint64_t first = begin + c * kPathsPerChunk;
             for (std::uint64_t i = first; i < std::min(end, first + kPathsPerChunk); ++i) {
                 if (tracedByPixel(i)) continue;
                 Rng rng(settings_.seed, iteration, kind, i);
-                walker_.traceLight(rng, chunk.tally, worker.light);
+                walker_.traceLight(rng, chunk.tally, path);
                 if (i < pooled) {
-                    techniques_.tag(worker.light);
-                    chunk.vertices.insert(chunk.vertices.end(), worker.light.begin(),
-                                          worker.light.end());
+                    techniques_.tag(path);
+                    chunk.vertices.insert(chunk.vertices.end(), path.begin(), path.end());
                 }
                 if (splats && i < lightPaths_) {
-                    splatLightPath(worker.light, iteration, i, rng, worker, chunk);
+                    splatLightPath(path, iteration, i, rng, worker, chunk);
                 }
             }
         });
@@ -189,11 +194,11 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
             const int x0 = crop.x0 + int(c % std::size_t(tilesX)) * kTile;
             const int y0 = crop.y0 + (row + int(c / std::size_t(tilesX))) * kTile;
             for (int y = y0; y < std::min(y0 + kTile, crop.y1); ++y) {
-                for (int x = x0; x < std::min(x0 + kTile, crop.x1); ++x) {
-                    const std::size_t pixel = std::size_t(y - crop.y0) * std::size_t(crop.width()) +
-                                              std::size_t(x - crop.x0);
-                    eyePath(iteration, x, y, worker, chunk, pixels_[pixel]);
-                }
+                const std::size_t first = std::size_t(y - crop.y0) * std::size_t(crop.width()) +
+                                          std::size_t(x0 - crop.x0);
+                const int count = std::min(kTile, crop.x1 - x0);
+                pixelRow(iteration, x0, y, worker, chunk,
+                         pixels_.subspan(first, std::size_t(count)));
             }
         });
         if (cancel) return false;
@@ -202,32 +207,45 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
     return true;
 }
 
-void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& worker, Chunk& chunk,
-                              Rgb& pixel) {
+void BidirIntegrator::pixelRow(std::uint32_t iteration, int x0, int y, Worker& worker, Chunk& chunk,
+                               std::span<Rgb> pixels) {
+    const auto filmIndex =
+        std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x0);
+    // One thing after the other for all pixels, and not all things for one pixel: the processor's
+    // first cache holds the code of one of them.
+    for (std::uint32_t i = 0; techniqueSet_.ownLightPath && i < pixels.size(); ++i) {
+        std::vector<PathVertex>& path = worker.light[i];
+        Rng rng(settings_.seed, iteration, StreamKind::LightPath, filmIndex + i);
+        walker_.traceLight(rng, chunk.tally, path);
+        techniques_.tag(path);
+        if (techniqueSet_.splats && filmIndex + i < lightPaths_) {
+            splatLightPath(path, iteration, filmIndex + i, rng, worker, chunk);
+        }
+    }
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+        Rng rng(settings_.seed, iteration, StreamKind::EyePath, filmIndex + i);
+        const float jitterX = rng.uniform(), jitterY = rng.uniform();
+        walker_.traceEye({float(x0 + int(i)) + jitterX, float(y) + jitterY}, rng, chunk.tally,
+                         worker.eye[i]);
+        techniques_.tag(worker.eye[i]);
+    }
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+        const Subpath light = techniqueSet_.ownLightPath ? worker.light[i] : Subpath{};
+        closeEyePath(iteration, worker.eye[i], light, x0 + int(i), y, worker, chunk, pixels[i]);
+    }
+}
+
+void BidirIntegrator::closeEyePath(std::uint32_t iteration, Subpath path, Subpath light, int x,
+                                   int y, Worker& worker, Chunk& chunk, Rgb& pixel) {
     const PixelRect& crop = settings_.crop;
     const auto filmIndex =
         std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x);
     const auto pixelIndex =
         std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
 
-    worker.light.clear();
-    if (techniqueSet_.ownLightPath) {
-        Rng rng(settings_.seed, iteration, StreamKind::LightPath, filmIndex);
-        walker_.traceLight(rng, chunk.tally, worker.light);
-        techniques_.tag(worker.light);
-        if (techniqueSet_.splats && filmIndex < lightPaths_) {
-            splatLightPath(worker.light, iteration, filmIndex, rng, worker, chunk);
-        }
-    }
-
-    Rng rng(settings_.seed, iteration, StreamKind::EyePath, filmIndex);
-    const float jitterX = rng.uniform(), jitterY = rng.uniform();
-    walker_.traceEye({float(x) + jitterX, float(y) + jitterY}, rng, chunk.tally, worker.eye);
-
-    techniques_.tag(worker.eye);
     Rng selection(settings_.seed, iteration, StreamKind::Connection, filmIndex);
-    for (std::size_t t = 2; t <= worker.eye.size(); ++t) {
-        const Subpath eye(worker.eye.data(), t);
+    for (std::size_t t = 2; t <= path.size(); ++t) {
+        const Subpath eye = path.first(t);
         const PathVertex& z = eye.back();
         if (techniqueSet_.hits && z.light != kNone) {
             if (const auto closed = closeHit(walker_, eye, worker.path)) {
@@ -240,8 +258,7 @@ void BidirIntegrator::eyePath(std::uint32_t iteration, int x, int y, Worker& wor
             continue;
         }
         worker.proposals.clear();
-        method_.select({z, eye, worker.light, filmIndex, iteration, walker_}, selection,
-                       worker.proposals);
+        method_.select({z, eye, light, filmIndex, iteration, walker_}, selection, worker.proposals);
         for (const Proposal& proposal : worker.proposals.proposals()) {
             if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
             const auto closed =
@@ -354,9 +371,9 @@ BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t iteration
     Chunk chunk;
     Rgb pixel;
     const PathObserver before = std::exchange(observer_, observer);
-    eyePath(iteration, x, y, *workers_[0], chunk, pixel);
+    pixelRow(iteration, x, y, *workers_[0], chunk, {&pixel, 1});
     observer_ = before;
-    return {workers_[0]->eye, workers_[0]->light};
+    return {workers_[0]->eye[0], techniqueSet_.ownLightPath ? workers_[0]->light[0] : Subpath{}};
 }
 
 BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t iteration,
@@ -366,11 +383,12 @@ BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t iterati
     Chunk chunk;
     Rng rng(settings_.seed, iteration, StreamKind::LightPath, index);
     Worker& worker = *workers_[0];
-    walker_.traceLight(rng, chunk.tally, worker.light);
+    std::vector<PathVertex>& path = worker.light[0];
+    walker_.traceLight(rng, chunk.tally, path);
     const PathObserver before = std::exchange(observer_, observer);
-    splatLightPath(worker.light, iteration, index, rng, worker, chunk);
+    splatLightPath(path, iteration, index, rng, worker, chunk);
     observer_ = before;
-    return {{}, worker.light};
+    return {{}, path};
 }
 
 std::vector<RecordedRay> BidirIntegrator::takeRecording() {

@@ -84,7 +84,11 @@ class BidirIntegrator {
                    const std::atomic<bool>& cancel, IterationStatistics& statistics);
     bool eyePass(std::uint32_t iteration, const std::atomic<bool>& cancel,
                  IterationStatistics& statistics);
-    void eyePath(std::uint32_t iteration, int x, int y, Worker& worker, Chunk& chunk, Rgb& pixel);
+    /// Pixels x0, x0 + 1, .. of row y, at most a tile's width of them.
+    void pixelRow(std::uint32_t iteration, int x0, int y, Worker& worker, Chunk& chunk,
+                  std::span<Rgb> pixels);
+    void closeEyePath(std::uint32_t iteration, Subpath path, Subpath light, int x, int y,
+                      Worker& worker, Chunk& chunk, Rgb& pixel);
     void splatLightPath(std::span<PathVertex> path, std::uint32_t iteration, std::uint64_t index,
                         Rng& rng, Worker& worker, Chunk& chunk);
     void deliver(const Closed& closed, const Proposal* proposal, double scale,

@@ -1,5 +1,8 @@
 #include "libcore/bidir/mis.h"
 
+#include <algorithm>
+#include <array>
+
 #include "libcore/bidir/absorption.h"
 
 namespace lacuna {
@@ -59,12 +62,39 @@ double effectiveCount(const FullPath& path, const Techniques& techniques, int t)
     return samplesByDensity(path, techniques, t);
 }
 
-double misWeight(FullPath& path, const Techniques& techniques, int t) {
-    const int k = path.edges;
-    if (techniques.connections && !techniques.constants) {
-        path.fillLightThroughputs(techniques.rouletteDepth);
+namespace {
+
+/// effectiveCount() where it depends on nothing but the kind of strategy.
+class CountsByKind {
+  public:
+    CountsByKind(const FullPath& path, const Techniques& techniques) : path_(path) {
+        const auto constants = techniques.constants.value_or(ConnectionDensity::Constants{});
+        counts_ = {0.0, constants.indirect, constants.direct,
+                   path.edges == 1 && !path.splattable ? 0.0 : techniques.splats,
+                   techniques.hit && path.hittable ? 1.0 : 0.0};
     }
-    const double own = effectiveCount(path, techniques, t);
+
+    // Selections, not branches: no predictor could know which strategy is asked for.
+    double operator()(int t) const {
+        const int s = path_.edges + 1 - t;
+        int kind = s == 1 ? kDirect : kIndirect;
+        kind = t == 1 ? kSplat : kind;
+        kind = int(path_.delta[std::max(0, s - 1)]) | int(path_.delta[s]) ? kNone : kind;
+        kind = s == 0 ? kHit : kind;
+        return counts_[kind];
+    }
+
+  private:
+    enum Kind { kNone, kIndirect, kDirect, kSplat, kHit };
+    const FullPath& path_;
+    std::array<double, 5> counts_;
+};
+
+/// The balance heuristic, with n r of each strategy by `counts`.
+template <class Counts>
+double sweep(const FullPath& path, const Techniques& techniques, int t, const Counts& counts) {
+    const int k = path.edges;
+    const double own = counts(t);
     if (own <= 0.0) return 0.0;
     double sum = own;
 
@@ -75,7 +105,7 @@ double misWeight(FullPath& path, const Techniques& techniques, int t) {
         ratio *= path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth) /
                  (path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth));
         if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
-        sum += ratio * effectiveCount(path, techniques, k - i + 1);
+        sum += ratio * counts(k - i + 1);
     }
     // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}, or x_0 at most.
     const int last = techniques.onlyDirect() ? 0 : k - 1;
@@ -84,9 +114,20 @@ double misWeight(FullPath& path, const Techniques& techniques, int t) {
         ratio *= path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth) /
                  (path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth));
         if (!(ratio > 0.0)) break;
-        sum += ratio * effectiveCount(path, techniques, k - i);
+        sum += ratio * counts(k - i);
     }
     return own / sum;
+}
+
+}  // namespace
+
+double misWeight(FullPath& path, const Techniques& techniques, int t) {
+    if (!techniques.connections || techniques.constants) {
+        return sweep(path, techniques, t, CountsByKind(path, techniques));
+    }
+    path.fillLightThroughputs(techniques.rouletteDepth);
+    return sweep(path, techniques, t,
+                 [&](int strategy) { return effectiveCount(path, techniques, strategy); });
 }
 
 }  // namespace lacuna

@@ -11,7 +11,9 @@
 // through one do not exist (numerics.md 2).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <span>
 
@@ -136,10 +138,16 @@ struct FullPath {
     }
     /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
     double lightRoulette(int i, int rouletteDepth) const {
-        return i - 1 >= rouletteDepth ? double(survival[i - 1]) : 1.0;
+        return ifPlayed(i - 1 >= rouletteDepth, survival[std::max(0, i - 1)]);
     }
     double eyeRoulette(int i, int rouletteDepth) const {
-        return edges - i - 1 >= rouletteDepth ? double(survival[i + 1]) : 1.0;
+        return ifPlayed(edges - i - 1 >= rouletteDepth, survival[std::min(i + 1, edges)]);
+    }
+    /// The survival, or one. By bits: a branch would be taken the wrong way half of the time.
+    static double ifPlayed(bool played, float survival) {
+        const std::uint32_t mask = played ? ~0u : 0u;
+        return double(std::bit_cast<float>((std::bit_cast<std::uint32_t>(survival) & mask) |
+                                           (std::bit_cast<std::uint32_t>(1.0f) & ~mask)));
     }
     /// G of the edge x_i, x_{i+1}. A walk's edge has the direction that the walk drew, which its
     /// densities are made of: the positions at its ends know it to 1e-7 of the scene's size only,

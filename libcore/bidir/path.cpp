@@ -17,8 +17,4 @@ LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex) {
     return p;
 }
 
-Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex, Vec3 direction) {
-    return lights.emission(vertex.light, vertex.ng, direction);
-}
-
 }  // namespace lacuna

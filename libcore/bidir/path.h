@@ -72,8 +72,9 @@ struct Edge {
 
 /// Cosine of the area measure at a vertex: 1 where it has no surface. In double, because a float
 /// product of grazing directions is off by 1e-4, and weights that read G see that.
-inline double measureCosine(const PathVertex& v, Vec3 direction) {
-    return v.ng == Vec3{} ? 1.0 : std::fabs(dot(Vec3d(v.ng), Vec3d(direction)));
+inline double measureCosine(const PathVertex& v, const Vec3& direction) {
+    // A normal is unit or zero: one comparison tells.
+    return lengthSquared(v.ng) == 0.0f ? 1.0 : std::fabs(dot(Vec3d(v.ng), Vec3d(direction)));
 }
 
 /// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the
@@ -110,6 +111,9 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
 LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex);
 
 /// Profile and density of what leaves the light vertex along `direction`.
-Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex, Vec3 direction);
+inline Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex,
+                                   const Vec3& direction) {
+    return lights.emission(vertex.light, vertex.ng, direction);
+}
 
 }  // namespace lacuna

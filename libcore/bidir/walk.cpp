@@ -63,8 +63,8 @@ void Walker::traceEye(Vec2 raster, Rng& rng, RayTally& tally, std::vector<PathVe
          std::size_t(limits_.maxDepth) + 1, rng, tally, out);
 }
 
-void Walker::addSurface(const SurfacePoint& point, Vec3 direction, float pdfW, Rgb throughput,
-                        std::vector<PathVertex>& out) const {
+void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float pdfW,
+                        const Rgb& throughput, std::vector<PathVertex>& out) const {
     PathVertex& v = out.emplace_back();
     const PathVertex& previous = out[out.size() - 2];
     v.kind = VertexKind::Surface;
@@ -95,11 +95,11 @@ void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throug
                   std::vector<PathVertex>& out) const {
     RayKind kind = side == Side::Eye ? RayKind::Camera : RayKind::LightWalk;
     Vec3 ng = out.back().ng;
+    SurfacePoint hit;
     while (out.size() < maxVertices) {
-        const std::optional<SurfacePoint> hit =
-            scene_.intersect(origin, ng, direction, kind, tally);
+        const bool isHit = scene_.intersect(origin, ng, direction, kind, tally, hit);
         if (side == Side::Eye) kind = RayKind::EyeWalk;
-        if (!hit) {
+        if (!isHit) {
             if (side == Side::Eye && scene_.environment()) {
                 PathVertex& v = out.emplace_back();
                 const PathVertex& previous = out[out.size() - 2];
@@ -114,8 +114,8 @@ void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throug
             }
             return;
         }
-        if (hit->position == out.back().position) return;  // no distance, no measure
-        addSurface(*hit, direction, pdfW, throughput, out);
+        if (hit.position == out.back().position) return;  // no distance, no measure
+        addSurface(hit, direction, pdfW, throughput, out);
         if (out.size() == maxVertices) return;
 
         PathVertex& v = out.back();

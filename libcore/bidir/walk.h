@@ -42,8 +42,8 @@ class Walker final : public LightSampler {
     void goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throughput,
               std::size_t maxVertices, Rng& rng, RayTally& tally,
               std::vector<PathVertex>& out) const;
-    void addSurface(const SurfacePoint& point, Vec3 direction, float pdfW, Rgb throughput,
-                    std::vector<PathVertex>& out) const;
+    void addSurface(const SurfacePoint& point, const Vec3& direction, float pdfW,
+                    const Rgb& throughput, std::vector<PathVertex>& out) const;
 
     const Scene& scene_;
     const Camera& camera_;

@@ -68,7 +68,7 @@ class Accel {
 inline Vec3 offsetOrigin(Vec3 origin, Vec3 ng, Vec3 direction, float floor) {
     const float magnitude = std::max(
         floor, std::max(std::fabs(origin.x), std::max(std::fabs(origin.y), std::fabs(origin.z))));
-    const float step = dot(direction, ng) < 0.0f ? -0x1p-16f : 0x1p-16f;
+    const float step = std::copysign(0x1p-16f, dot(direction, ng));
     return origin + ng * (step * magnitude);
 }
 

@@ -431,8 +431,19 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     }
     s.uv = uvAt(mesh.uvs, t, hit.u, hit.v);
     s.material = mesh.material;
-    if (object.firstLight != kNone) s.light = object.firstLight + hit.primitive;
-    if (mesh.plain) return;
+    s.light = object.firstLight != kNone ? object.firstLight + hit.primitive : kNone;
+    s.uv1 = {};
+    s.color = Rgb(1.0f);
+    if (!mesh.plain) decorate(hit, {p0, p1, p2}, turned, s);
+}
+
+/// What a plain mesh has not. `turned`: the interpolated normal was.
+void Scene::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
+                     SurfacePoint& s) const {
+    const Object& object = objects_[hit.object];
+    const WorldMesh& mesh = meshes_[object.mesh];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    const float w = 1.0f - hit.u - hit.v;
     s.uv1 = uvAt(mesh.uvs1, t, hit.u, hit.v);
     if (!mesh.colors.empty()) {
         const auto color = [&](std::uint32_t corner) {
@@ -444,7 +455,7 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     const Material& material = description_.materials[mesh.material];
     const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
     if (material.normalTexture && !uvs.empty()) {
-        MapAxes axes = MapAxes::byCoordinates({p0, p1, p2}, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+        MapAxes axes = MapAxes::byCoordinates(corners, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
         if (!mesh.tangents.empty()) {
             Vec3 right = mesh.tangentAt(t, hit.u, hit.v);
             bool over = (mesh.tangents[t[0]][3] < 0.0f) != turned;
@@ -513,21 +524,21 @@ std::vector<std::array<Vec3, 3>> Scene::blockingTriangles(const ThreadPool& pool
     return all;
 }
 
-std::optional<SurfacePoint> Scene::intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
-                                             RayTally& tally) const {
+bool Scene::intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction, RayKind kind,
+                      RayTally& tally, SurfacePoint& out) const {
     ++tally.counts[std::size_t(kind)];
     const Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
-    std::optional<SurfacePoint> point;
     const std::optional<Hit> hit = accel_->intersect(ray);
-    if (hit) surfaceAt(*hit, point.emplace());
+    if (hit) surfaceAt(*hit, out);
     if (tally.recording) {
-        const float distance = point ? length(point->position - origin) : ray.tFar;
+        const float distance = hit ? length(out.position - origin) : ray.tFar;
         tally.recording->push_back({{ray.origin, direction, distance}, kind});
     }
-    return point;
+    return hit.has_value();
 }
 
-bool Scene::visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& tally) const {
+bool Scene::visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& ngB, RayKind kind,
+                    RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
     const Vec3 direction = b - a;
     const Vec3 from = offsetOrigin(a, ngA, direction, offsetFloor_);
@@ -537,7 +548,7 @@ bool Scene::visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& 
     return !accel_->occluded(ray);
 }
 
-bool Scene::visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind,
+bool Scene::visibleToInfinity(const Vec3& a, const Vec3& ngA, const Vec3& direction, RayKind kind,
                               RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
     const Ray ray{offsetOrigin(a, ngA, direction, offsetFloor_), direction};

@@ -63,14 +63,23 @@ class Scene {
     /// are triangles of which alpha lets more than half through (leaves, chains, veils).
     std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const;
 
-    /// Closest surface along a ray that leaves `from` (offset off its surface; ng zero: no
-    /// surface).
-    std::optional<SurfacePoint> intersect(Vec3 origin, Vec3 ng, Vec3 direction, RayKind kind,
-                                          RayTally& tally) const;
+    /// Closest surface along a ray that leaves `origin` (offset off its surface; ng zero: no
+    /// surface). False where there is none: `out` is left as it is.
+    bool intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction, RayKind kind,
+                   RayTally& tally, SurfacePoint& out) const;
+    /// The same, by value.
+    std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,
+                                          RayKind kind, RayTally& tally) const {
+        SurfacePoint point;
+        if (!intersect(origin, ng, direction, kind, tally, point)) return std::nullopt;
+        return point;
+    }
     /// Whether two points see each other; each is moved off its surface towards the other.
-    bool visible(Vec3 a, Vec3 ngA, Vec3 b, Vec3 ngB, RayKind kind, RayTally& tally) const;
+    bool visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& ngB, RayKind kind,
+                 RayTally& tally) const;
     /// Whether `a` sees infinitely far along `direction`.
-    bool visibleToInfinity(Vec3 a, Vec3 ngA, Vec3 direction, RayKind kind, RayTally& tally) const;
+    bool visibleToInfinity(const Vec3& a, const Vec3& ngA, const Vec3& direction, RayKind kind,
+                           RayTally& tally) const;
 
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const;
@@ -86,6 +95,8 @@ class Scene {
     struct MapAxes;
 
     void surfaceAt(const Hit& hit, SurfacePoint& out) const;
+    void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
+                  SurfacePoint& out) const;
     Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
                 const MapAxes& axes) const;
     /// Whether rays can pass through some of the mesh's points.

@@ -19,6 +19,7 @@ struct Decoder {
 };
 
 int wrapped(int i, int n, Texture::Wrap wrap) {
+    if (unsigned(i) < unsigned(n)) return i;  // nearly always, and without a division
     switch (wrap) {
         case Texture::Wrap::ClampToEdge:
             return i < 0 ? 0 : i >= n ? n - 1 : i;
