@@ -10,6 +10,7 @@
 #include "libcore/base/error.h"
 #include "libcore/bidir/mis.h"
 #include "libcore/image/image_io.h"
+#include "render/tolerance.h"
 
 namespace lacuna {
 
@@ -74,6 +75,12 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--rr-depth", o.rouletteDepth,
                    "First vertex of a subpath at which Russian roulette is played (default: 3)")
         ->type_name("N")
+        ->group(effort);
+    app.add_option(
+           "--tolerance", o.tolerance,
+           "Leave out layers and lamps that hold no more than this share of the energy, and\n"
+           "say so (default: 0, nothing)")
+        ->type_name("E")
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
 
@@ -216,6 +223,10 @@ void checkOptions(RenderOptions& o) {
     requireReal("--env-rotate", o.environmentRotation, -1e6, "an angle in degrees");
     requireReal("--env-scale", o.environmentScale, 0.0, "a factor from 0 on");
     requireReal("--exposure", o.exposure, -1000.0, "a number of stops");
+    if (!(o.tolerance >= 0.0 && o.tolerance <= kMaxTolerance)) {
+        throw UsageError("--tolerance: expected a share from 0 to 0.1, found " +
+                         std::to_string(o.tolerance));
+    }
     if (!o.timeText.empty()) o.timeSeconds = parseDuration(o.timeText);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);

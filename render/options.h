@@ -37,6 +37,7 @@ struct RenderOptions {
     std::optional<double> environmentRotation, environmentScale;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false;
+    double tolerance = 0.0;
     double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;

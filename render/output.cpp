@@ -40,6 +40,11 @@ Attribute integerAttribute(std::uint64_t value) {
     return std::to_string(value);
 }
 
+/// File names need not be UTF-8; JSON has to be.
+std::string utf8Text(const json& object, int indent) {
+    return object.dump(indent, ' ', false, json::error_handler_t::replace);
+}
+
 void setHeader(LayeredImage& image, const RenderReport& r) {
     auto& a = image.attributes;
     a["software"] = std::string("Lacuna");
@@ -57,6 +62,8 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["cacheHashes"] = json(r.cacheHashes).dump();
     a["stopped"] = r.stopped;
     a["maxDepth"] = r.limits.maxDepth;
+    a["effects"] = utf8Text(effectsJson(r.effects), -1);
+    if (r.tolerance > 0.0) a["tolerance"] = r.tolerance;
     if (r.crop != PixelRect{0, r.filmWidth, 0, r.filmHeight}) {
         a["crop"] = rectText(r.crop);
         a["fullSize"] = std::to_string(r.filmWidth) + "x" + std::to_string(r.filmHeight);
@@ -118,8 +125,7 @@ json effectsJson(const std::vector<Effect>& effects) {
 }
 
 void writeJson(const std::string& path, const json& object) {
-    // File names need not be UTF-8; JSON has to be.
-    writeFileAtomically(path, object.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    writeFileAtomically(path, utf8Text(object, 2) + "\n");
 }
 
 json reportJson(const RenderReport& r) {
@@ -150,6 +156,7 @@ json reportJson(const RenderReport& r) {
            {"seed", r.seed},
            {"warmup_iterations", r.warmupIterations},
            {"phases", r.phaseSeconds},
+           {"tolerance", r.tolerance},
            {"effects", effectsJson(r.effects)},
            {"scene_hash", r.sceneHash},
            {"cache_hashes", r.cacheHashes},

@@ -41,6 +41,7 @@ struct RenderReport {
 
     std::string sceneHash;
     std::map<std::string, std::string> cacheHashes;
+    double tolerance = 0.0;
     std::vector<Effect> effects;
     std::vector<std::string> warnings;
 };

@@ -9,6 +9,7 @@
 #include "render/options.h"
 #include "render/replay.h"
 #include "render/session.h"
+#include "render/tolerance.h"
 
 namespace lacuna {
 namespace {
@@ -22,10 +23,14 @@ int printEffects(const RenderOptions& options) {
     SceneDescription scene;
     pool.run([&] { scene = describeScene(options); });
     double radius = lensRadius(options, scene);
-    std::vector<Effect> effects = effectsOf(scene, radius, row);
+    std::vector<std::string> warnings;
+    std::vector<Effect> effects = effectsWithin(options.tolerance, scene, radius, row, warnings);
     TechniqueSet techniques = row ? row->techniques : TechniqueSet{};
-    for (const std::string& text : forceEffects(
-             options.effectSwitches, {scene, radius, row ? &techniques : nullptr}, effects)) {
+    for (std::string& text : forceEffects(options.effectSwitches,
+                                          {scene, radius, row ? &techniques : nullptr}, effects)) {
+        warnings.push_back(std::move(text));
+    }
+    for (const std::string& text : warnings) {
         std::fprintf(stderr, "warning: %s: %s\n", options.scene.c_str(), text.c_str());
     }
     if (!options.common.json.empty()) {

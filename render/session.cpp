@@ -118,6 +118,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     for (const auto& [phase, seconds] : caches_.phaseSeconds) r.phaseSeconds[phase] += seconds;
     r.cacheHashes = caches_.hashes;
     r.sceneHash = stage_.scene->description().contentHash;
+    r.tolerance = options.tolerance;
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
     if (options.common.verbose) describeStage();

@@ -6,6 +6,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/gltf/gltf.h"
+#include "render/tolerance.h"
 
 namespace lacuna {
 namespace {
@@ -120,7 +121,9 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     const Camera::Film film = filmOf(options, description);
     Camera::Lens lens = chooseLens(options, description);
     double radius = lens.radius;
-    stage.effects = effectsOf(description, radius, &method);
+    std::vector<std::string> leftOut;
+    stage.effects = effectsWithin(options.tolerance, description, radius, &method, leftOut);
+    for (const std::string& text : leftOut) warn(text);
     stage.techniques = method.techniques;
     for (const std::string& text : forceEffects(
              options.effectSwitches, {description, radius, &stage.techniques}, stage.effects)) {

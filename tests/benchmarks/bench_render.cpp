@@ -7,6 +7,8 @@
 //   effects/SCENE/METHOD  `all_over_needed`: time of an iteration with every effect forced on that
 //                         leaves the picture as it is (--set effects.NAME=on), over the time with
 //                         those alone that the scene calls for; both in turn
+//   tolerance/SCENE/METHOD  `all_over_within`: time of an iteration with a clearcoat of weight 1e-4
+//                         on every material, over the time with it left out by --tolerance 0.001
 //   pool/SCENE            memory of a pool of light subpaths
 //
 // Scenes: the repository's Cornell box and door, and every .glb of $LACUNA_SHARED_SCENES.
@@ -20,6 +22,7 @@
 #include "libcore/gltf/gltf.h"
 #include "libcore/methods/registry.h"
 #include "render/effect_switches.h"
+#include "render/tolerance.h"
 
 namespace lacuna {
 namespace {
@@ -125,17 +128,31 @@ SceneDescription withEverythingOn(SceneDescription description) {
     return description;
 }
 
-void effects(benchmark::State& state, const std::string& file, const MethodRow& row) {
-    Bench needed(loadGltf(file), row), all(withEverythingOn(loadGltf(file)), row);
-    double neededSeconds = 0.0, allSeconds = 0.0;
+/// Times both in turn; the counter is the second one's time over the first one's.
+void compare(benchmark::State& state, const char* counter, Bench& first, Bench& second) {
+    double firstSeconds = 0.0, secondSeconds = 0.0;
     std::uint64_t traced = 0;
     for (auto _ : state) {
-        const double seconds = needed.iterate(traced);
+        const double seconds = first.iterate(traced);
         state.SetIterationTime(seconds);
-        neededSeconds += seconds;
-        allSeconds += all.iterate(traced);
+        firstSeconds += seconds;
+        secondSeconds += second.iterate(traced);
     }
-    state.counters["all_over_needed"] = allSeconds / neededSeconds;
+    state.counters[counter] = secondSeconds / firstSeconds;
+}
+
+void effects(benchmark::State& state, const std::string& file, const MethodRow& row) {
+    Bench needed(loadGltf(file), row), all(withEverythingOn(loadGltf(file)), row);
+    compare(state, "all_over_needed", needed, all);
+}
+
+void tolerance(benchmark::State& state, const std::string& file, const MethodRow& row) {
+    SceneDescription coated = loadGltf(file);
+    for (Material& m : coated.materials) m.clearcoat = 1e-4f;
+    SceneDescription bare = coated;
+    leaveOutWithin(1e-3, bare);
+    Bench within(std::move(bare), row), all(std::move(coated), row);
+    compare(state, "all_over_within", within, all);
 }
 
 /// Peak and stored size of a pool of 10^6 light subpaths.
@@ -173,6 +190,10 @@ void registerScene(const std::filesystem::path& file) {
     }
     for (const char* method : {"pt", "bpt"}) {
         benchmark::RegisterBenchmark(("effects/" + name + "/" + method).c_str(), effects,
+                                     file.string(), findMethod(method))
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark(("tolerance/" + name + "/" + method).c_str(), tolerance,
                                      file.string(), findMethod(method))
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
