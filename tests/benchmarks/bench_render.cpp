@@ -11,9 +11,10 @@
 //                         on every material, over the time with it left out by --tolerance 0.001
 //   pool/SCENE            memory of a pool of light subpaths
 //
-// Scenes: the repository's Cornell box and door, and every .glb of $LACUNA_SHARED_SCENES.
+// Scenes: the repository's, and every .glb of $LACUNA_SHARED_SCENES.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -119,11 +120,9 @@ void render(benchmark::State& state, const std::string& file, const MethodRow& r
 SceneDescription withEverythingOn(SceneDescription description) {
     double pinhole = 0.0;
     std::vector<Effect> effects = effectsOf(description, pinhole, nullptr);
-    const std::vector<EffectSwitch> switches = {{"textures", true},
-                                                {"emissive_textures", true},
-                                                {"normal_maps", true},
-                                                {"alpha_mask", true},
-                                                {"vertex_colors", true}};
+    const std::vector<EffectSwitch> switches = {
+        {"textures", true},   {"emissive_textures", true}, {"normal_maps", true},
+        {"alpha_mask", true}, {"vertex_colors", true},     {"attenuation", true}};
     forceEffects(switches, {description, pinhole, nullptr}, effects);
     return description;
 }
@@ -180,8 +179,8 @@ void lightPool(benchmark::State& state, const std::string& file) {
     state.counters["MB"] = bytes * 1e-6;
 }
 
-void registerScene(const std::filesystem::path& file) {
-    const std::string name = file.stem().string();
+void registerScene(const std::filesystem::path& file, const std::string& prefix) {
+    const std::string name = prefix + file.stem().string();
     for (const MethodRow& row : methods()) {
         benchmark::RegisterBenchmark(("render/" + name + "/" + row.name).c_str(), render,
                                      file.string(), row)
@@ -203,16 +202,22 @@ void registerScene(const std::filesystem::path& file) {
         ->Unit(benchmark::kMillisecond);
 }
 
+void registerScenes(const std::filesystem::path& folder, const std::string& prefix) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".glb") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    for (const std::filesystem::path& file : files) registerScene(file, prefix);
+}
+
 }  // namespace
 }  // namespace lacuna
 
 int main(int argc, char** argv) {
-    const std::filesystem::path own = LACUNA_SCENES;
-    for (const char* name : {"cornell-box.glb", "door.glb"}) lacuna::registerScene(own / name);
+    lacuna::registerScenes(LACUNA_SCENES, "");
     if (const char* shared = std::getenv("LACUNA_SHARED_SCENES")) {
-        for (const auto& entry : std::filesystem::directory_iterator(shared)) {
-            if (entry.path().extension() == ".glb") lacuna::registerScene(entry.path());
-        }
+        lacuna::registerScenes(shared, "shared-");
     }
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();
