@@ -48,22 +48,6 @@ double samplesByDensity(const FullPath& path, const Techniques& techniques, int 
          .geometry = path.geometry[s - 1]});
 }
 
-}  // namespace
-
-double effectiveCount(const FullPath& path, const Techniques& techniques, int t) {
-    if (!path.exists(t)) return 0.0;
-    const int s = path.edges + 1 - t;
-    if (s == 0) return techniques.hit ? 1.0 : 0.0;
-    if (t == 1) return techniques.splats;
-    if (!techniques.connections) return 0.0;
-    if (techniques.constants) {
-        return s == 1 ? techniques.constants->direct : techniques.constants->indirect;
-    }
-    return samplesByDensity(path, techniques, t);
-}
-
-namespace {
-
 /// effectiveCount() where it depends on nothing but the kind of strategy.
 class CountsByKind {
   public:
@@ -89,6 +73,18 @@ class CountsByKind {
     const FullPath& path_;
     std::array<double, 5> counts_;
 };
+
+}  // namespace
+
+double effectiveCount(const FullPath& path, const Techniques& techniques, int t) {
+    const bool connects = t >= 2 && t <= path.edges;
+    if (!connects || !techniques.connections || techniques.constants) {
+        return CountsByKind(path, techniques)(t);
+    }
+    return path.exists(t) ? samplesByDensity(path, techniques, t) : 0.0;
+}
+
+namespace {
 
 /// The balance heuristic, with n r of each strategy by `counts`.
 template <class Counts>
