@@ -40,8 +40,9 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         Rng eyeRng(22, 0, StreamKind::EyePath, 0);
         do {
             space.traceEye(eyeRng, eye);
-        } while (eye.size() < 2 || !eye[1].connectable());
-        const Subpath z(eye.data(), 2);
+        } while (eye.size() < 4 || !eye[1].connectable() || !eye[3].connectable());
+        // A row may pick more for some t than for others.
+        const Subpath ends[] = {{eye.data(), 2}, {eye.data(), 4}};
 
         const auto g = [](const PathVertex& v, bool halfZero) {
             const int state = FiniteSpace::stateOf(v);
@@ -59,6 +60,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
             double value[2] = {0, 0};
             for (int n = 0; n < kDraws && round > 0; ++n) {
                 sink.clear();
+                const Subpath z = ends[n % 2];
                 method->select({z.back(), z, {}, 0, round, space}, rng, sink);
                 for (const Proposal& p : sink.proposals()) {
                     const PathVertex& y = p.light.back();
