@@ -33,6 +33,21 @@ Parameter presetParameter() {
             {"measured", "paper"}};
 }
 
+Parameter eyeShareParameter(double value) {
+    return {"eye_share",
+            Parameter::Kind::Real,
+            value,
+            0,
+            1,
+            "share of a connection's variance that is its eye subpath's (t > 2), as the weights "
+            "believe; 0: none (the paper)"};
+}
+
+double withEyeShare(double samples, int t, double share) {
+    if (t <= 2 || !(samples > 0.0)) return samples;
+    return samples / (share * samples + (1.0 - share));
+}
+
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {
     PathVertex& y0 = sink.newVertex();
     if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0, 0});

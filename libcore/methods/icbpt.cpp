@@ -14,7 +14,8 @@
 //             aware:   r = mean over the records of [1/M + (1 - 1/M) / R_c]^-1,
 //             R_c = max over the four of (w/Q) / Z: what M P_c(y) is for frozen means
 //             Q = (1/M) sum of w and Z of the sum of maxima, per record and s from the earlier
-//             iteration, with V = 1 and rho at the eye vertex; after [Nabata20a eq 14]
+//             iteration, with V = 1 and rho at the eye vertex; after [Nabata20a eq 14];
+//             then withEyeShare
 //   s = 1     from the pool, or from next event; t = 1 is never resampled
 #include <algorithm>
 
@@ -39,7 +40,7 @@ constexpr int kLengths = 8;
 
 struct Options {
     std::uint64_t subpaths;
-    double density, credit;
+    double density, credit, eyeShare;
     int records;
     bool nextEvent, aware;
     int qRecords;  ///< N_q
@@ -92,7 +93,7 @@ class RecordDensity final : public ConnectionDensity {
             ratio /= q[kMaxima];
             sum += 1.0 / (perSubpath + (1.0 - perSubpath) / ratio);
         }
-        return sum / double(around.size());
+        return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
     }
 
   private:
@@ -249,6 +250,7 @@ MethodRow importanceCachingRow() {
                        "samples that a connection counts as; 0: all candidates",
                        {},
                        "candidates"},
+                      eyeShareParameter(0.25),
                       nextEventParameter(false)};
     row.create = [](const Settings& s) {
         Options o;
@@ -256,6 +258,7 @@ MethodRow importanceCachingRow() {
         o.density = s.real("record_density");
         o.records = int(s.integer("records"));
         o.credit = s.real("credit") > 0.0 ? s.real("credit") : double(o.subpaths);
+        o.eyeShare = s.real("eye_share");
         o.nextEvent = s.on("next_event");
         o.aware = s.integer("weights") == 1;
         o.qRecords = int(s.integer("q_records"));

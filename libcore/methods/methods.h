@@ -26,6 +26,14 @@ Parameter nextEventParameter(bool defaultOn);
 /// `preset`: our defaults, or those of the row's paper.
 Parameter presetParameter();
 
+/// `eye_share`: see withEyeShare.
+Parameter eyeShareParameter(double value);
+/// n r where picks differ in their light subpath alone: a share of a connection's variance is that
+/// of its eye subpath, which all of them have in common [Grittmann21]. `samples` are what light
+/// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at z_1
+/// (t = 2), which the pixel determines.
+double withEyeShare(double samples, int t, double share);
+
 /// Proposes one fresh light point: next event (s = 1, r = 1).
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
 

@@ -48,7 +48,7 @@ class ResampledDensity final : public ConnectionDensity {
                 sum += 1.0 / (perSubpath_ + rest_ * std::max(options_.clamp, q_[i] / target));
             }
         }
-        return sum / double(around.size() + 1);
+        return withEyeShare(sum / double(around.size() + 1), c.eye.count, options_.eyeShare);
     }
 
   private:

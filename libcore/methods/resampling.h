@@ -13,7 +13,8 @@
 //   MIS       plain: r = 1 [Popov15]; ris: the mean over the N_c + 1 choices of
 //                 [ 1/M + (1/N) (1 - 1/M) p/q ]^-1,   p/q = max(clamp, Q(c) / q*(y, z)),
 //             with V = 1, and N M / Vbar for the virtual point     [Nabata20a eq 14 and 5.2]
-//             where Q(c) = 0 nothing can be picked at c: its term is 0
+//             where Q(c) = 0 nothing can be picked at c: its term is 0;
+//             then withEyeShare (as printed: no share)
 #pragma once
 
 #include <memory>
@@ -35,6 +36,7 @@ struct ResamplingOptions {
     int qPoints = 3;     ///< N_q
     int qSets = 1;       ///< earlier iterations whose Q are averaged
     double clamp = 1e-3;
+    double eyeShare = 0.0;
     bool currentQ = false;  ///< biased: Q of the current pool at each point
 };
 

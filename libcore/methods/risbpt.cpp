@@ -15,6 +15,7 @@ std::vector<Parameter> awareParameters() {
     std::vector<Parameter> parameters = resamplingParameters(200, CacheTarget::Flow);
     parameters.push_back({"connections", Kind::Integer, 1, 1, 64, "picks per eye vertex, N"});
     parameters.push_back({"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
+    parameters.push_back(eyeShareParameter(0.25));
     return parameters;
 }
 
@@ -22,6 +23,7 @@ ResamplingOptions awareOptions(const Settings& s) {
     ResamplingOptions o = resamplingOptions(s);
     o.picks = int(s.integer("connections"));
     o.clamp = s.real("clamp");
+    o.eyeShare = s.real("eye_share");
     o.aware = true;
     return o;
 }
@@ -47,7 +49,7 @@ MethodRow resamplingAwareRow() {
                               1,
                               "density that the weights see: resampling-aware, or r = 1",
                               {"ris", "plain"}});
-    row.paper = {{"next_event", 0}, {"q_iterations", 1}};
+    row.paper = {{"eye_share", 0}, {"next_event", 0}, {"q_iterations", 1}};
     row.create = [](const Settings& s) {
         ResamplingOptions o = awareOptions(s);
         o.qPoints = int(s.integer("q_points"));
@@ -69,7 +71,7 @@ MethodRow currentSetRow() {
     row.biased = true;
     row.parameters = awareParameters();
     std::erase_if(row.parameters, [](const Parameter& p) { return p.name == "light_paths"; });
-    row.paper = {{"next_event", 0}};
+    row.paper = {{"eye_share", 0}, {"next_event", 0}};
     row.create = [](const Settings& s) {
         ResamplingOptions o = awareOptions(s);
         o.currentQ = true;

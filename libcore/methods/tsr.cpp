@@ -16,7 +16,8 @@
 //             p/q1 = Q1(c) / q1*(y, z), p/q2 = Q2(c) / q2*(y, z), each at least `clamp`, V = 1;
 //             Q1 = (1/M1) sum_j B_j G, Q2 = (1/M1) sum_j T_j of earlier iterations,
 //             averaged (as printed: of the one before)
-//             where Q2(c) = 0 only stage 1 helps: p/q1 takes the place of p/q2
+//             where Q2(c) = 0 only stage 1 helps: p/q1 takes the place of p/q2;
+//             then withEyeShare (as printed: no share)
 #include <algorithm>
 
 #include "libcore/base/parallel.h"
@@ -42,6 +43,7 @@ struct Options {
     int qPoints;      ///< N_q
     int qSets;        ///< earlier iterations whose Q are averaged
     double clamp;
+    double eyeShare;
     double defensive;  ///< d
     double untested;   ///< removeHidden
     SecondStage secondStage;
@@ -84,7 +86,7 @@ class TwoStageDensity final : public ConnectionDensity {
             const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
             sum += effective(ratio1, ratio2);
         }
-        return sum / double(around.size());
+        return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
     }
 
   private:
@@ -296,6 +298,7 @@ MethodRow twoStageResamplingRow() {
         {"q_iterations", Kind::Integer, 16, 1, 256,
          "earlier iterations whose Q are averaged; the paper: 1"},
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"},
+        eyeShareParameter(0.25),
         {"defensive", Kind::Real, 0.25, 1e-6, 1,
          "share of the second stage that goes by power and distance alone"},
         {"untested", Kind::Real, 0.0, 0, 1,
@@ -316,7 +319,11 @@ MethodRow twoStageResamplingRow() {
          {"tsr", "ris", "plain"}},
         nextEventParameter(true),
         presetParameter()};
-    row.paper = {{"next_event", 0}, {"q_iterations", 1}, {"cache_points", 3}, {"target", 1}};
+    row.paper = {{"eye_share", 0},
+                 {"next_event", 0},
+                 {"q_iterations", 1},
+                 {"cache_points", 3},
+                 {"target", 1}};
     row.create = [](const Settings& s) -> std::unique_ptr<Method> {
         Options o;
         o.subpaths = s.integer("candidates");
@@ -326,6 +333,7 @@ MethodRow twoStageResamplingRow() {
         o.qPoints = int(s.integer("q_points"));
         o.qSets = int(s.integer("q_iterations"));
         o.clamp = s.real("clamp");
+        o.eyeShare = s.real("eye_share");
         o.defensive = s.real("defensive");
         o.untested = s.real("untested");
         o.secondStage = SecondStage(s.integer("target"));
