@@ -16,7 +16,7 @@
 //             aware:   r = [1/M + (1 - 1/M) / R]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M P(y)
 //             is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of maxima,
 //             all per node and s from earlier iterations, taking V(n, y) = 1; after [Nabata20a eq
-//             14]. Z is exact for the choice by mass and stands in for the even one; then
+//             14]; Z is exact for the choice by mass and stands in for the even one. Then
 //             withEyeShare
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>

@@ -8,8 +8,7 @@
 //   stage 2   y out of LVC_i with probability P_r = mean(beta) / sum of mean(beta) in LVC_i [eq 9]
 //   pick      N per eye vertex; contribution h(y) / (M N Gamma P_r)           [eq 10]
 //             an empty LVC_i is a zero sample that counts among the N
-//             N by t: fewer after z_2, where a pick costs as much and carries less (the paper: one
-//             N)
+//             N by t: fewer after z_2, where a pick carries less (the paper: one N)
 //   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
 //             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
 //             1/(min(j, W_i) M) in iteration j, and M W_i in r
