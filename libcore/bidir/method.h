@@ -128,6 +128,9 @@ class PathSpace {
     /// Zero where the eye's last vertex would scatter nothing of it, asked for or not.
     virtual Arrival arrival(Subpath light, Subpath eye, bool throughEye) const = 0;
     virtual bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const = 0;
+    /// Distance along a unit direction from a point in empty space to the first surface; infinite
+    /// where there is none.
+    virtual float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const = 0;
 };
 
 /// What prepare() and observe() may use and must account for.

@@ -1,5 +1,7 @@
 #include "libcore/bidir/path_space.h"
 
+#include <limits>
+
 namespace lacuna {
 
 void ScenePaths::traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
@@ -22,6 +24,11 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     }
     const Rgb atLight = lightEnd(walker_.scene().lights(), y, edge.direction).f;
     return {y.throughput * atLight * atEye, double(edge.geometry)};
+}
+
+float ScenePaths::reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const {
+    const auto hit = walker_.scene().intersect(origin, Vec3{}, direction, RayKind::Cache, tally);
+    return hit ? length(hit->position - origin) : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace lacuna

@@ -17,6 +17,7 @@ class ScenePaths final : public PathSpace {
     bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const override {
         return connected(walker_.scene(), light, eye, RayKind::Cache, tally);
     }
+    float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const override;
 
   private:
     const Walker& walker_;

@@ -15,9 +15,9 @@
 //   MIS       credit:  r is one constant, 1 <= r <= M (the authors' code: M)
 //             aware:   r = [1/M + (1 - 1/M) / R]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M P(y)
 //             is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of maxima,
-//             all per node and s from earlier iterations, taking V(n, y) = 1; after [Nabata20a eq
-//             14]; Z is exact for the choice by mass and stands in for the even one. Then
-//             withEyeShare
+//             all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V counts where
+//             the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact for the choice
+//             by mass and stands in for the even one. Then withEyeShare
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
@@ -25,6 +25,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/methods/length_pmfs.h"
 #include "libcore/methods/methods.h"
+#include "libcore/methods/sight_map.h"
 #include "libcore/skeleton/node_map.h"
 
 namespace lacuna {
@@ -85,11 +86,13 @@ class SkeletonDensity final : public ConnectionDensity {
     SkeletonDensity(const Options& options, const NodeLookup& lookup)
         : options_(options), lookup_(lookup) {}
 
-    /// By node (the last row: where there is none) and s.
+    /// `expected` by node (the last row: where there is none) and s, `slot` by node, `sight` by
+    /// slot.
     void freeze(const std::vector<std::vector<Expected>>* expected,
-                const std::vector<bool>* accepted) {
+                const std::vector<std::uint32_t>* slot, const std::vector<SightMap>* sight) {
         expected_ = expected;
-        accepted_ = accepted;
+        slot_ = slot;
+        sight_ = sight;
     }
 
     std::optional<Constants> constants() const override {
@@ -109,7 +112,8 @@ class SkeletonDensity final : public ConnectionDensity {
         std::uint32_t node = lookup_.at(z, back);
         if (expected_->empty()) return 1.0;
         const std::size_t nodes = expected_->size() - 1;
-        if (node >= nodes || !(*accepted_)[node]) node = std::uint32_t(nodes);
+        const std::uint32_t slot = node < nodes ? (*slot_)[node] : kNone;
+        if (slot == kNone) node = std::uint32_t(nodes);
         const std::vector<Expected>& row = (*expected_)[node];
         const auto s = std::size_t(c.light.count);
         // A length that was never seen: one sample is as good a guess as any.
@@ -120,7 +124,8 @@ class SkeletonDensity final : public ConnectionDensity {
             const double w =
                 weightOf(lookup_.skeleton()->nodes[node], *c.light.vertex, double(mean(c.beta)));
             ratio = options_.use[kUniform] ? ratio : 0.0;
-            if (options_.use[kSeen] && e.seen > 0.0) ratio = std::max(ratio, w / e.seen);
+            if (options_.use[kSeen] && e.seen > 0.0 && (*sight_)[slot].sees(*c.light.vertex))
+                ratio = std::max(ratio, w / e.seen);
             if (options_.use[kUnseen] && e.unseen > 0.0) ratio = std::max(ratio, w / e.unseen);
             ratio /= std::max(e.maxima, 1e-3);
         }
@@ -132,7 +137,8 @@ class SkeletonDensity final : public ConnectionDensity {
     const Options& options_;
     const NodeLookup& lookup_;
     const std::vector<std::vector<Expected>>* expected_ = nullptr;
-    const std::vector<bool>* accepted_ = nullptr;
+    const std::vector<std::uint32_t>* slot_ = nullptr;
+    const std::vector<SightMap>* sight_ = nullptr;
 };
 
 class SkeletonConnections final : public Method {
@@ -148,12 +154,15 @@ class SkeletonConnections final : public Method {
     bool learns() const override { return options_.aware; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
-        density_.freeze(&expected_, &accepted_);
+        density_.freeze(&expected_, &slot_, &sight_);
         return density_;
     }
 
     void prepare(const LightPool& pool, IterationContext& context) override {
-        if (accepted_.empty()) countEyeVertices(context);
+        if (slot_.empty()) {
+            countEyeVertices(context);
+            if (options_.aware && options_.use[kSeen]) lookAround(context);
+        }
         vertices_.assign(pool, !options_.nextEvent);
         const std::size_t n = vertices_.size();
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
@@ -230,7 +239,7 @@ class SkeletonConnections final : public Method {
     void observe(const LightPool&, IterationContext&) override {
         if (!options_.aware) return;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
-        expected_.resize(accepted_.size() + 1);
+        expected_.resize(slot_.size() + 1);
         const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {
             std::vector<Expected>& row = expected_[node];
             if (row.size() <= s) row.resize(s + 1);
@@ -246,7 +255,7 @@ class SkeletonConnections final : public Method {
                 learn(used_[u], s, found_[u * lengths + s]);
             Expected share;
             share.uniform = double(vertices_.count(int(s))) / double(options_.subpaths);
-            learn(accepted_.size(), s, share);
+            learn(slot_.size(), s, share);
         }
     }
 
@@ -254,7 +263,6 @@ class SkeletonConnections final : public Method {
     /// Which nodes are worth distributions: those that many eye vertices are mapped to.
     void countEyeVertices(IterationContext& context) {
         const std::size_t nodes = lookup_.skeleton() ? lookup_.skeleton()->nodes.size() : 0;
-        accepted_.assign(nodes, false);
         slot_.assign(nodes, kNone);
         if (nodes == 0) return;
         constexpr std::uint64_t kTasks = kCountingPaths / kCountingPathsPerTask;
@@ -284,18 +292,29 @@ class SkeletonConnections final : public Method {
         }
         for (std::uint32_t n = 0; n < nodes; ++n) {
             if (double(hits[n]) * double(nodes) <= options_.acceptance * double(all)) continue;
-            accepted_[n] = true;
             slot_[n] = std::uint32_t(used_.size());
             used_.push_back(n);
         }
     }
 
+    /// What the accepted nodes see; the same for the whole render.
+    void lookAround(IterationContext& context) {
+        PhaseTimer timer(context.statistics, "node sight");
+        sight_.resize(used_.size());
+        std::vector<RayTally> tallies(used_.size());
+        context.threads.forEach(used_.size(), [&](std::size_t u) {
+            const Vec3 position(lookup_.skeleton()->nodes[used_[u]].position);
+            sight_[u] = SightMap(position, context.space, tallies[u]);
+        });
+        for (const RayTally& t : tallies) context.statistics.add(t);
+    }
+
     Options options_;
     NodeLookup lookup_;
     SkeletonDensity density_;
-    std::vector<bool> accepted_;       // by node
     std::vector<std::uint32_t> slot_;  // by node: place in used_, kNone where not accepted
     std::vector<std::uint32_t> used_;  // accepted nodes
+    std::vector<SightMap> sight_;      // by slot
     VerticesByLength vertices_;
     std::vector<CombinedPmf> pmfs_;                // by slot and s
     std::vector<Expected> found_;                  // likewise, of this iteration

@@ -34,6 +34,8 @@ class FiniteSpace final : public LightSampler, public PathSpace {
     void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const override;
     Arrival arrival(Subpath light, Subpath eye, bool throughEye) const override;
     bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const override;
+    /// A wall all round, as near as puts some states out of sight of a point among them.
+    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 2.0f; }
 
     static int stateOf(const PathVertex& v) { return int(v.position.x * 100.0f); }
     bool visible(int a, int b) const { return visible_[a][b]; }

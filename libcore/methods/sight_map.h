@@ -1,0 +1,32 @@
+// How far one sees from a point, by direction.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "libcore/bidir/method.h"
+
+namespace lacuna {
+
+/// Distances to the first surface from a point in empty space, along directions on a grid in the
+/// octahedron's parametrisation: visibility that needs no ray, once the map is there, and is the
+/// same whoever asks and whenever. Near silhouettes it errs by about a cell, so that it may serve
+/// what weights believe, and no estimate.
+class SightMap {
+  public:
+    SightMap() = default;
+    /// Traces kSize * kSize rays.
+    SightMap(const Vec3& origin, const PathSpace& space, RayTally& tally);
+
+    /// Whether a light vertex, at infinity too, is in sight as far as the map can tell: not farther
+    /// than the farthest of the four cells around its direction, plus 1 %.
+    bool sees(const PathVertex& y) const;
+
+  private:
+    static constexpr std::size_t kSize = 64;  // 32 is a little noisier, 128 not less than 64
+
+    Vec3 origin_;
+    std::vector<float> distance_;  // by v, u; infinite where nothing is met
+};
+
+}  // namespace lacuna
