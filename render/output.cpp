@@ -140,6 +140,7 @@ json reportJson(const RenderReport& r) {
            {"setup_seconds", r.setupSeconds},
            {"rays", r.statistics.totalRays()},
            {"rays_by_kind", rays},
+           {"held", r.statistics.held},
            {"light_paths", r.lightPaths},
            {"invalid_samples", r.statistics.invalidSamples},
            {"invalid_replays", r.statistics.invalidReplays},

@@ -50,6 +50,10 @@ class DiscreteDistribution {
         return {std::uint32_t(index), cdf_[index] - below, u - below};
     }
 
+    std::uint64_t bytes() const {
+        return cdf_.size() * sizeof(double) + guide_.size() * sizeof(std::uint32_t);
+    }
+
   private:
     /// Which guide entry serves u; monotonic, whatever rounding does.
     std::size_t bucket(double u) const { return std::size_t(u * double(cdf_.size())); }

@@ -112,6 +112,10 @@ bool BidirIntegrator::render(std::uint32_t iteration, std::span<Rgb> pixels,
         PhaseTimer timer(statistics, "light paths");
         if (!lightPass(iteration, StreamKind::LightPath, true, cancel, statistics)) return false;
     }
+    if (pool_.subpaths() > 0) {
+        statistics.hold("light vertices", pool_.vertices().size());
+        statistics.hold("light vertex bytes", pool_.vertices().size_bytes());
+    }
     {
         PhaseTimer timer(statistics, "prepare");
         method_.prepare(pool_, context);

@@ -1,11 +1,18 @@
 #include "libcore/bidir/statistics.h"
 
+#include <algorithm>
+
 namespace lacuna {
 
 std::uint64_t IterationStatistics::totalRays() const {
     std::uint64_t sum = 0;
     for (const std::uint64_t n : rays) sum += n;
     return sum;
+}
+
+void IterationStatistics::hold(const std::string& what, std::uint64_t number) {
+    std::uint64_t& most = held[what];
+    most = std::max(most, number);
 }
 
 void IterationStatistics::add(const RayTally& tally) {
@@ -19,6 +26,7 @@ void IterationStatistics::add(const IterationStatistics& other) {
         if (invalidReplays.size() < kReplaysKept) invalidReplays.push_back(r);
     }
     for (const auto& [phase, seconds] : other.phaseSeconds) phaseSeconds[phase] += seconds;
+    for (const auto& [what, number] : other.held) hold(what, number);
 }
 
 }  // namespace lacuna

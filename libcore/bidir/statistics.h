@@ -19,8 +19,11 @@ struct IterationStatistics {
     std::uint64_t invalidSamples = 0;
     std::vector<std::string> invalidReplays;  ///< --replay arguments of the first few
     std::map<std::string, double> phaseSeconds;
+    /// What was held at one time, the most of any iteration: numbers of things, and bytes.
+    std::map<std::string, std::uint64_t> held;
 
     std::uint64_t totalRays() const;
+    void hold(const std::string& what, std::uint64_t number);
     void add(const IterationStatistics& other);
     void add(const RayTally& tally);
 };

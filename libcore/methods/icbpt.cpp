@@ -146,6 +146,11 @@ class ImportanceCaching final : public Method {
             }
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
+        std::uint64_t bytes = 0;
+        for (const CombinedPmf& pmf : pmfs_) bytes += pmf.bytes();
+        context.statistics.hold("distribution bytes", bytes);
+        context.statistics.hold("importance records", records_.size());
+        context.statistics.hold("importance record bytes", records_.bytes());
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {

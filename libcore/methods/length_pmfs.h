@@ -58,6 +58,7 @@ class CombinedPmf {
     /// Sum over the outcomes of the highest probability that a row gives them, in [1, rows]: what
     /// the choice by mass divides each by. Zero where empty().
     double maxima() const { return maxima_; }
+    std::uint64_t bytes() const { return pmf_.bytes() + owner_.size(); }
 
   private:
     DiscreteDistribution pmf_;

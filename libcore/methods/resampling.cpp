@@ -99,6 +99,9 @@ class Resampling final : public Method {
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
         pmfs_ = CachePmfs(rows);
+        context.statistics.hold("distribution bytes", pmfs_.bytes());
+        context.statistics.hold("cache points", points_.size());
+        context.statistics.hold("cache point bytes", points_.bytes());
         if (options_.currentQ) std::copy(flow_.begin(), flow_.end(), q_.begin());
     }
 

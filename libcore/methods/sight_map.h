@@ -22,6 +22,8 @@ class SightMap {
     /// than the farthest of the four cells around its direction, plus 1 %.
     bool sees(const PathVertex& y) const;
 
+    std::uint64_t bytes() const { return distance_.size() * sizeof(float); }
+
   private:
     static constexpr std::size_t kSize = 64;  // 32 is a little noisier, 128 not less than 64
 

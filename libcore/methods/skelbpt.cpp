@@ -211,6 +211,11 @@ class SkeletonConnections final : public Method {
             found_[i] = {pmfs_[i].sum(kSeen) / m, pmfs_[i].sum(kUnseen) / m, double(count) / m,
                          pmfs_[i].maxima(), 0};
         });
+        std::uint64_t bytes = 0;
+        for (const CombinedPmf& pmf : pmfs_) bytes += pmf.bytes();
+        context.statistics.hold("distribution bytes", bytes);
+        context.statistics.hold("nodes", slot_.size());
+        context.statistics.hold("nodes with distributions", used_.size());
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
@@ -307,6 +312,9 @@ class SkeletonConnections final : public Method {
             sight_[u] = SightMap(position, context.space, tallies[u]);
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
+        std::uint64_t bytes = 0;
+        for (const SightMap& map : sight_) bytes += map.bytes();
+        context.statistics.hold("sight map bytes", bytes);
     }
 
     Options options_;

@@ -151,6 +151,10 @@ class TwoStageResampling final : public Method {
             }
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
+        context.statistics.hold("light tree bytes", tree_.bytes());
+        context.statistics.hold("cut bytes", offers_.size() * sizeof(Offer));
+        context.statistics.hold("cache points", points_.size());
+        context.statistics.hold("cache point bytes", points_.bytes());
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {

@@ -114,6 +114,8 @@ TEST_F(RenderOutput, JsonHasItsKeys) {
     EXPECT_GT(j["mean_rgb"][0].get<double>(), 0.0);
     EXPECT_TRUE(j["effects"]["simulated"].is_array());
     EXPECT_TRUE(j["effects"]["left_out"].is_array());
+    EXPECT_GT(j["held"]["light vertices"], 0);
+    EXPECT_GT(j["held"]["light vertex bytes"], j["held"]["light vertices"]);
     std::uint64_t rays = 0;
     for (const auto& [name, n] : j["rays_by_kind"].items()) rays += n.get<std::uint64_t>();
     EXPECT_EQ(rays, j["rays"].get<std::uint64_t>());
