@@ -8,7 +8,7 @@ namespace lacuna {
 namespace {
 
 /// Direction of a point of [-1, 1]^2: the octahedron |x| + |y| + |z| = 1, its lower half folded
-/// outwards.
+/// outwards [Praun03].
 Vec3 octahedronDirection(Vec2 p) {
     Vec3 d{p.x, p.y, 1.0f - std::abs(p.x) - std::abs(p.y)};
     if (d.z < 0.0f) {
