@@ -34,7 +34,10 @@ std::vector<double> doublesOf(const openvdb::MetaMap& meta, const char* name, st
         vdb::refuse(path, name, "something else", remedy);
     }
     std::vector<double> values(text->value().size() / sizeof(double));
-    std::memcpy(values.data(), text->value().data(), text->value().size());
+    // A graph without edges has no bytes to copy, and no address to copy them to.
+    if (!values.empty()) {
+        std::memcpy(values.data(), text->value().data(), text->value().size());
+    }
     for (const double v : values) {
         if (!std::isfinite(v)) vdb::refuse(path, name, "numbers that are not finite", remedy);
     }
