@@ -100,6 +100,17 @@ std::uint32_t CachePoints::nearest(Vec3 position) const {
     return found;
 }
 
+double CachePoints::trustedGeometry(std::uint32_t point, const PathVertex& light,
+                                    double geometry) const {
+    const PathVertex& at = vertices_[points_[point]];
+    const Edge edge = edgeBetween(light, at);
+    const bool behind = dot(at.ng, edge.direction) * dot(at.ng, at.toPrevious) >= 0.0f &&
+                        isBlack(at.bsdf.evaluate(at.toPrevious, -edge.direction).f);
+    const double here = behind ? 0.0 : double(edge.geometry);
+    // Never zero for a path that carries something: it may have no other strategy.
+    return std::min(geometryLimit_[point], std::clamp(here, 1e-4 * geometry, geometry));
+}
+
 std::uint64_t CachePoints::bytes() const {
     return vertices_.size() * sizeof(PathVertex) +
            size() * (sizeof(Vec3) + sizeof(std::uint32_t) * (2 + perPoint_) + sizeof(double));

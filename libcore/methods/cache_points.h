@@ -49,12 +49,9 @@ class CachePoints {
     double geometryLimit(std::uint32_t point) const { return geometryLimit_[point]; }
     /// G between an eye vertex and a light vertex as weights may trust it: no larger than what the
     /// pmf at the point knows of it. Where the light vertex is near the eye vertex and not near
-    /// the point, it is picked rarely, and no weight must count on it.
-    double trustedGeometry(std::uint32_t point, const PathVertex& light, double geometry) const {
-        const double here = edgeBetween(light, vertices_[points_[point]]).geometry;
-        // Never zero for a path that carries something: it may have no other strategy.
-        return std::min(geometryLimit_[point], std::clamp(here, 1e-4 * geometry, geometry));
-    }
+    /// the point, or behind the point's surface, which scatters nothing of it, it is picked rarely,
+    /// and no weight must count on it.
+    double trustedGeometry(std::uint32_t point, const PathVertex& light, double geometry) const;
 
     std::uint64_t bytes() const;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
+#include "libcore/material/albedo_tables.h"
 #include "tests/bidir/finite_space.h"
 
 namespace lacuna::test {
@@ -85,6 +86,55 @@ TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
     const CachePoints none;
     EXPECT_EQ(none.serving(PathVertex{}), kNone);
     EXPECT_TRUE(none.around(kNone).empty());
+}
+
+/// One eye path from above to a surface at the origin.
+class OnePoint final : public PathSpace {
+  public:
+    explicit OnePoint(float transmission) : tables_(std::vector<float>{1.5f}) {
+        Bsdf::Parameters p;
+        p.baseColor = Rgb(0.5f);
+        p.roughness = 0.5f;
+        p.transmission = transmission;
+        lens_.kind = VertexKind::Lens;
+        lens_.position = {0, 1, 2};
+        surface_.kind = VertexKind::Surface;
+        surface_.index = 1;
+        surface_.position = {0, 0, 0};
+        surface_.ng = {0, 0, 1};
+        surface_.toPrevious = normalize(lens_.position);
+        surface_.bsdf = Bsdf(p, surface_.ng, surface_.ng, tables_);
+    }
+    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
+        out = {lens_, surface_};
+    }
+    Arrival arrival(Subpath, Subpath, bool) const override { return {}; }
+    bool visible(const PathVertex&, const PathVertex&, RayTally&) const override { return true; }
+    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
+
+  private:
+    AlbedoTables tables_;
+    PathVertex lens_, surface_;
+};
+
+TEST(CachePoints, weightsDoNotCountOnWhatIsBehindASurface) {
+    const ThreadPool threads(1);
+    PathVertex light;
+    light.kind = VertexKind::LightSource;
+    const double geometry = 0.1;  // at the eye vertex; less than at the point
+    for (const float transmission : {0.0f, 1.0f}) {
+        const OnePoint space(transmission);
+        IterationStatistics statistics;
+        IterationContext context{space, threads, 5, 1, statistics};
+        const CachePoints points(context, 1.0, 3, 0);
+        ASSERT_EQ(points.size(), 1u);
+        light.position = {0.1f, -0.3f, 1.5f};
+        EXPECT_DOUBLE_EQ(points.trustedGeometry(0, light, geometry), geometry) << transmission;
+        light.position.z = -1.5f;
+        EXPECT_DOUBLE_EQ(points.trustedGeometry(0, light, geometry),
+                         transmission > 0.0f ? geometry : 1e-4 * geometry)
+            << transmission;
+    }
 }
 
 TEST(EarlierValues, areMeansOverSetsOfMeansOverNeighbours) {
