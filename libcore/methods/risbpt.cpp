@@ -15,7 +15,7 @@ std::vector<Parameter> awareParameters() {
     std::vector<Parameter> parameters = resamplingParameters(200, CacheTarget::Flow);
     parameters.push_back({"connections", Kind::Integer, 1, 1, 64, "picks per eye vertex, N"});
     parameters.push_back({"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
-    parameters.push_back(eyeShareParameter(0.25));
+    parameters.push_back(eyeShareParameter(0.1));
     return parameters;
 }
 

@@ -17,7 +17,7 @@
 //             is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of maxima,
 //             all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V counts where
 //             the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact for the choice
-//             by mass and stands in for the even one. Then withEyeShare
+//             by mass and stands in for the even one
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ enum Row : std::uint32_t { kSeen, kUnseen, kUniform, kRows };
 
 struct Options {
     std::uint64_t subpaths;
-    double acceptance, credit, eyeShare;
+    double acceptance, credit;
     bool use[kRows];
     Choice choice;
     bool nextEvent, aware;
@@ -129,8 +129,7 @@ class SkeletonDensity final : public ConnectionDensity {
             if (options_.use[kUnseen] && e.unseen > 0.0) ratio = std::max(ratio, w / e.unseen);
             ratio /= std::max(e.maxima, 1e-3);
         }
-        const double r = ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / ratio) : 1.0 / m;
-        return withEyeShare(r, c.eye.count, options_.eyeShare);
+        return ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / ratio) : 1.0 / m;
     }
 
   private:
@@ -374,18 +373,16 @@ MethodRow skeletonRow() {
          "samples that a connection counts as; 0: all candidates",
          {},
          "candidates"},
-        eyeShareParameter(0.125),
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
         nextEventParameter(false),
         presetParameter()};
-    row.paper = {{"eye_share", 0}, {"weights", 0}};
+    row.paper = {{"weights", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");
         o.acceptance = s.real("node_acceptance");
         o.credit = s.real("credit") > 0.0 ? s.real("credit") : double(o.subpaths);
-        o.eyeShare = s.real("eye_share");
         const std::uint64_t d = s.integer("distributions");
         o.use[kSeen] = d == 0 || d == 2;
         o.use[kUnseen] = d <= 1;

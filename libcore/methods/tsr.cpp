@@ -302,7 +302,7 @@ MethodRow twoStageResamplingRow() {
         {"q_iterations", Kind::Integer, 16, 1, 256,
          "earlier iterations whose Q are averaged; the paper: 1"},
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"},
-        eyeShareParameter(0.25),
+        eyeShareParameter(0.1),
         {"defensive", Kind::Real, 0.25, 1e-6, 1,
          "share of the second stage that goes by power and distance alone"},
         {"untested", Kind::Real, 0.0, 0, 1,
