@@ -18,6 +18,9 @@
 //             all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V counts where
 //             the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact for the choice
 //             by mass and stands in for the even one
+//   lengths   a pick for every s [4.3]; or for s > 2 with a probability p_s, n = p_s, and divided
+//             by it, that follows the share of light subpaths that had a y_{s-1} in earlier
+//             iterations: what carries less is asked less often (in bpt the path itself decides)
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
@@ -34,6 +37,7 @@ namespace {
 
 constexpr std::uint64_t kCountingPaths = 16384, kCountingPathsPerTask = 256;
 constexpr std::size_t kVerticesPerTask = 512;
+constexpr double kPicksForTheShare = 2.0;  // p_s, by the share of y_{s-1} among paths with a y_1
 constexpr double kNearest = 0.1;  // of the ball's radius: the closest a light vertex counts as
 constexpr std::uint32_t kUnmapped = NodeMap::kNone;
 enum Row : std::uint32_t { kSeen, kUnseen, kUniform, kRows };
@@ -43,7 +47,7 @@ struct Options {
     double acceptance, credit;
     bool use[kRows];
     Choice choice;
-    bool nextEvent, aware;
+    bool nextEvent, aware, everyLength;
 };
 
 /// Nodes of both sides of a surface in one tag, so that the tag is a function of the vertex alone.
@@ -86,6 +90,14 @@ class SkeletonDensity final : public ConnectionDensity {
     SkeletonDensity(const Options& options, const NodeLookup& lookup)
         : options_(options), lookup_(lookup) {}
 
+    /// Probability of a pick for that s.
+    double picks(std::size_t s) const {
+        if (options_.everyLength || expected_->empty()) return 1.0;
+        const std::vector<Expected>& all = expected_->back();
+        if (s <= 2 || s >= all.size() || !(all[s].uniform > 0.0)) return 1.0;  // or never seen yet
+        return std::min(1.0, kPicksForTheShare * all[s].uniform / all[2].uniform);
+    }
+
     /// `expected` by node (the last row: where there is none) and s, `slot` by node, `sight` by
     /// slot.
     void freeze(const std::vector<std::vector<Expected>>* expected,
@@ -96,7 +108,7 @@ class SkeletonDensity final : public ConnectionDensity {
     }
 
     std::optional<Constants> constants() const override {
-        if (options_.aware) return std::nullopt;
+        if (options_.aware || !options_.everyLength) return std::nullopt;
         return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
     }
     bool tagsVertices() const override { return options_.aware && lookup_.skeleton(); }
@@ -106,6 +118,13 @@ class SkeletonDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
+        return picks(std::size_t(c.light.count)) *
+               (options_.aware ? samplesOf(c) : options_.credit);
+    }
+
+  private:
+    /// r of a pick.
+    double samplesOf(const Connection& c) const {
         const auto m = double(options_.subpaths);
         const PathVertex& z = *c.eye.vertex;
         const Vec3 back = c.eye.predecessor->position - z.position;
@@ -132,7 +151,6 @@ class SkeletonDensity final : public ConnectionDensity {
         return ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / ratio) : 1.0 / m;
     }
 
-  private:
     const Options& options_;
     const NodeLookup& lookup_;
     const std::vector<std::vector<Expected>>* expected_ = nullptr;
@@ -150,7 +168,7 @@ class SkeletonConnections final : public Method {
     }
     int warmupIterations() const override { return 1; }
     PoolRequest pool() const override { return {options_.subpaths}; }
-    bool learns() const override { return options_.aware; }
+    bool learns() const override { return options_.aware || !options_.everyLength; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
         density_.freeze(&expected_, &slot_, &sight_);
@@ -226,22 +244,25 @@ class SkeletonConnections final : public Method {
         for (int s = 1; s < int(lengths); ++s) {
             const std::size_t count = vertices_.count(s);
             if (count == 0) continue;
-            const double u = rng.uniformDouble();
+            const double picks = density_.picks(std::size_t(s));
+            const double draw = rng.uniformDouble();
+            if (!(draw < picks)) continue;
+            const double u = draw / picks;
             if (slot == kNone) {
                 const auto place = vertices_.begin(s) + std::size_t(u * double(count));
-                sink.add({vertices_.prefix(place), double(count) / m, kRows});
+                sink.add({vertices_.prefix(place), double(count) / (m * picks), kRows});
                 continue;
             }
             const CombinedPmf& pmf = pmfs_[slot * lengths + std::size_t(s)];
             if (pmf.empty()) continue;
             const auto pick = pmf.sample(u);
-            sink.add({vertices_.prefix(vertices_.begin(s) + pick.index), 1.0 / (m * pick.pmf),
-                      pmf.owner(pick.index)});
+            sink.add({vertices_.prefix(vertices_.begin(s) + pick.index),
+                      1.0 / (m * pick.pmf * picks), pmf.owner(pick.index)});
         }
     }
 
     void observe(const LightPool&, IterationContext&) override {
-        if (!options_.aware) return;
+        if (!learns()) return;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         expected_.resize(slot_.size() + 1);
         const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {
@@ -373,11 +394,20 @@ MethodRow skeletonRow() {
          "samples that a connection counts as; 0: all candidates",
          {},
          "candidates"},
+        {"lengths",
+         Kind::Choice,
+         1,
+         0,
+         1,
+         "for which s a vertex is picked: every one (the paper), or with a probability that "
+         "follows "
+         "the share of light subpaths that are so long",
+         {"every", "share"}},
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
         nextEventParameter(false),
         presetParameter()};
-    row.paper = {{"weights", 0}};
+    row.paper = {{"weights", 0}, {"lengths", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");
@@ -389,6 +419,7 @@ MethodRow skeletonRow() {
         o.use[kUniform] = true;
         o.choice = s.integer("choice") == 0 ? Choice::Even : Choice::Mass;
         o.aware = s.integer("weights") == 1;
+        o.everyLength = s.integer("lengths") == 0;
         o.nextEvent = s.on("next_event");
         return std::make_unique<SkeletonConnections>(o);
     };
