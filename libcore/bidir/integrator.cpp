@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 namespace lacuna {
@@ -39,9 +40,11 @@ std::string lightReplay(std::uint64_t path, std::uint32_t iteration) {
 }
 }  // namespace
 
-/// Scratch memory of one thread: the subpaths of a tile's row of pixels.
+/// Scratch memory of one thread: the subpaths of a tile's row of pixels, or of a batch.
 struct BidirIntegrator::Worker {
     std::array<std::vector<PathVertex>, kTile> eye, light;
+    std::vector<Rng> rngs;  // by subpath
+    std::vector<Walk> walks;
     ProposalSink proposals;
     FullPath path;
 };
@@ -67,6 +70,7 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
         for (auto& path : workers_.back()->light) {
             path.reserve(std::size_t(settings.limits.maxDepth) + 1);
         }
+        workers_.back()->rngs.reserve(kTile);  // walks point to them
     }
 }
 
@@ -156,19 +160,24 @@ bool BidirIntegrator::lightPass(std::uint32_t iteration, StreamKind kind, bool s
             Chunk& chunk = chunks[c];
             if (recording_) chunk.tally.recording = &chunk.rays;
             Worker& worker = *workers_[std::size_t(threads_.workerIndex())];
-            std::vector<PathVertex>& path = worker.light[0];
             const std::uint64_t first = begin + c * kPathsPerChunk;
-            for (std::uint64_t i = first; i < std::min(end, first + kPathsPerChunk); ++i) {
-                if (tracedByPixel(i)) continue;
-                Rng rng(settings_.seed, iteration, kind, i);
-                walker_.traceLight(rng, chunk.tally, path);
-                if (i < pooled) {
-                    techniques_.tag(path);
-                    chunk.vertices.insert(chunk.vertices.end(), path.begin(), path.end());
+            const std::uint64_t last = std::min(end, first + kPathsPerChunk);
+            std::vector<std::uint64_t> batch;
+            for (std::uint64_t i = first; i < last; ++i) {
+                if (!tracedByPixel(i)) batch.push_back(i);
+                if (batch.size() < kTile && i + 1 < last) continue;
+                traceLightPaths(batch, iteration, kind, worker, chunk);
+                for (std::size_t b = 0; b < batch.size(); ++b) {
+                    std::vector<PathVertex>& path = worker.light[b];
+                    if (batch[b] < pooled) {
+                        techniques_.tag(path);
+                        chunk.vertices.insert(chunk.vertices.end(), path.begin(), path.end());
+                    }
+                    if (splats && batch[b] < lightPaths_) {
+                        splatLightPath(path, iteration, batch[b], worker.rngs[b], worker, chunk);
+                    }
                 }
-                if (splats && i < lightPaths_) {
-                    splatLightPath(path, iteration, i, rng, worker, chunk);
-                }
+                batch.clear();
             }
         });
         if (cancel) return false;
@@ -211,28 +220,49 @@ bool BidirIntegrator::eyePass(std::uint32_t iteration, const std::atomic<bool>& 
     return true;
 }
 
+void BidirIntegrator::traceLightPaths(std::span<const std::uint64_t> indices,
+                                      std::uint32_t iteration, StreamKind kind, Worker& worker,
+                                      Chunk& chunk) {
+    worker.rngs.clear();
+    worker.walks.clear();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        Rng& rng = worker.rngs.emplace_back(settings_.seed, iteration, kind, indices[i]);
+        const auto walk = walker_.startLight(rng, worker.light[i]);
+        if (walk) worker.walks.push_back(*walk);
+    }
+    walker_.finish(worker.walks, chunk.tally);
+}
+
 void BidirIntegrator::pixelRow(std::uint32_t iteration, int x0, int y, Worker& worker, Chunk& chunk,
                                std::span<Rgb> pixels) {
     const auto filmIndex =
         std::uint32_t(y) * std::uint32_t(camera_.film().width) + std::uint32_t(x0);
     // One thing after the other for all pixels, and not all things for one pixel: the processor's
     // first cache holds the code of one of them.
-    for (std::uint32_t i = 0; techniqueSet_.ownLightPath && i < pixels.size(); ++i) {
-        std::vector<PathVertex>& path = worker.light[i];
-        Rng rng(settings_.seed, iteration, StreamKind::LightPath, filmIndex + i);
-        walker_.traceLight(rng, chunk.tally, path);
-        techniques_.tag(path);
-        if (techniqueSet_.splats && filmIndex + i < lightPaths_) {
-            splatLightPath(path, iteration, filmIndex + i, rng, worker, chunk);
+    if (techniqueSet_.ownLightPath) {
+        std::array<std::uint64_t, kTile> indices;
+        std::iota(indices.begin(), indices.end(), std::uint64_t(filmIndex));
+        traceLightPaths(std::span(indices).first(pixels.size()), iteration, StreamKind::LightPath,
+                        worker, chunk);
+        for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+            techniques_.tag(worker.light[i]);
+            if (techniqueSet_.splats && filmIndex + i < lightPaths_) {
+                splatLightPath(worker.light[i], iteration, filmIndex + i, worker.rngs[i], worker,
+                               chunk);
+            }
         }
     }
+    worker.rngs.clear();
+    worker.walks.clear();
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
-        Rng rng(settings_.seed, iteration, StreamKind::EyePath, filmIndex + i);
+        Rng& rng =
+            worker.rngs.emplace_back(settings_.seed, iteration, StreamKind::EyePath, filmIndex + i);
         const float jitterX = rng.uniform(), jitterY = rng.uniform();
-        walker_.traceEye({float(x0 + int(i)) + jitterX, float(y) + jitterY}, rng, chunk.tally,
-                         worker.eye[i]);
-        techniques_.tag(worker.eye[i]);
+        worker.walks.push_back(walker_.startEye({float(x0 + int(i)) + jitterX, float(y) + jitterY},
+                                                rng, worker.eye[i]));
     }
+    walker_.finish(worker.walks, chunk.tally);
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) techniques_.tag(worker.eye[i]);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
         const Subpath light = techniqueSet_.ownLightPath ? worker.light[i] : Subpath{};
         closeEyePath(iteration, worker.eye[i], light, x0 + int(i), y, worker, chunk, pixels[i]);

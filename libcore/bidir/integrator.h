@@ -84,6 +84,9 @@ class BidirIntegrator {
                    const std::atomic<bool>& cancel, IterationStatistics& statistics);
     bool eyePass(std::uint32_t iteration, const std::atomic<bool>& cancel,
                  IterationStatistics& statistics);
+    /// Into worker.light, with worker.rngs behind their last draws; at most a tile's width of them.
+    void traceLightPaths(std::span<const std::uint64_t> indices, std::uint32_t iteration,
+                         StreamKind kind, Worker& worker, Chunk& chunk);
     /// Pixels x0, x0 + 1, .. of row y, at most a tile's width of them.
     void pixelRow(std::uint32_t iteration, int x0, int y, Worker& worker, Chunk& chunk,
                   std::span<Rgb> pixels);

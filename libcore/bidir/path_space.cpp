@@ -27,8 +27,8 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
 }
 
 float ScenePaths::reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const {
-    const auto hit = walker_.scene().intersect(origin, Vec3{}, direction, RayKind::Cache, tally);
-    return hit ? length(hit->position - origin) : std::numeric_limits<float>::infinity();
+    const auto hit = walker_.scene().trace(origin, Vec3{}, direction, RayKind::Cache, tally);
+    return hit ? hit->distance : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace lacuna

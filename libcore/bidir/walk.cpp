@@ -1,5 +1,7 @@
 #include "libcore/bidir/walk.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <new>
@@ -7,6 +9,11 @@
 #include "libcore/bidir/absorption.h"
 
 namespace lacuna {
+
+namespace {
+/// More of them do not fit into the processor's first cache.
+constexpr std::size_t kTogether = 8;
+}  // namespace
 
 bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
     const Lights& lights = scene_.lights();
@@ -38,29 +45,42 @@ PathVertex Walker::sampleLens(Rng& rng) const {
     return z0;
 }
 
-void Walker::traceLight(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
+std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) const {
     out.clear();
     PathVertex y0;
-    if (!sampleLight(rng, y0)) return;
+    if (!sampleLight(rng, y0)) return std::nullopt;
     out.push_back(y0);
-    if (limits_.maxDepth < 2 || isBlack(y0.throughput)) return;
+    if (limits_.maxDepth < 2 || isBlack(y0.throughput)) return std::nullopt;
 
     const LightPoint point = lightPointOf(scene_.lights(), y0);
     const auto ray = scene_.lights().sampleEmission(point, rng);
-    if (!ray) return;
+    if (!ray) return std::nullopt;
     out[0].scatter = ray->emission.profile;
     const auto cosine = float(measureCosine(y0, ray->direction));
-    goOn(Side::Light, ray->origin, ray->direction, ray->emission.pdfW,
-         y0.throughput * ray->emission.profile * (cosine / ray->emission.pdfW),
-         std::size_t(limits_.maxDepth), rng, tally, out);
+    return Walk{Side::Light,
+                &out,
+                &rng,
+                ray->origin,
+                y0.ng,
+                ray->direction,
+                ray->emission.pdfW,
+                y0.throughput * ray->emission.profile * (cosine / ray->emission.pdfW)};
 }
 
-void Walker::traceEye(Vec2 raster, Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
+Walk Walker::startEye(Vec2 raster, Rng& rng, std::vector<PathVertex>& out) const {
     out.clear();
     out.push_back(sampleLens(rng));
     const Camera::Direction d = camera_.directionAt(out[0].position, raster);
-    goOn(Side::Eye, out[0].position, d.direction, d.pdfW, Rgb(1.0f),
-         std::size_t(limits_.maxDepth) + 1, rng, tally, out);
+    return {Side::Eye, &out, &rng, out[0].position, out[0].ng, d.direction, d.pdfW, Rgb(1.0f)};
+}
+
+void Walker::traceLight(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
+    if (auto walk = startLight(rng, out)) finishAlone(*walk, tally);
+}
+
+void Walker::traceEye(Vec2 raster, Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const {
+    Walk walk = startEye(raster, rng, out);
+    finishAlone(walk, tally);
 }
 
 void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float pdfW,
@@ -90,59 +110,106 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     v.toPreviousFactor = float(measureCosine(previous, direction) * inverse2);
 }
 
-void Walker::goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throughput,
-                  std::size_t maxVertices, Rng& rng, RayTally& tally,
-                  std::vector<PathVertex>& out) const {
-    RayKind kind = side == Side::Eye ? RayKind::Camera : RayKind::LightWalk;
-    Vec3 ng = out.back().ng;
-    SurfacePoint hit;
-    while (out.size() < maxVertices) {
-        const bool isHit = scene_.intersect(origin, ng, direction, kind, tally, hit);
-        if (side == Side::Eye) kind = RayKind::EyeWalk;
-        if (!isHit) {
-            if (side == Side::Eye && scene_.environment()) {
-                PathVertex& v = out.emplace_back();
-                const PathVertex& previous = out[out.size() - 2];
-                v.kind = VertexKind::Infinite;
-                v.index = std::uint16_t(out.size() - 1);
-                v.position = direction;
-                v.toPrevious = -direction;
-                v.light = scene_.lights().environmentIndex();
-                v.throughput = throughput;
-                v.pdfA = pdfW;
-                v.toPreviousFactor = float(measureCosine(previous, direction));
-            }
-            return;
-        }
-        if (hit.position == out.back().position) return;  // no distance, no measure
-        addSurface(hit, direction, pdfW, throughput, out);
-        if (out.size() == maxVertices) return;
-
-        PathVertex& v = out.back();
-        float survival = 1.0f;
-        if (int(v.index) >= limits_.rouletteDepth) {
-            survival = v.survival;
-            if (survival < 1.0f && rng.uniform() >= survival) return;
-        }
-        const float uLobe = rng.uniform(), u1 = rng.uniform(), u2 = rng.uniform();
-        const std::optional<BsdfSample> sample = v.bsdf.sample(side, v.toPrevious, uLobe, u1, u2);
-        if (!sample) return;
-        const BsdfEvaluation& e = sample->evaluation;
-        const float forward = side == Side::Eye ? e.pdfWToLight : e.pdfWToEye;
-        const float reverse = side == Side::Eye ? e.pdfWToEye : e.pdfWToLight;
-        if (!(forward > 0.0f)) return;
-        throughput =
-            v.throughput * (e.f * (std::fabs(dot(sample->to, v.ng)) / (forward * survival)));
-        if (isBlack(throughput)) return;
-
-        v.scatter = e.f;
-        v.event = sample->event;
-        out[out.size() - 2].pdfReverseA = reverse * v.toPreviousFactor;
-        origin = v.position;
-        ng = v.ng;
-        direction = sample->to;
-        pdfW = forward;
+void Walker::finish(std::span<Walk> walks, RayTally& tally) const {
+    // Where a walk has to wait for texels, others go on meanwhile. Elsewhere that only makes rays
+    // less alike.
+    if (!scene_.hasFarTextures()) {
+        for (Walk& walk : walks) finishAlone(walk, tally);
+        return;
     }
+    while (!walks.empty()) {
+        const std::size_t count = std::min(kTogether, walks.size());
+        finishTogether(walks.first(count), tally);
+        walks = walks.subspan(count);
+    }
+}
+
+void Walker::finishAlone(Walk& walk, RayTally& tally) const {
+    SurfacePoint point;
+    do {
+        const std::optional<Hit> hit = nextHit(walk, tally);
+        if (!hit) return;
+        scene_.surfaceAt(*hit, point);
+    } while (scatter(walk, point));
+}
+
+/// A step of each in turn; at most kTogether.
+void Walker::finishTogether(std::span<Walk> walks, RayTally& tally) const {
+    std::array<Walk*, kTogether> going;
+    std::array<std::optional<Hit>, kTogether> hits;
+    std::array<SurfacePoint, kTogether> points;
+    std::size_t count = 0;
+    for (Walk& walk : walks) going[count++] = &walk;
+    while (count > 0) {
+        std::size_t found = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            hits[found] = nextHit(*going[i], tally);
+            if (hits[found]) going[found++] = going[i];
+        }
+        for (std::size_t i = 0; i < found; ++i) scene_.surfaceAt(*hits[i], points[i]);
+        count = 0;
+        for (std::size_t i = 0; i < found; ++i) {
+            if (scatter(*going[i], points[i])) going[count++] = going[i];
+        }
+    }
+}
+
+/// Where the walk arrives. An eye walk that runs into nothing sees the environment.
+std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
+    std::vector<PathVertex>& out = *walk.path;
+    const RayKind kind = walk.side == Side::Light ? RayKind::LightWalk
+                         : out.size() == 1        ? RayKind::Camera
+                                                  : RayKind::EyeWalk;
+    const std::optional<Hit> hit = scene_.trace(walk.origin, walk.ng, walk.direction, kind, tally);
+    if (hit || walk.side == Side::Light || !scene_.environment()) return hit;
+    PathVertex& v = out.emplace_back();
+    const PathVertex& previous = out[out.size() - 2];
+    v.kind = VertexKind::Infinite;
+    v.index = std::uint16_t(out.size() - 1);
+    v.position = walk.direction;
+    v.toPrevious = -walk.direction;
+    v.light = scene_.lights().environmentIndex();
+    v.throughput = walk.throughput;
+    v.pdfA = walk.pdfW;
+    v.toPreviousFactor = float(measureCosine(previous, walk.direction));
+    return hit;
+}
+
+/// Adds the vertex and draws what the walk goes on along; false where it ends.
+bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
+    std::vector<PathVertex>& out = *walk.path;
+    if (hit.position == out.back().position) return false;  // no distance, no measure
+    addSurface(hit, walk.direction, walk.pdfW, walk.throughput, out);
+    const std::size_t maxVertices =
+        std::size_t(limits_.maxDepth) + (walk.side == Side::Eye ? 1 : 0);
+    if (out.size() == maxVertices) return false;
+
+    PathVertex& v = out.back();
+    float survival = 1.0f;
+    if (int(v.index) >= limits_.rouletteDepth) {
+        survival = v.survival;
+        if (survival < 1.0f && walk.rng->uniform() >= survival) return false;
+    }
+    const float uLobe = walk.rng->uniform(), u1 = walk.rng->uniform(), u2 = walk.rng->uniform();
+    const std::optional<BsdfSample> sample = v.bsdf.sample(walk.side, v.toPrevious, uLobe, u1, u2);
+    if (!sample) return false;
+    const BsdfEvaluation& e = sample->evaluation;
+    const float forward = walk.side == Side::Eye ? e.pdfWToLight : e.pdfWToEye;
+    const float reverse = walk.side == Side::Eye ? e.pdfWToEye : e.pdfWToLight;
+    if (!(forward > 0.0f)) return false;
+    const Rgb throughput =
+        v.throughput * (e.f * (std::fabs(dot(sample->to, v.ng)) / (forward * survival)));
+    if (isBlack(throughput)) return false;
+
+    v.scatter = e.f;
+    v.event = sample->event;
+    out[out.size() - 2].pdfReverseA = reverse * v.toPreviousFactor;
+    walk.origin = v.position;
+    walk.ng = v.ng;
+    walk.direction = sample->to;
+    walk.pdfW = forward;
+    walk.throughput = throughput;
+    return true;
 }
 
 }  // namespace lacuna

@@ -1,6 +1,8 @@
 // Random walks from either end: the only place where subpaths are made.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "libcore/base/rng.h"
@@ -16,6 +18,17 @@ struct WalkLimits {
     /// function of the vertex's material alone, so that both walks know it, and part of p(y) and
     /// p(z).
     int rouletteDepth = 3;
+};
+
+/// A subpath under way: what its walk needs for the next step.
+struct Walk {
+    Side side;
+    std::vector<PathVertex>* path;  ///< y_0 or z_0 at least
+    Rng* rng;
+    Vec3 origin, ng;  ///< of the next ray; ng: of the surface there, zero where there is none
+    Vec3 direction;   ///< unit
+    float pdfW;       ///< of the direction; at infinity: of the point on the disk
+    Rgb throughput;   ///< that the ray carries
 };
 
 class Walker final : public LightSampler {
@@ -34,14 +47,23 @@ class Walker final : public LightSampler {
     /// the last one Infinite where it left a scene with an environment.
     void traceEye(Vec2 raster, Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const;
 
+    /// traceLight in two parts, for several at once: y_0, and the walk from there, empty where the
+    /// subpath ends with it.
+    std::optional<Walk> startLight(Rng& rng, std::vector<PathVertex>& out) const;
+    /// Likewise z_0 of traceEye.
+    Walk startEye(Vec2 raster, Rng& rng, std::vector<PathVertex>& out) const;
+    /// Walks to their ends, each as if it were alone.
+    void finish(std::span<Walk> walks, RayTally& tally) const;
+
     bool sampleLight(Rng& rng, PathVertex& out) const override;
     /// z_0: a point on the lens.
     PathVertex sampleLens(Rng& rng) const;
 
   private:
-    void goOn(Side side, Vec3 origin, Vec3 direction, float pdfW, Rgb throughput,
-              std::size_t maxVertices, Rng& rng, RayTally& tally,
-              std::vector<PathVertex>& out) const;
+    void finishAlone(Walk& walk, RayTally& tally) const;
+    void finishTogether(std::span<Walk> walks, RayTally& tally) const;
+    std::optional<Hit> nextHit(const Walk& walk, RayTally& tally) const;
+    bool scatter(Walk& walk, const SurfacePoint& hit) const;
     void addSurface(const SurfacePoint& point, const Vec3& direction, float pdfW,
                     const Rgb& throughput, std::vector<PathVertex>& out) const;
 

@@ -173,7 +173,7 @@ std::optional<Hit> Accel::intersect(const Ray& ray) const {
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const unsigned instance = rh.hit.instID[0];
     return Hit{instance != RTC_INVALID_GEOMETRY_ID ? instance : rh.hit.geomID, rh.hit.primID,
-               rh.hit.u, rh.hit.v};
+               rh.hit.u, rh.hit.v, rh.ray.tfar};
 }
 
 bool Accel::occluded(const Ray& ray) const {

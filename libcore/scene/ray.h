@@ -28,6 +28,7 @@ struct Hit {
     std::uint32_t object = kNone;     ///< index of the scene's object
     std::uint32_t primitive = kNone;  ///< triangle of the object's mesh
     float u = 0, v = 0;  ///< barycentric weights of the triangle's second and third corner
+    float distance = 0;  ///< along the ray, in lengths of its direction
 };
 
 using RayCounts = std::array<std::uint64_t, kRayKinds>;

@@ -24,6 +24,8 @@ struct Scene::WorldMesh {
     std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
     bool plain = true;  ///< neither vertex colours, nor a normal map, nor a second set
+    /// Those of bsdfAt that the processor's nearer caches do not hold.
+    std::vector<TextureUse> farTextures;
 
     /// The coordinates by which a texture lies on the mesh; may be empty.
     const std::vector<Vec2>& uvsOf(const TextureUse& use) const {
@@ -115,6 +117,17 @@ bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
         }
     }
     return true;
+}
+
+std::vector<TextureUse> farTexturesOf(const Material& m, std::span<const Texture> textures) {
+    constexpr std::size_t kNearBytes = 1 << 18;
+    std::vector<TextureUse> uses;
+    for (const TextureUse& use :
+         {m.baseColorTexture, m.metallicRoughnessTexture, m.transmissionTexture, m.specularTexture,
+          m.specularColorTexture, m.clearcoatTexture, m.clearcoatRoughnessTexture}) {
+        if (use && textures[std::size_t(use.value)].rgba.size() > kNearBytes) uses.push_back(use);
+    }
+    return uses;
 }
 
 bool usesSecondSet(const Material& m) {
@@ -220,6 +233,7 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         to.colors = std::move(from.colors);
         to.plain = to.colors.empty() && to.uvs1.empty() &&
                    !(d.materials[from.material].normalTexture && !to.uvs.empty());
+        to.farTextures = farTexturesOf(d.materials[from.material], d.textures);
         to.triangles = std::move(from.triangles);
         if (mirroredMesh[m]) {
             for (auto& t : to.triangles) std::swap(t[1], t[2]);
@@ -309,6 +323,7 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         }
     }
     for (const WorldMesh& m : meshes_) {
+        hasFarTextures_ = hasFarTextures_ || !m.farTextures.empty();
         if (!m.colors.empty()) constantBsdfs_[m.material].reset();
     }
 
@@ -435,6 +450,10 @@ void Scene::surfaceAt(const Hit& hit, SurfacePoint& s) const {
     s.uv1 = {};
     s.color = Rgb(1.0f);
     if (!mesh.plain) decorate(hit, {p0, p1, p2}, turned, s);
+    for (const TextureUse& use : mesh.farTextures) {
+        prefetchTexture(description_.textures[std::size_t(use.value)],
+                        use.at(use.secondSet ? s.uv1 : s.uv));
+    }
 }
 
 /// What a plain mesh has not. `turned`: the interpolated normal was.
@@ -524,17 +543,26 @@ std::vector<std::array<Vec3, 3>> Scene::blockingTriangles(const ThreadPool& pool
     return all;
 }
 
-bool Scene::intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction, RayKind kind,
-                      RayTally& tally, SurfacePoint& out) const {
+std::optional<Hit> Scene::trace(const Vec3& origin, const Vec3& ng, const Vec3& direction,
+                                RayKind kind, RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
-    const Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
+    Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
     const std::optional<Hit> hit = accel_->intersect(ray);
-    if (hit) surfaceAt(*hit, out);
     if (tally.recording) {
-        const float distance = hit ? length(out.position - origin) : ray.tFar;
-        tally.recording->push_back({{ray.origin, direction, distance}, kind});
+        if (hit) ray.tFar = hit->distance;
+        tally.recording->push_back({ray, kind});
     }
-    return hit.has_value();
+    return hit;
+}
+
+std::optional<SurfacePoint> Scene::intersect(const Vec3& origin, const Vec3& ng,
+                                             const Vec3& direction, RayKind kind,
+                                             RayTally& tally) const {
+    const std::optional<Hit> hit = trace(origin, ng, direction, kind, tally);
+    if (!hit) return std::nullopt;
+    SurfacePoint point;
+    surfaceAt(*hit, point);
+    return point;
 }
 
 bool Scene::visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& ngB, RayKind kind,

@@ -64,16 +64,15 @@ class Scene {
     std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const;
 
     /// Closest surface along a ray that leaves `origin` (offset off its surface; ng zero: no
-    /// surface). False where there is none: `out` is left as it is.
-    bool intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction, RayKind kind,
-                   RayTally& tally, SurfacePoint& out) const;
-    /// The same, by value.
+    /// surface).
+    std::optional<Hit> trace(const Vec3& origin, const Vec3& ng, const Vec3& direction,
+                             RayKind kind, RayTally& tally) const;
+    /// The point of a hit; all of `out` is replaced. Asks the cache for the texels that bsdfAt will
+    /// look at.
+    void surfaceAt(const Hit& hit, SurfacePoint& out) const;
+    /// Both, one after the other.
     std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,
-                                          RayKind kind, RayTally& tally) const {
-        SurfacePoint point;
-        if (!intersect(origin, ng, direction, kind, tally, point)) return std::nullopt;
-        return point;
-    }
+                                          RayKind kind, RayTally& tally) const;
     /// Whether two points see each other; each is moved off its surface towards the other.
     bool visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& ngB, RayKind kind,
                  RayTally& tally) const;
@@ -81,6 +80,8 @@ class Scene {
     bool visibleToInfinity(const Vec3& a, const Vec3& ngA, const Vec3& direction, RayKind kind,
                            RayTally& tally) const;
 
+    /// Whether some textures of bsdfAt are larger than the processor's nearer caches.
+    bool hasFarTextures() const { return hasFarTextures_; }
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const;
     const AlbedoTables& albedoTables() const { return *tables_; }
@@ -94,7 +95,6 @@ class Scene {
     struct WorldMesh;
     struct MapAxes;
 
-    void surfaceAt(const Hit& hit, SurfacePoint& out) const;
     void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                   SurfacePoint& out) const;
     Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
@@ -117,6 +117,7 @@ class Scene {
     float radius_ = 0.0f;
     float offsetFloor_ = 0.0f;
     std::size_t triangleCount_ = 0;
+    bool hasFarTextures_ = false;
     std::vector<WorldMesh> meshes_;
     std::vector<Object> objects_;
     std::unique_ptr<AlbedoTables> tables_;

@@ -43,32 +43,51 @@ double texelCoordinate(float u, int n, Texture::Wrap wrap) {
     return x * n - 0.5;
 }
 
+/// The four texels around a point, and how far it is from the first to the second ones.
+struct Footprint {
+    int x[2], y[2];
+    float fx, fy;
+
+    Footprint(const Texture& texture, Vec2 uv) {
+        const double u = texelCoordinate(uv.x, texture.width, texture.wrapU);
+        const double v = texelCoordinate(uv.y, texture.height, texture.wrapV);
+        const int x0 = int(std::floor(u)), y0 = int(std::floor(v));
+        fx = float(u - x0);
+        fy = float(v - y0);
+        for (int i = 0; i < 2; ++i) {
+            x[i] = wrapped(x0 + i, texture.width, texture.wrapU);
+            y[i] = wrapped(y0 + i, texture.height, texture.wrapV);
+        }
+    }
+};
+
+const std::uint8_t* texelOf(const Texture& texture, int x, int y) {
+    return texture.rgba.data() + (std::size_t(y) * std::size_t(texture.width) + std::size_t(x)) * 4;
+}
+
 }  // namespace
 
 Rgba sampleTexture(const Texture& texture, Vec2 uv) {
     static const Decoder decoder;
     const std::array<float, 256>& table = texture.srgb ? decoder.srgb : decoder.linear;
 
-    const double x = texelCoordinate(uv.x, texture.width, texture.wrapU);
-    const double y = texelCoordinate(uv.y, texture.height, texture.wrapV);
-    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-    const float fx = float(x - x0), fy = float(y - y0);
-    const int xs[2] = {wrapped(x0, texture.width, texture.wrapU),
-                       wrapped(x0 + 1, texture.width, texture.wrapU)};
-    const int ys[2] = {wrapped(y0, texture.height, texture.wrapV),
-                       wrapped(y0 + 1, texture.height, texture.wrapV)};
-
+    const Footprint at(texture, uv);
     Rgba sum{Rgb{}, 0.0f};
     for (int j = 0; j < 2; ++j) {
         for (int i = 0; i < 2; ++i) {
-            const float w = (i ? fx : 1.0f - fx) * (j ? fy : 1.0f - fy);
-            const std::uint8_t* t =
-                texture.rgba.data() + (std::size_t(ys[j]) * texture.width + xs[i]) * 4;
+            const float w = (i ? at.fx : 1.0f - at.fx) * (j ? at.fy : 1.0f - at.fy);
+            const std::uint8_t* t = texelOf(texture, at.x[i], at.y[j]);
             sum.rgb += Rgb{table[t[0]], table[t[1]], table[t[2]]} * w;
             sum.alpha += decoder.linear[t[3]] * w;
         }
     }
     return sum;
+}
+
+void prefetchTexture(const Texture& texture, Vec2 uv) {
+    const Footprint at(texture, uv);
+    // The second column is nearly always in the same line of the cache.
+    for (const int y : at.y) __builtin_prefetch(texelOf(texture, at.x[0], y));
 }
 
 }  // namespace lacuna

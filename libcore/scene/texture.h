@@ -16,4 +16,7 @@ struct Rgba {
 /// half integers). The texture must have at least one texel.
 Rgba sampleTexture(const Texture& texture, Vec2 uv);
 
+/// Asks the cache for what sampleTexture will look at.
+void prefetchTexture(const Texture& texture, Vec2 uv);
+
 }  // namespace lacuna
