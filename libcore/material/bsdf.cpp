@@ -30,6 +30,10 @@ float unit(float x) {
     return x > 0.0f ? std::min(x, 1.0f) : 0.0f;  // NaN becomes 0
 }
 
+Rgb unit(const Rgb& c) {
+    return {unit(c.r), unit(c.g), unit(c.b)};
+}
+
 /// 0: smooth.
 float alphaOf(float roughness) {
     const float alpha = unit(roughness) * unit(roughness);
@@ -66,8 +70,7 @@ float Bsdf::layerIor(float ior, const Rgb& specularColor) {
 Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables)
     : ng_(ng),
       ns_(ns),
-      baseColor_(unit(parameters.baseColor.r), unit(parameters.baseColor.g),
-                 unit(parameters.baseColor.b)),
+      baseColor_(unit(parameters.baseColor)),
       ior_(legalIor(parameters.ior)),
       coatIor_(layerIor(ior_, parameters.specularColor)),
       metal_(unit(parameters.metallic)),
@@ -134,6 +137,12 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
         int((flags & kDiffuse) != 0) + int((flags & kLayers) != 0) + int((flags & kGlass) != 0);
     const bool oneLobe = kinds == 1 && !(clearcoat_ > 0.0f);
     flags_ = std::uint8_t(flags | (oneLobe ? unsigned(kOneLobe) : 0u));
+}
+
+Bsdf Bsdf::at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const {
+    Bsdf b = at(ng, ns);
+    b.baseColor_ = unit(baseColor);
+    return b;
 }
 
 /// Cosine-weighted mean of what the coats leave to the diffuse base.

@@ -108,6 +108,8 @@ class Bsdf {
         b.ns_ = ns;
         return b;
     }
+    /// The same in another colour. Neither of the two may be black.
+    Bsdf at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const;
 
     /// Value and densities of the Smooth event (all lobes with a density together).
     BsdfEvaluation evaluate(const Vec3& toEye, const Vec3& toLight) const {

@@ -314,17 +314,13 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         }
     }
     tables_ = std::make_unique<AlbedoTables>(iors);
-    for (const Material& m : d.materials) {
-        std::optional<Bsdf>& bsdf = constantBsdfs_.emplace_back();
-        if (!m.baseColorTexture && !m.metallicRoughnessTexture && !m.transmissionTexture &&
-            !m.specularTexture && !m.specularColorTexture && !m.clearcoatTexture &&
-            !m.clearcoatRoughnessTexture) {
-            bsdf = Bsdf(bsdfParameters(m, {}, {}), {}, {}, *tables_);
-        }
-    }
+    std::vector<bool> vertexColors(d.materials.size());
     for (const WorldMesh& m : meshes_) {
         hasFarTextures_ = hasFarTextures_ || !m.farTextures.empty();
-        if (!m.colors.empty()) constantBsdfs_[m.material].reset();
+        if (!m.colors.empty()) vertexColors[m.material] = true;
+    }
+    for (std::size_t i = 0; i < d.materials.size(); ++i) {
+        preparedBsdfs_.push_back(prepared(d.materials[i], vertexColors[i]));
     }
 
     std::vector<AccelMesh> accelMeshes;
@@ -589,17 +585,39 @@ std::uint32_t Scene::materialOf(std::uint32_t light) const {
 }
 
 Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
-    const std::optional<Bsdf>& constant = constantBsdfs_[point.material];
-    if (constant) return constant->at(point.ng, point.ns);
-    Bsdf::Parameters p =
-        bsdfParameters(description_.materials[point.material], point.uv, point.uv1);
+    const PreparedBsdf& common = preparedBsdfs_[point.material];
+    if (common.bsdf && !common.colorVaries) return common.bsdf->at(point.ng, point.ns);
+    const Material& material = description_.materials[point.material];
+    if (common.bsdf) {
+        const Rgb color = baseColorAt(material, point.uv, point.uv1) * point.color;
+        if (maxComponent(color) > 0.0f) return common.bsdf->at(point.ng, point.ns, color);
+    }
+    Bsdf::Parameters p = bsdfParameters(material, point.uv, point.uv1);
     p.baseColor *= point.color;
     return Bsdf(p, point.ng, point.ns, *tables_);
 }
 
+Scene::PreparedBsdf Scene::prepared(const Material& m, bool vertexColors) const {
+    if (m.metallicRoughnessTexture || m.transmissionTexture || m.specularTexture ||
+        m.specularColorTexture || m.clearcoatTexture || m.clearcoatRoughnessTexture) {
+        return {};
+    }
+    PreparedBsdf out;
+    out.colorVaries = m.baseColorTexture || vertexColors;
+    Bsdf::Parameters p = bsdfParameters(m, {}, {});
+    if (out.colorVaries) p.baseColor = Rgb(1.0f);
+    out.bsdf = Bsdf(p, {}, {}, *tables_);
+    return out;
+}
+
+Rgb Scene::baseColorAt(const Material& m, Vec2 uv, Vec2 uv1) const {
+    if (!m.baseColorTexture) return m.baseColor;
+    return m.baseColor * sample(m.baseColorTexture, uv, uv1).rgb;
+}
+
 Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv, Vec2 uv1) const {
     Bsdf::Parameters p;
-    p.baseColor = m.baseColor;
+    p.baseColor = baseColorAt(m, uv, uv1);
     p.metallic = m.metallic;
     p.roughness = m.roughness;
     p.specular = m.specular;
@@ -610,9 +628,6 @@ Bsdf::Parameters Scene::bsdfParameters(const Material& m, Vec2 uv, Vec2 uv1) con
     p.clearcoat = m.clearcoat;
     p.clearcoatRoughness = m.clearcoatRoughness;
     p.without = m.without;
-    if (m.baseColorTexture) {
-        p.baseColor *= sample(m.baseColorTexture, uv, uv1).rgb;
-    }
     if (m.metallicRoughnessTexture) {
         const Rgb t = sample(m.metallicRoughnessTexture, uv, uv1).rgb;
         p.roughness *= t.g;

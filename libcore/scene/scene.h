@@ -94,6 +94,11 @@ class Scene {
     struct Object;
     struct WorldMesh;
     struct MapAxes;
+    /// What a material has in common wherever it is.
+    struct PreparedBsdf {
+        std::optional<Bsdf> bsdf;  ///< where nothing but the base colour varies; white then
+        bool colorVaries = false;
+    };
 
     void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                   SurfacePoint& out) const;
@@ -107,6 +112,8 @@ class Scene {
         return sampleTexture(description_.textures[std::size_t(use.value)],
                              use.at(use.secondSet ? uv1 : uv));
     }
+    Rgb baseColorAt(const Material& material, Vec2 uv, Vec2 uv1) const;
+    PreparedBsdf prepared(const Material& material, bool vertexColors) const;
     Bsdf::Parameters bsdfParameters(const Material& material, Vec2 uv, Vec2 uv1) const;
     bool mostlyHoles(std::uint32_t object, std::uint32_t primitive) const;
     static Vec2 uvAt(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& triangle,
@@ -121,7 +128,7 @@ class Scene {
     std::vector<WorldMesh> meshes_;
     std::vector<Object> objects_;
     std::unique_ptr<AlbedoTables> tables_;
-    std::vector<std::optional<Bsdf>> constantBsdfs_;  // by material; where no texture is asked
+    std::vector<PreparedBsdf> preparedBsdfs_;         // by material
     std::vector<Rgb> absorption_;                     // by material; empty where none absorbs
     std::unique_ptr<Environment> environment_;
     std::unique_ptr<Lights> lights_;
