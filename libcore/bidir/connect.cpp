@@ -35,6 +35,13 @@ void fillEyePart(FullPath& path, Subpath eye) {
     }
 }
 
+/// Whether `v` certainly scatters nothing towards `other`: what most connections fail at, found out
+/// before roots and divisions.
+bool liesBehind(const PathVertex& v, const PathVertex& other) {
+    return v.kind == VertexKind::Surface && !other.infinite() && !v.bsdf.transmits() &&
+           leadsBehind(v, other.position - v.position);
+}
+
 /// The path's size and who made its edges, but for a connection's one.
 void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices) {
     path.edges = int(lightVertices + eyeVertices) - 1;
@@ -114,6 +121,7 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
                                       RayTally& tally, FullPath& path) {
     const PathVertex& y = light.back();
     const PathVertex& z = eye.back();
+    if (liesBehind(y, z) || liesBehind(z, y)) return std::nullopt;
     const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
     if (!(edge.geometry > 0.0f)) return std::nullopt;
     const Lights& lights = walker.scene().lights();

@@ -77,6 +77,12 @@ inline double measureCosine(const PathVertex& v, const Vec3& direction) {
     return lengthSquared(v.ng) == 0.0f ? 1.0 : std::fabs(dot(Vec3d(v.ng), Vec3d(direction)));
 }
 
+/// Whether a surface vertex was reached from the other side than the one that `to`, of any length,
+/// leads to.
+inline bool leadsBehind(const PathVertex& v, const Vec3& to) {
+    return dot(v.ng, to) * dot(v.ng, v.toPrevious) < 0.0f;
+}
+
 /// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the
 /// measure of the infinite vertex is solid angle, and the factor towards the finite one is its
 /// cosine (from a disk's area). Coincident points give an edge whose geometry is 0: nothing is

@@ -15,9 +15,9 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     const Edge edge = edgeBetween(y, z);
     if (!(edge.geometry > 0.0f)) return {};
     // Whatever scatters at all reflects: only what comes from behind has to ask the material.
-    const bool reflects = dot(z.ng, edge.direction) * dot(z.ng, z.toPrevious) < 0.0f;
+    const bool behind = leadsBehind(z, -edge.direction);
     Rgb atEye(1.0f);
-    if (throughEye || !reflects) {
+    if (throughEye || behind) {
         const Rgb f = z.bsdf.evaluate(z.toPrevious, -edge.direction).f;
         if (isBlack(f)) return {};
         if (throughEye) atEye = f;

@@ -134,6 +134,8 @@ class Bsdf {
     bool connectable() const {
         return has(kDiffuse | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
     }
+    /// Whether light may pass through.
+    bool transmits() const { return has(kGlass); }
     bool isBlack() const { return !has(kDiffuse | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;

@@ -104,7 +104,7 @@ double CachePoints::trustedGeometry(std::uint32_t point, const PathVertex& light
                                     double geometry) const {
     const PathVertex& at = vertices_[points_[point]];
     const Edge edge = edgeBetween(light, at);
-    const bool behind = dot(at.ng, edge.direction) * dot(at.ng, at.toPrevious) > 0.0f &&
+    const bool behind = leadsBehind(at, -edge.direction) &&
                         isBlack(at.bsdf.evaluate(at.toPrevious, -edge.direction).f);
     const double here = behind ? 0.0 : double(edge.geometry);
     // Never zero for a path that carries something: it may have no other strategy.
