@@ -1,6 +1,5 @@
-// Maps from the unit square to directions, and orthonormal frames. No trigonometric call: the
-// angles of the concentric map lie in [-pi/4, pi/4], where short polynomials are exact to float
-// precision.
+// Maps from the unit square to directions, and orthonormal frames. No trigonometric call: angles
+// are brought into [-pi/4, pi/4], where short polynomials are exact to float precision.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +28,51 @@ struct Frame {
     Vec3 toLocal(Vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
 };
 
+struct SineCosine {
+    float sine, cosine;
+};
+
+/// Of an angle in [-pi/4, pi/4]: Cephes' sinf and cosf kernels.
+inline SineCosine sineCosineNearZero(float x) {
+    const float z = x * x;
+    return {
+        x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f)),
+        1.0f - 0.5f * z +
+            z * z *
+                (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f))};
+}
+
+/// Of an angle in whole turns, |turns| at most a few.
+inline SineCosine sineCosineOfTurns(float turns) {
+    const float quarters = std::nearbyint(4.0f * turns);
+    const SineCosine near = sineCosineNearZero((turns - 0.25f * quarters) * (2.0f * kPi));
+    const unsigned quadrant = unsigned(int(quarters)) & 3u;
+    const float sine = quadrant & 1u ? near.cosine : near.sine;
+    const float cosine = quadrant & 1u ? near.sine : near.cosine;
+    return {quadrant >= 2 ? -sine : sine, quadrant == 1 || quadrant == 2 ? -cosine : cosine};
+}
+
+/// atan2(y, x) in whole turns, in [-1/2, 1/2], to 1e-8 of a turn and rounding; of (0, 0) it is 0
+/// [Abramowitz64 4.4.49].
+inline float turnsOf(float y, float x) {
+    const float ax = std::abs(x), ay = std::abs(y);
+    const float longer = std::max(ax, ay), shorter = std::min(ax, ay);
+    const float a = longer > 0.0f ? shorter / longer : 0.0f;
+    const float z = a * a;
+    const float radians =
+        a * (1.0f + z * (-0.3333314528f +
+                         z * (0.1999355085f +
+                              z * (-0.1420889944f +
+                                   z * (0.1065626393f +
+                                        z * (-0.0752896400f +
+                                             z * (0.0429096138f +
+                                                  z * (-0.0161657367f + z * 0.0028662257f))))))));
+    float turns = radians * (0.5f * kInvPi);
+    turns = ay > ax ? 0.25f - turns : turns;
+    turns = x < 0.0f ? 0.5f - turns : turns;
+    return std::copysign(turns, y);
+}
+
 /// Uniform point of the unit disk, area-preserving and continuous [Shirley and Chiu 1997].
 inline Vec2 concentricDisk(float u1, float u2) {
     const float a = 2.0f * u1 - 1.0f;
@@ -37,16 +81,9 @@ inline Vec2 concentricDisk(float u1, float u2) {
     const bool aLonger = std::abs(a) > std::abs(b);
     const float radius = aLonger ? a : b;
     const float other = aLonger ? b : a;
-    const float x = (kPi / 4) * (other / (radius != 0.0f ? radius : 1.0f));
-    const float z = x * x;
-    // Cephes' sinf and cosf kernels on [-pi/4, pi/4].
-    const float sine =
-        radius * (x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f)));
-    const float cosine =
-        radius *
-        (1.0f - 0.5f * z +
-         z * z *
-             (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f)));
+    const SineCosine angle =
+        sineCosineNearZero((kPi / 4) * (other / (radius != 0.0f ? radius : 1.0f)));
+    const float sine = radius * angle.sine, cosine = radius * angle.cosine;
     return {aLonger ? cosine : sine, aLonger ? sine : cosine};
 }
 

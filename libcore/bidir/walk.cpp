@@ -16,10 +16,14 @@ constexpr std::size_t kTogether = 8;
 }  // namespace
 
 bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
+    return sampleLightPoint(rng, out).has_value();
+}
+
+std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) const {
     const Lights& lights = scene_.lights();
-    if (lights.empty()) return false;
+    if (lights.empty()) return std::nullopt;
     const LightPoint p = lights.samplePoint(rng);
-    if (!(p.pdf > 0.0f)) return false;
+    if (!(p.pdf > 0.0f)) return std::nullopt;
     std::construct_at(&out);
     out.kind = isInfinite(p.kind) ? VertexKind::Infinite : VertexKind::LightSource;
     out.position = p.position;
@@ -31,7 +35,7 @@ bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
     }
     out.pdfA = p.pdf;
     out.throughput = p.exitance * (1.0f / p.pdf);
-    return true;
+    return p;
 }
 
 PathVertex Walker::sampleLens(Rng& rng) const {
@@ -48,12 +52,12 @@ PathVertex Walker::sampleLens(Rng& rng) const {
 std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) const {
     out.clear();
     PathVertex y0;
-    if (!sampleLight(rng, y0)) return std::nullopt;
+    const std::optional<LightPoint> point = sampleLightPoint(rng, y0);
+    if (!point) return std::nullopt;
     out.push_back(y0);
     if (limits_.maxDepth < 2 || isBlack(y0.throughput)) return std::nullopt;
 
-    const LightPoint point = lightPointOf(scene_.lights(), y0);
-    const auto ray = scene_.lights().sampleEmission(point, rng);
+    const auto ray = scene_.lights().sampleEmission(*point, rng);
     if (!ray) return std::nullopt;
     out[0].scatter = ray->emission.profile;
     const auto cosine = float(measureCosine(y0, ray->direction));

@@ -60,6 +60,7 @@ class Walker final : public LightSampler {
     PathVertex sampleLens(Rng& rng) const;
 
   private:
+    std::optional<LightPoint> sampleLightPoint(Rng& rng, PathVertex& out) const;
     void finishAlone(Walk& walk, RayTally& tally) const;
     void finishTogether(std::span<Walk> walks, RayTally& tally) const;
     std::optional<Hit> nextHit(const Walk& walk, RayTally& tally) const;

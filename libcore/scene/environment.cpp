@@ -1,5 +1,6 @@
 #include "libcore/scene/environment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -8,15 +9,6 @@
 #include "libcore/base/sampling.h"
 
 namespace lacuna {
-
-namespace {
-/// Solid angle of a texel in row y: exact, so that densities integrate to one.
-double texelSolidAngle(int y, int width, int height) {
-    const double top = std::cos(std::numbers::pi * y / height);
-    const double bottom = std::cos(std::numbers::pi * (y + 1) / height);
-    return 2.0 * std::numbers::pi / width * (top - bottom);
-}
-}  // namespace
 
 Environment::Environment(const Image& image, double scale, double rotationDegrees,
                          const std::string& file)
@@ -38,12 +30,18 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
         }
     }
 
+    for (int y = 0; y < height_; ++y) {
+        const double top = std::cos(std::numbers::pi * y / height_);
+        const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
+        rows_.push_back({top, bottom, 2.0 * std::numbers::pi / width_ * (top - bottom)});
+    }
+
     // A texel's interpolated radiance reaches into all eight neighbours: the tent's integrals over
     // one texel are 1/8, 6/8, 1/8 along each axis.
     std::vector<double> weights(image_.size());
     double sum[3] = {0, 0, 0};
     for (int y = 0; y < height_; ++y) {
-        const double solidAngle = texelSolidAngle(y, width_, height_);
+        const double solidAngle = rows_[std::size_t(y)].solidAngle;
         for (int x = 0; x < width_; ++x) {
             Rgb meanRadiance{};
             for (int dy = -1; dy <= 1; ++dy) {
@@ -65,20 +63,12 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
 }
 
 Vec2 Environment::uvOf(Vec3 d) const {
-    float u = 0.5f + std::atan2(d.x, -d.z) / (2.0f * kPi) - turn_;
-    u -= std::floor(u);
-    const float v = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y) / kPi;
-    return {u, v};
+    const float u = 0.5f + turnsOf(d.x, -d.z) - turn_;
+    const float v = 2.0f * turnsOf(std::sqrt(d.x * d.x + d.z * d.z), d.y);
+    return {u - std::floor(u), v};
 }
 
-Vec3 Environment::directionOf(Vec2 uv) const {
-    const float phi = (uv.x - 0.5f + turn_) * 2.0f * kPi, theta = uv.y * kPi;
-    const float s = std::sin(theta);
-    return {s * std::sin(phi), std::cos(theta), -s * std::cos(phi)};
-}
-
-Rgb Environment::radiance(Vec3 direction) const {
-    const Vec2 uv = uvOf(direction);
+Rgb Environment::radianceAt(Vec2 uv) const {
     const float x = uv.x * float(width_) - 0.5f, y = uv.y * float(height_) - 0.5f;
     const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
     const float fx = x - float(x0), fy = y - float(y0);
@@ -93,20 +83,20 @@ Rgb Environment::radiance(Vec3 direction) const {
 Environment::Sample Environment::sample(double uTexel, float u1, float u2) const {
     const DiscreteDistribution::Pick pick = texels_.sample(uTexel);
     const int x = int(pick.index) % width_, y = int(pick.index) / width_;
+    const Row& row = rows_[std::size_t(y)];
     // Uniform in solid angle inside the texel: uniform in longitude and in the cosine.
-    const double top = std::cos(std::numbers::pi * y / height_);
-    const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
-    const double cosTheta = top + (bottom - top) * u2;
-    const Vec2 uv{(float(x) + u1) / float(width_), float(std::acos(cosTheta) / std::numbers::pi)};
-    return {directionOf(uv), float(pick.pmf / texelSolidAngle(y, width_, height_))};
+    const double cosine = row.top + (row.bottom - row.top) * u2;
+    const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
+    const SineCosine longitude = sineCosineOfTurns((float(x) + u1) / float(width_) - 0.5f + turn_);
+    return {Vec3{sine * longitude.sine, float(cosine), -sine * longitude.cosine},
+            float(pick.pmf / row.solidAngle)};
 }
 
-float Environment::pdfW(Vec3 direction) const {
+float Environment::pdfWAt(Vec2 uv) const {
     if (black()) return 0.0f;
-    const Vec2 uv = uvOf(direction);
     const int x = std::min(int(uv.x * float(width_)), width_ - 1);
     const int y = std::min(int(uv.y * float(height_)), height_ - 1);
-    return float(texels_.pmf(std::size_t(y) * width_ + x) / texelSolidAngle(y, width_, height_));
+    return float(texels_.pmf(std::size_t(y) * width_ + x) / rows_[std::size_t(y)].solidAngle);
 }
 
 }  // namespace lacuna

@@ -16,7 +16,18 @@ class Environment {
     /// for an empty image or negative or non-finite texels, naming `file`.
     Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
 
-    Rgb radiance(Vec3 direction) const;
+    Rgb radiance(Vec3 direction) const { return radianceAt(uvOf(direction)); }
+    /// Density of `sample` at `direction`, per solid angle; 0 for a black map.
+    float pdfW(Vec3 direction) const { return pdfWAt(uvOf(direction)); }
+    /// Both.
+    struct Seen {
+        Rgb radiance;
+        float pdfW;
+    };
+    Seen seen(Vec3 direction) const {
+        const Vec2 uv = uvOf(direction);
+        return {radianceAt(uv), pdfWAt(uv)};
+    }
 
     struct Sample {
         Vec3 direction;  ///< unit, from the scene towards the sky
@@ -24,8 +35,6 @@ class Environment {
     };
     /// Not to be called for a black map.
     Sample sample(double uTexel, float u1, float u2) const;
-    /// Density of `sample` at `direction`, per solid angle; 0 for a black map.
-    float pdfW(Vec3 direction) const;
 
     bool black() const { return texels_.empty(); }
     /// Integral of the radiance over all directions (by texel means).
@@ -33,11 +42,17 @@ class Environment {
 
   private:
     Vec2 uvOf(Vec3 direction) const;
-    Vec3 directionOf(Vec2 uv) const;
+    Rgb radianceAt(Vec2 uv) const;
+    float pdfWAt(Vec2 uv) const;
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;
     std::vector<Rgb> image_;
+    struct Row {
+        double top, bottom;  ///< cosines to +Y of its edges
+        double solidAngle;   ///< of a texel: exact, so that densities integrate to one
+    };
+    std::vector<Row> rows_;
     DiscreteDistribution texels_;
     Rgb integral_;
     float turn_;  ///< rotation as a fraction of a whole turn

@@ -140,8 +140,7 @@ void Lights::chooseUnit(double power) {
     for (PunctualLight& l : punctual_) l.intensity = scaled(l.intensity, 1.0 / unit_);
 }
 
-Rgb Lights::skyExitance(Vec3 direction) const {
-    const Rgb radiance = environment_->radiance(direction);
+Rgb Lights::skyExitance(const Rgb& radiance) const {
     return unit_ == 1.0 ? radiance : scaled(radiance, 1.0 / unit_);
 }
 
@@ -156,8 +155,9 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
     p.light = environmentIndex_;
     p.kind = LightKind::Environment;
     p.position = direction;
-    p.pdf = float(selection_.pmf(environmentIndex_)) * environment_->pdfW(direction);
-    p.exitance = skyExitance(direction);
+    const Environment::Seen seen = environment_->seen(direction);
+    p.pdf = float(selection_.pmf(environmentIndex_)) * seen.pdfW;
+    p.exitance = skyExitance(seen.radiance);
     return p;
 }
 
@@ -178,7 +178,7 @@ LightPoint Lights::samplePoint(Rng& rng) const {
         const Environment::Sample s = environment_->sample(pick.remapped(), draw.u1, draw.u2);
         p.position = s.direction;
         p.pdf = float(pick.pmf) * s.pdfW;
-        p.exitance = skyExitance(s.direction);
+        p.exitance = skyExitance(environment_->radiance(s.direction));
         return p;
     }
     const std::size_t i = light - triangles_.size();

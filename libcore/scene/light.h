@@ -145,7 +145,7 @@ class Lights {
     }
     std::vector<double> powers() const;
     void chooseUnit(double power);
-    Rgb skyExitance(Vec3 direction) const;
+    Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
     Emission otherEmission(std::uint32_t light, const Vec3& direction) const;
     Emission spotEmission(const PunctualLight& light, Vec3 direction) const;

@@ -128,8 +128,8 @@ class Scene {
     std::vector<WorldMesh> meshes_;
     std::vector<Object> objects_;
     std::unique_ptr<AlbedoTables> tables_;
-    std::vector<PreparedBsdf> preparedBsdfs_;         // by material
-    std::vector<Rgb> absorption_;                     // by material; empty where none absorbs
+    std::vector<PreparedBsdf> preparedBsdfs_;  // by material
+    std::vector<Rgb> absorption_;              // by material; empty where none absorbs
     std::unique_ptr<Environment> environment_;
     std::unique_ptr<Lights> lights_;
     std::unique_ptr<Accel> accel_;

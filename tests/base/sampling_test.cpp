@@ -77,6 +77,37 @@ TEST(ConcentricDisk, MatchesTheExactMap) {
     EXPECT_EQ(concentricDisk(0.5f, 0.5f), (Vec2{0, 0}));
 }
 
+TEST(Turns, SineAndCosineAreExactToFloatPrecision) {
+    Random random(3);
+    const auto check = [](float turns) {
+        const double angle = 2 * std::numbers::pi * double(turns);
+        const SineCosine found = sineCosineOfTurns(turns);
+        ASSERT_NEAR(found.sine, std::sin(angle), 2e-7) << turns;
+        ASSERT_NEAR(found.cosine, std::cos(angle), 2e-7) << turns;
+    };
+    for (int eighth = -16; eighth <= 16; ++eighth) check(float(eighth) / 8);
+    for (int i = 0; i < 20'000; ++i) check(3 * random.next() - 1.5f);
+    EXPECT_EQ(sineCosineOfTurns(0.0f).sine, 0.0f);
+    EXPECT_EQ(sineCosineOfTurns(0.5f).cosine, -1.0f);
+}
+
+TEST(Turns, ArctangentInAllQuadrants) {
+    const auto check = [](float y, float x) {
+        const double exact = std::atan2(double(y), double(x)) / (2 * std::numbers::pi);
+        ASSERT_NEAR(turnsOf(y, x), exact, 6e-8) << y << " " << x;
+    };
+    for (const float y : {-1.0f, -0.5f, 0.0f, 0.5f, 1.0f}) {
+        for (const float x : {-1.0f, -0.5f, 0.0f, 0.5f, 1.0f}) check(y, x);
+    }
+    Random random(4);
+    for (int i = 0; i < 20'000; ++i) {
+        const float scale = std::exp2(120 * random.next() - 60);  // any length
+        check(scale * (2 * random.next() - 1), scale * (2 * random.next() - 1));
+    }
+    EXPECT_EQ(turnsOf(0.0f, 0.0f), 0.0f);
+    EXPECT_EQ(turnsOf(1e-30f, 1.0f), 1e-30f / (2 * kPi));
+}
+
 TEST(ConcentricDisk, AreaIsPreserved) {
     constexpr int kSamples = 200'000;
     std::vector<std::uint64_t> counts(8 * 16);  // rings of equal area x sectors
