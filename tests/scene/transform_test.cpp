@@ -365,6 +365,39 @@ TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
     }
 }
 
+TEST(SurfacePoint, ColouredPointsAreOfThatColoursMaterial) {
+    const Mesh plain = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    Mesh coloured = plain;
+    const std::array<float, 4> tint{0.5f, 1.0f, 0.0f, 1.0f};
+    coloured.colors.assign(3, tint);
+    const Vec3 eye = normalize(Vec3{0.3f, 0.1f, 1}), light = normalize(Vec3{-0.2f, 0.5f, 0.7f});
+    for (lacuna::Material material :
+         {matte(Rgb(0.9f)), plastic({0.5f, 0.4f, 0.3f}, 0.3f), metal(Rgb(0.8f), 0.4f),
+          glass(1.0f, 0.5f), plastic({3.0f, 0.4f, 0.3f}, 0.0f)}) {
+        for (const std::uint8_t grey : {std::uint8_t(0), std::uint8_t(255)}) {
+            SceneBuilder b;
+            Texture texel;
+            texel.width = texel.height = 1;
+            texel.rgba = {grey, grey, grey, 255};
+            lacuna::Material textured = material, constant = material;
+            textured.baseColorTexture = b.add(texel);
+            constant.baseColor *= Rgb(float(grey) / 255) * Rgb(tint[0], tint[1], tint[2]);
+            const Met met = meet(b, coloured, textured), other = meet(b, plain, constant);
+            const Bsdf found = met.bsdf(), expected = other.bsdf();
+            EXPECT_EQ(found.connectable(), expected.connectable());
+            EXPECT_EQ(found.isBlack(), expected.isBlack());
+            EXPECT_EQ(found.survivalAlbedo(), expected.survivalAlbedo());
+            for (const ScatterEvent event : {ScatterEvent::Smooth, ScatterEvent::DeltaReflection}) {
+                const BsdfEvaluation is = found.evaluate(eye, light, event);
+                const BsdfEvaluation should = expected.evaluate(eye, light, event);
+                EXPECT_EQ(is.f, should.f);
+                EXPECT_EQ(is.pdfWToEye, should.pdfWToEye);
+                EXPECT_EQ(is.pdfWToLight, should.pdfWToLight);
+            }
+        }
+    }
+}
+
 TEST(SurfacePoint, TexturesLieByTheSetTheyAskFor) {
     SceneBuilder b;
     Texture halves;  // red and not there, then blue

@@ -1,0 +1,87 @@
+// Walks that go on together (Walker::finish) against each of them alone.
+#include "libcore/bidir/walk.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/scene/scene_builder.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A room without a roof under a lamp; `texels` of its walls' texture along each side.
+std::unique_ptr<Scene> room(int texels) {
+    SceneBuilder b;
+    Texture checks;
+    checks.width = checks.height = texels;
+    for (int i = 0; i < texels * texels; ++i) {
+        const auto grey = std::uint8_t(60 + (i * 37) % 180);
+        checks.rgba.insert(checks.rgba.end(), {grey, 200, std::uint8_t(255 - grey), 255});
+    }
+    lacuna::Material walls = plastic(Rgb(0.9f), 0.4f);
+    walls.baseColorTexture = b.add(checks);
+    const std::uint32_t material = b.add(walls), lamp = b.add(emitter(Rgb(3.0f), true));
+    b.add(box({-1, -1, -1}, {1, 4, 1}, material, true));
+    b.add(quad({-0.2f, 0.5f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, lamp));
+    b.d.cameras.push_back(lookAt({0.1, 0, 0.9}, {0, -0.2, 0}, 70));
+    return b.build();
+}
+
+void expectSame(const std::vector<PathVertex>& a, const std::vector<PathVertex>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].position, b[i].position);
+        EXPECT_EQ(a[i].throughput, b[i].throughput);
+        EXPECT_EQ(a[i].pdfA, b[i].pdfA);
+        EXPECT_EQ(a[i].pdfReverseA, b[i].pdfReverseA);
+        EXPECT_EQ(a[i].scatter, b[i].scatter);
+        EXPECT_EQ(a[i].index, b[i].index);
+        EXPECT_EQ(a[i].kind, b[i].kind);
+    }
+}
+
+TEST(Walker, TogetherAsAlone) {
+    constexpr std::size_t kWalks = 21;  // more than go together, and no multiple of that
+    for (const int texels : {4, 300}) {
+        const auto scene = room(texels);
+        ASSERT_EQ(scene->hasFarTextures(), texels == 300);
+        const Camera camera = scene->makeCamera("", {64, 48}, {});
+        const Walker walker(*scene, camera, {10, 2});
+        for (const Side side : {Side::Eye, Side::Light}) {
+            const auto raster = [](std::size_t i) { return Vec2{3.1f * float(i), 20.5f}; };
+            std::vector<Rng> rngs;
+            for (std::size_t i = 0; i < kWalks; ++i) {
+                rngs.emplace_back(1, 0, StreamKind::User, i);
+            }
+            std::vector<Rng> rngsAlone = rngs;
+            std::vector<std::vector<PathVertex>> paths(kWalks);
+            std::vector<Walk> walks;
+            for (std::size_t i = 0; i < kWalks; ++i) {
+                if (side == Side::Eye) {
+                    walks.push_back(walker.startEye(raster(i), rngs[i], paths[i]));
+                } else if (const auto walk = walker.startLight(rngs[i], paths[i])) {
+                    walks.push_back(*walk);
+                }
+            }
+            RayTally together, alone;
+            walker.finish(walks, together);
+
+            std::size_t longest = 0;
+            for (std::size_t i = 0; i < kWalks; ++i) {
+                std::vector<PathVertex> path;
+                if (side == Side::Eye) {
+                    walker.traceEye(raster(i), rngsAlone[i], alone, path);
+                } else {
+                    walker.traceLight(rngsAlone[i], alone, path);
+                }
+                expectSame(paths[i], path);
+                EXPECT_EQ(rngs[i].bits(), rngsAlone[i].bits());  // what comes next, too
+                longest = std::max(longest, path.size());
+            }
+            EXPECT_GT(longest, 4u);
+            EXPECT_EQ(together.counts, alone.counts);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
