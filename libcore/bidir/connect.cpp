@@ -75,7 +75,7 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
     // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
     setSource(path, walker.scene(), z,
               point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
-    path.scatter[0] = emission.profile;
+    path.scatter[0] = Rgb(emission.profile);
     path.lightPdfA[0] = point.pdf;
     if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
     return closed;

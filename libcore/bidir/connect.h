@@ -30,7 +30,7 @@ struct EndValue {
 inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye) {
     if (y.index == 0) {
         const Lights::Emission e = emissionOf(lights, y, toEye);
-        return {e.profile, e.pdfW, 0.0f};
+        return {Rgb(e.profile), e.pdfW, 0.0f};
     }
     const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
     return {e.f, e.pdfWToEye, e.pdfWToLight};

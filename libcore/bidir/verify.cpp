@@ -82,7 +82,7 @@ class Products {
         const Lights::Emission emission = lights_.emission(source_, towardsLens(0));
         lightPdfA_[0] = double(source_.pdf);
         if (k_ > 1) lightPdfA_[1] = double(emission.pdfW) * toLens_[0];
-        scatter_[0] = emission.profile;
+        scatter_[0] = Rgb(emission.profile);
         event_[0] = ScatterEvent::Smooth;
     }
 

@@ -59,7 +59,7 @@ std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) c
 
     const auto ray = scene_.lights().sampleEmission(*point, rng);
     if (!ray) return std::nullopt;
-    out[0].scatter = ray->emission.profile;
+    out[0].scatter = Rgb(ray->emission.profile);
     const auto cosine = float(measureCosine(y0, ray->direction));
     return Walk{Side::Light,
                 &out,
@@ -201,9 +201,9 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     const float forward = walk.side == Side::Eye ? e.pdfWToLight : e.pdfWToEye;
     const float reverse = walk.side == Side::Eye ? e.pdfWToEye : e.pdfWToLight;
     if (!(forward > 0.0f)) return false;
-    const Rgb throughput =
+    walk.throughput =
         v.throughput * (e.f * (std::fabs(dot(sample->to, v.ng)) / (forward * survival)));
-    if (isBlack(throughput)) return false;
+    if (isBlack(walk.throughput)) return false;
 
     v.scatter = e.f;
     v.event = sample->event;
@@ -212,7 +212,6 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     walk.ng = v.ng;
     walk.direction = sample->to;
     walk.pdfW = forward;
-    walk.throughput = throughput;
     return true;
 }
 

@@ -93,11 +93,12 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             return result;  // reflected below the horizon, or refracted above it
         }
     }
-    to = renormalize(to);
-    const Vec3 toEye = side == Side::Eye ? from : to, toLight = side == Side::Eye ? to : from;
     BsdfSample& s = result.emplace();
-    s.to = to;
+    s.to = renormalize(to);
     s.event = event;
+    // By reference: a copy would wait for its parts' stores.
+    const Vec3& toEye = side == Side::Eye ? from : s.to;
+    const Vec3& toLight = side == Side::Eye ? s.to : from;
     s.evaluation = evaluate(toEye, toLight, event);
     if (!((side == Side::Eye ? s.evaluation.pdfWToLight : s.evaluation.pdfWToEye) > 0.0f)) {
         result.reset();

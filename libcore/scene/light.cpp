@@ -202,16 +202,16 @@ Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) co
     const double falloff = spotFalloff(l, v);
     if (falloff == 0.0) return {};
     // Sampled uniformly inside the outer cone.
-    return {Rgb(float(falloff / spotSolidAngle(l))), float(1.0 / capSolidAngle(l.outerConeAngle))};
+    return {float(falloff / spotSolidAngle(l)), float(1.0 / capSolidAngle(l.outerConeAngle))};
 }
 
 /// Of lights without a surface.
 Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& direction) const {
-    if (kinds_[light] == LightKind::Point) return {Rgb(0.25f / kPi), 0.25f / kPi};
+    if (kinds_[light] == LightKind::Point) return {0.25f / kPi, 0.25f / kPi};
     if (kinds_[light] == LightKind::Spot) {
         return spotEmission(punctual_[light - triangles_.size()], direction);
     }
-    return {Rgb(1.0f), 1.0f / (kPi * diskRadius_ * diskRadius_)};
+    return {1.0f, 1.0f / (kPi * diskRadius_ * diskRadius_)};
 }
 
 std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point, Rng& rng) const {

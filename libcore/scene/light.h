@@ -107,8 +107,9 @@ class Lights {
     LightPoint environmentPoint(Vec3 direction) const;
 
     struct Emission {
-        Rgb profile;     ///< f_0(w) = Le(w) / exitance, per projected solid angle (area) or solid
-                         ///< angle
+        /// f_0(w) = Le(w) / exitance, per projected solid angle (area) or solid angle: the same in
+        /// all channels.
+        float profile = 0;
         float pdfW = 0;  ///< of w given y_0; at infinity: of the point on the disk (area measure)
     };
     /// Profile and density for light that leaves `point` along the unit `direction`. At infinity
@@ -121,10 +122,10 @@ class Lights {
         if (light >= area_.size()) return otherEmission(light, direction);
         const float cosine = dot(ng, direction);
         if (area_[light].twoSided) {
-            return {Rgb(0.5f / kPi), std::fabs(cosine) * (0.5f / kPi)};
+            return {0.5f / kPi, std::fabs(cosine) * (0.5f / kPi)};
         }
         if (cosine <= 0.0f) return {};
-        return {Rgb(1.0f / kPi), cosine / kPi};
+        return {1.0f / kPi, cosine / kPi};
     }
 
     struct EmissionRay {

@@ -67,7 +67,7 @@ TEST(Emission, ProfileAndDensity) {
         for (const double p : bins.integrate(
                  [&](Vec3 d) {
                      const double cosine = std::abs(dot(Vec3d(d), Vec3d(point.ng)));
-                     return lights.emission(point, d).profile.g * (source.projected ? cosine : 1);
+                     return lights.emission(point, d).profile * (source.projected ? cosine : 1);
                  },
                  16)) {
             profile += p;
@@ -182,7 +182,7 @@ TEST(Emission, LightsAtInfinityCoverTheScene) {
         ASSERT_EQ(ray->direction, -p.position);
         const double disk = lights.diskRadius();
         EXPECT_NEAR(ray->emission.pdfW * kPiD * disk * disk, 1, 1e-5);
-        EXPECT_EQ(ray->emission.profile, Rgb(1.0f));
+        EXPECT_EQ(ray->emission.profile, 1.0f);
         if (p.kind == LightKind::Directional) {
             ASSERT_LT(length(ray->direction - direction), 1e-6f);
             ASSERT_EQ(p.exitance, Rgb(2, 3, 4));
