@@ -103,9 +103,8 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     const Vec3d d = Vec3d(b.position) - Vec3d(a.position);
     const double d2 = lengthSquared(d);
     if (!(d2 > 0.0)) return e;
-    const double inverse = 1.0 / std::sqrt(d2);
-    e.direction = Vec3(d * inverse);
-    const double inverse2 = inverse * inverse;
+    const double inverse2 = 1.0 / d2;
+    e.direction = Vec3(d * (inverse2 * std::sqrt(d2)));  // neither root nor division waits
     const double cosA = measureCosine(a, e.direction), cosB = measureCosine(b, e.direction);
     e.toSecond = float(cosB * inverse2);
     e.toFirst = float(cosA * inverse2);
