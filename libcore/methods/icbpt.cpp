@@ -10,6 +10,7 @@
 //             combined by the maximum heuristic, one of them chosen evenly (length_pmfs.h)
 //   pick      one y per s, from one of the records evenly; divided by the mixture's probability:
 //             contribution h(y) / (M Pbar(y)),  Pbar = mean of P_c(y) over the records
+//   lengths   for every s; or for s > 2 with a probability n (LengthPicks), and divided by it
 //   MIS       credit:  r is one constant, 1 <= r <= M
 //             aware:   r = mean over the records of [1/M + (1 - 1/M) / R_c]^-1,
 //             R_c = max over the four of (w/Q) / Z: what M P_c(y) is for frozen means
@@ -42,14 +43,15 @@ struct Options {
     std::uint64_t subpaths;
     double density, credit, eyeShare;
     int records;
-    bool nextEvent, aware;
+    bool nextEvent, aware, everyLength;
     int qRecords;  ///< N_q
 };
 
 /// n r of a connection; frozen for an iteration.
 class RecordDensity final : public ConnectionDensity {
   public:
-    explicit RecordDensity(const Options& options) : options_(options) {}
+    RecordDensity(const Options& options, const LengthPicks& picks)
+        : options_(options), picks_(picks) {}
 
     /// `learnt`: kColumns values per record and length.
     void freeze(const CachePoints& records, std::span<const double> learnt) {
@@ -58,7 +60,7 @@ class RecordDensity final : public ConnectionDensity {
     }
 
     std::optional<Constants> constants() const override {
-        if (options_.aware) return std::nullopt;
+        if (options_.aware || !options_.everyLength) return std::nullopt;
         return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
     }
     bool tagsVertices() const override { return options_.aware; }
@@ -68,6 +70,12 @@ class RecordDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
+        return picks_.at(c.light.count) * (options_.aware ? samplesOf(c) : options_.credit);
+    }
+
+  private:
+    /// r of a pick.
+    double samplesOf(const Connection& c) const {
         const auto around = records_->around(records_->serving(*c.eye.vertex));
         if (around.empty()) return 1.0;
         const auto perSubpath = 1.0 / double(options_.subpaths);
@@ -96,8 +104,8 @@ class RecordDensity final : public ConnectionDensity {
         return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
     }
 
-  private:
     Options options_;
+    const LengthPicks& picks_;
     const CachePoints* records_ = nullptr;
     std::span<const double> learnt_;
 };
@@ -106,7 +114,8 @@ class ImportanceCaching final : public Method {
   public:
     explicit ImportanceCaching(const Options& options)
         : options_(options),
-          density_(options),
+          picks_(options.everyLength),
+          density_(options, picks_),
           earlier_(kLengths * kColumns, 1, options.qRecords) {}
 
     // The first leaves records, the second finds their sums.
@@ -146,9 +155,7 @@ class ImportanceCaching final : public Method {
             }
         });
         for (const RayTally& t : tallies) context.statistics.add(t);
-        std::uint64_t bytes = 0;
-        for (const CombinedPmf& pmf : pmfs_) bytes += pmf.bytes();
-        context.statistics.hold("distribution bytes", bytes);
+        context.statistics.hold("distribution bytes", bytesOf(pmfs_));
         context.statistics.hold("importance records", records_.size());
         context.statistics.hold("importance record bytes", records_.bytes());
     }
@@ -158,14 +165,12 @@ class ImportanceCaching final : public Method {
         const auto around = records_.around(records_.serving(context.vertex));
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        for (int s = 1; s < int(lengths); ++s) {
-            const std::size_t count = vertices_.count(s);
-            if (count == 0) continue;
-            const double u = rng.uniformDouble();
+        picks_.forEachPick(vertices_, rng, [&](int s, double u, double n) {
             if (around.empty()) {
-                const auto place = vertices_.begin(s) + std::size_t(u * double(count));
-                sink.add({vertices_.prefix(place), double(count) / m, kRows});
-                continue;
+                const auto count = double(vertices_.count(s));
+                const auto place = vertices_.begin(s) + std::size_t(u * count);
+                sink.add({vertices_.prefix(place), count / (m * n), kRows});
+                return;
             }
             const auto pmfOf = [&](std::uint32_t record) -> const CombinedPmf& {
                 return pmfs_[record * lengths + std::size_t(s)];
@@ -176,12 +181,13 @@ class ImportanceCaching final : public Method {
             double sum = 0.0;
             for (const std::uint32_t record : around) sum += pmfOf(record).pmf(index);
             sink.add({vertices_.prefix(vertices_.begin(s) + index),
-                      double(around.size()) / (m * sum), chosen.owner(index)});
-        }
+                      double(around.size()) / (m * sum * n), chosen.owner(index)});
+        });
     }
 
     void observe(const LightPool&, IterationContext& context) override {
         PhaseTimer timer(context.statistics, "importance records");
+        picks_.learn(vertices_);
         CachePoints next(context, options_.density, options_.records, generation_++);
         if (options_.aware) {
             earlier_.add(std::move(records_), std::move(found_));
@@ -213,6 +219,7 @@ class ImportanceCaching final : public Method {
     }
 
     Options options_;
+    LengthPicks picks_;
     RecordDensity density_;
     CachePoints records_;         // of this iteration
     std::vector<double> learnt_;  // by record, length and column, from the earlier iteration
@@ -255,6 +262,7 @@ MethodRow importanceCachingRow() {
                        "samples that a connection counts as; 0: all candidates",
                        {},
                        "candidates"},
+                      lengthsParameter(),
                       eyeShareParameter(0.25),
                       nextEventParameter(false)};
     row.create = [](const Settings& s) {
@@ -266,6 +274,7 @@ MethodRow importanceCachingRow() {
         o.eyeShare = s.real("eye_share");
         o.nextEvent = s.on("next_event");
         o.aware = s.integer("weights") == 1;
+        o.everyLength = s.integer("lengths") == 0;
         o.qRecords = int(s.integer("q_records"));
         return std::make_unique<ImportanceCaching>(o);
     };

@@ -18,6 +18,17 @@ void VerticesByLength::assign(const LightPool& pool, bool direct) {
     for (std::size_t s = longest + 1; s-- > 0;) begin_[s] = std::min(begin_[s], begin_[s + 1]);
 }
 
+Parameter lengthsParameter() {
+    return {"lengths",
+            Parameter::Kind::Choice,
+            1,
+            0,
+            1,
+            "for which s a vertex is picked: every one (the paper), or with a probability that "
+            "follows the share of light subpaths that are so long",
+            {"every", "share"}};
+}
+
 CombinedPmf::CombinedPmf(std::span<const std::span<const double>> targets, Choice choice) {
     const std::size_t n = targets.empty() ? 0 : targets[0].size();
     std::vector<double> weight(n, 0.0);
@@ -43,6 +54,12 @@ CombinedPmf::CombinedPmf(std::span<const std::span<const double>> targets, Choic
         }
     }
     pmf_ = DiscreteDistribution(weight);
+}
+
+std::uint64_t bytesOf(std::span<const CombinedPmf> pmfs) {
+    std::uint64_t bytes = 0;
+    for (const CombinedPmf& pmf : pmfs) bytes += pmf.bytes();
+    return bytes;
 }
 
 }  // namespace lacuna

@@ -2,12 +2,14 @@
 // are combined from several: what skelbpt and icbpt have in common.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "libcore/base/discrete.h"
 #include "libcore/bidir/method.h"
+#include "libcore/methods/registry.h"
 
 namespace lacuna {
 
@@ -30,6 +32,46 @@ class VerticesByLength {
     std::vector<LightPool::Entry> entries_;
     std::vector<std::size_t> begin_{0, 0};  // by s
 };
+
+/// For which s an eye vertex gets a pick: for every one, as in the papers, or for s > 2 with a
+/// probability that follows the share of light subpaths that had a y_{s-1} in earlier iterations:
+/// what carries less is asked less often (in bpt the path itself decides).
+class LengthPicks {
+  public:
+    explicit LengthPicks(bool every) : every_(every) {}
+
+    /// n of length s, in (0, 1].
+    double at(int s) const {
+        const auto i = std::size_t(s);
+        if (every_ || s <= 2 || i >= seen_.size() || seen_[i] == 0) return 1.0;  // or never seen
+        return std::min(1.0, kPicksForTheShare * double(seen_[i]) / double(seen_[2]));
+    }
+    bool always() const { return every_; }
+
+    /// Calls visit(s, u, n) for every s that is to have a pick, with u in [0, 1) for it.
+    template <class Visit>
+    void forEachPick(const VerticesByLength& vertices, Rng& rng, const Visit& visit) const {
+        for (int s = 1; s <= vertices.lengths(); ++s) {
+            if (vertices.count(s) == 0) continue;
+            const double n = at(s), draw = rng.uniformDouble();
+            if (draw < n) visit(s, draw / n, n);
+        }
+    }
+
+    /// What later iterations may know of these.
+    void learn(const VerticesByLength& vertices) {
+        seen_.resize(std::max(seen_.size(), std::size_t(vertices.lengths()) + 1));
+        for (int s = 1; s <= vertices.lengths(); ++s) seen_[std::size_t(s)] += vertices.count(s);
+    }
+
+  private:
+    static constexpr double kPicksForTheShare = 2.0;  // among light subpaths with a y_1
+    bool every_;
+    std::vector<std::uint64_t> seen_;  // by s, over all iterations
+};
+
+/// `lengths`: every one, or by their share.
+Parameter lengthsParameter();
 
 /// How one of several pmfs is chosen where each outcome belongs to one of them.
 enum class Choice {
@@ -66,5 +108,7 @@ class CombinedPmf {
     std::vector<double> sum_;
     double maxima_ = 0.0;
 };
+
+std::uint64_t bytesOf(std::span<const CombinedPmf> pmfs);
 
 }  // namespace lacuna

@@ -18,9 +18,8 @@
 //             all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V counts where
 //             the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact for the choice
 //             by mass and stands in for the even one
-//   lengths   a pick for every s [4.3]; or for s > 2 with a probability p_s, n = p_s, and divided
-//             by it, that follows the share of light subpaths that had a y_{s-1} in earlier
-//             iterations: what carries less is asked less often (in bpt the path itself decides)
+//   lengths   a pick for every s [4.3], or for s > 2 with a probability n (LengthPicks), and
+//             divided by it
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
@@ -37,7 +36,6 @@ namespace {
 
 constexpr std::uint64_t kCountingPaths = 16384, kCountingPathsPerTask = 256;
 constexpr std::size_t kVerticesPerTask = 512;
-constexpr double kPicksForTheShare = 2.0;  // p_s, by the share of y_{s-1} among paths with a y_1
 constexpr double kNearest = 0.1;  // of the ball's radius: the closest a light vertex counts as
 constexpr std::uint32_t kUnmapped = NodeMap::kNone;
 enum Row : std::uint32_t { kSeen, kUnseen, kUniform, kRows };
@@ -87,16 +85,8 @@ struct Expected {
 
 class SkeletonDensity final : public ConnectionDensity {
   public:
-    SkeletonDensity(const Options& options, const NodeLookup& lookup)
-        : options_(options), lookup_(lookup) {}
-
-    /// Probability of a pick for that s.
-    double picks(std::size_t s) const {
-        if (options_.everyLength || expected_->empty()) return 1.0;
-        const std::vector<Expected>& all = expected_->back();
-        if (s <= 2 || s >= all.size() || !(all[s].uniform > 0.0)) return 1.0;  // or never seen yet
-        return std::min(1.0, kPicksForTheShare * all[s].uniform / all[2].uniform);
-    }
+    SkeletonDensity(const Options& options, const NodeLookup& lookup, const LengthPicks& picks)
+        : options_(options), lookup_(lookup), picks_(picks) {}
 
     /// `expected` by node (the last row: where there is none) and s, `slot` by node, `sight` by
     /// slot.
@@ -118,8 +108,7 @@ class SkeletonDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
-        return picks(std::size_t(c.light.count)) *
-               (options_.aware ? samplesOf(c) : options_.credit);
+        return picks_.at(c.light.count) * (options_.aware ? samplesOf(c) : options_.credit);
     }
 
   private:
@@ -153,6 +142,7 @@ class SkeletonDensity final : public ConnectionDensity {
 
     const Options& options_;
     const NodeLookup& lookup_;
+    const LengthPicks& picks_;
     const std::vector<std::vector<Expected>>* expected_ = nullptr;
     const std::vector<std::uint32_t>* slot_ = nullptr;
     const std::vector<SightMap>* sight_ = nullptr;
@@ -161,7 +151,7 @@ class SkeletonDensity final : public ConnectionDensity {
 class SkeletonConnections final : public Method {
   public:
     explicit SkeletonConnections(const Options& options)
-        : options_(options), density_(options_, lookup_) {}
+        : options_(options), picks_(options.everyLength), density_(options_, lookup_, picks_) {}
 
     void useSkeleton(std::shared_ptr<const Skeleton> skeleton) override {
         lookup_.use(std::move(skeleton));
@@ -228,9 +218,7 @@ class SkeletonConnections final : public Method {
             found_[i] = {pmfs_[i].sum(kSeen) / m, pmfs_[i].sum(kUnseen) / m, double(count) / m,
                          pmfs_[i].maxima(), 0};
         });
-        std::uint64_t bytes = 0;
-        for (const CombinedPmf& pmf : pmfs_) bytes += pmf.bytes();
-        context.statistics.hold("distribution bytes", bytes);
+        context.statistics.hold("distribution bytes", bytesOf(pmfs_));
         context.statistics.hold("nodes", slot_.size());
         context.statistics.hold("nodes with distributions", used_.size());
     }
@@ -241,28 +229,23 @@ class SkeletonConnections final : public Method {
         const std::uint32_t slot = node < slot_.size() ? slot_[node] : kNone;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        for (int s = 1; s < int(lengths); ++s) {
-            const std::size_t count = vertices_.count(s);
-            if (count == 0) continue;
-            const double picks = density_.picks(std::size_t(s));
-            const double draw = rng.uniformDouble();
-            if (!(draw < picks)) continue;
-            const double u = draw / picks;
+        picks_.forEachPick(vertices_, rng, [&](int s, double u, double n) {
+            const auto count = double(vertices_.count(s));
             if (slot == kNone) {
-                const auto place = vertices_.begin(s) + std::size_t(u * double(count));
-                sink.add({vertices_.prefix(place), double(count) / (m * picks), kRows});
-                continue;
+                const auto place = vertices_.begin(s) + std::size_t(u * count);
+                sink.add({vertices_.prefix(place), count / (m * n), kRows});
+                return;
             }
             const CombinedPmf& pmf = pmfs_[slot * lengths + std::size_t(s)];
-            if (pmf.empty()) continue;
+            if (pmf.empty()) return;
             const auto pick = pmf.sample(u);
-            sink.add({vertices_.prefix(vertices_.begin(s) + pick.index),
-                      1.0 / (m * pick.pmf * picks), pmf.owner(pick.index)});
-        }
+            sink.add({vertices_.prefix(vertices_.begin(s) + pick.index), 1.0 / (m * pick.pmf * n),
+                      pmf.owner(pick.index)});
+        });
     }
 
     void observe(const LightPool&, IterationContext&) override {
-        if (!learns()) return;
+        picks_.learn(vertices_);
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         expected_.resize(slot_.size() + 1);
         const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {
@@ -339,6 +322,7 @@ class SkeletonConnections final : public Method {
 
     Options options_;
     NodeLookup lookup_;
+    LengthPicks picks_;
     SkeletonDensity density_;
     std::vector<std::uint32_t> slot_;  // by node: place in used_, kNone where not accepted
     std::vector<std::uint32_t> used_;  // accepted nodes
@@ -394,15 +378,7 @@ MethodRow skeletonRow() {
          "samples that a connection counts as; 0: all candidates",
          {},
          "candidates"},
-        {"lengths",
-         Kind::Choice,
-         1,
-         0,
-         1,
-         "for which s a vertex is picked: every one (the paper), or with a probability that "
-         "follows "
-         "the share of light subpaths that are so long",
-         {"every", "share"}},
+        lengthsParameter(),
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
         nextEventParameter(false),
