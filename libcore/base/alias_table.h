@@ -43,6 +43,7 @@ class AliasTable {
     void prefetch(double u) const {
         __builtin_prefetch(slots_.data() + std::size_t(u * double(slots_.size())));
     }
+    std::uint64_t bytes() const { return slots_.size() * sizeof(Slot); }
 
   private:
     struct Slot {

@@ -53,7 +53,7 @@ CombinedPmf::CombinedPmf(std::span<const std::span<const double>> targets, Choic
             if (weight[i] > 0.0) weight[i] /= mass[owner_[i]];
         }
     }
-    pmf_ = DiscreteDistribution(weight);
+    pmf_ = AliasTable(weight);
 }
 
 std::uint64_t bytesOf(std::span<const CombinedPmf> pmfs) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "libcore/base/discrete.h"
+#include "libcore/base/alias_table.h"
 #include "libcore/bidir/method.h"
 #include "libcore/methods/registry.h"
 
@@ -90,7 +90,7 @@ class CombinedPmf {
     CombinedPmf(std::span<const std::span<const double>> targets, Choice choice);
 
     bool empty() const { return pmf_.empty(); }
-    DiscreteDistribution::Pick sample(double u) const { return pmf_.sample(u); }
+    AliasTable::Pick sample(double u) const { return pmf_.sample(u); }
     double pmf(std::size_t outcome) const { return pmf_.pmf(outcome); }
     /// The row that the outcome belongs to.
     std::uint32_t owner(std::size_t outcome) const { return owner_[outcome]; }
@@ -103,7 +103,7 @@ class CombinedPmf {
     std::uint64_t bytes() const { return pmf_.bytes() + owner_.size(); }
 
   private:
-    DiscreteDistribution pmf_;
+    AliasTable pmf_;
     std::vector<std::uint8_t> owner_;
     std::vector<double> sum_;
     double maxima_ = 0.0;

@@ -29,12 +29,18 @@ Vec2 octahedronPoint(const Vec3& d) {
 }  // namespace
 
 SightMap::SightMap(const Vec3& origin, const PathSpace& space, RayTally& tally)
-    : origin_(origin), distance_(kSize * kSize) {
-    for (std::size_t i = 0; i < distance_.size(); ++i) {
+    : origin_(origin), farthest_(kCells * kCells) {
+    std::vector<float> distance(kSize * kSize);
+    for (std::size_t i = 0; i < distance.size(); ++i) {
         // Cells' corners, the outermost on the square's border: neighbours span all directions.
-        const Vec2 p{2.0f * float(i % kSize) / float(kSize - 1) - 1.0f,
-                     2.0f * float(i / kSize) / float(kSize - 1) - 1.0f};
-        distance_[i] = space.reach(origin, octahedronDirection(p), tally);
+        const Vec2 p{2.0f * float(i % kSize) / float(kCells) - 1.0f,
+                     2.0f * float(i / kSize) / float(kCells) - 1.0f};
+        distance[i] = space.reach(origin, octahedronDirection(p), tally);
+    }
+    for (std::size_t i = 0; i < farthest_.size(); ++i) {
+        const float* corner = &distance[i / kCells * kSize + i % kCells];
+        const float most = std::max({corner[0], corner[1], corner[kSize], corner[kSize + 1]});
+        farthest_[i] = 1.01f * most * (1.01f * most);
     }
 }
 
@@ -44,14 +50,11 @@ bool SightMap::sees(const PathVertex& y) const {
     if (!(d2 > 0.0f)) return true;
     const Vec2 p = octahedronPoint(to);
     const auto cell = [](float x) {
-        const float c = (x + 1.0f) * 0.5f * float(kSize - 1);
-        return std::min(std::size_t(std::max(c, 0.0f)), kSize - 2);
+        const float c = (x + 1.0f) * 0.5f * float(kCells);
+        return std::min(std::size_t(std::max(c, 0.0f)), kCells - 1);
     };
-    const std::size_t at = cell(p.y) * kSize + cell(p.x);
-    const float farthest = std::max({distance_[at], distance_[at + 1], distance_[at + kSize],
-                                     distance_[at + kSize + 1]}) *
-                           1.01f;
-    return y.infinite() ? std::isinf(farthest) : d2 <= farthest * farthest;
+    const float farthest = farthest_[cell(p.y) * kCells + cell(p.x)];
+    return y.infinite() ? std::isinf(farthest) : d2 <= farthest;
 }
 
 }  // namespace lacuna

@@ -22,13 +22,14 @@ class SightMap {
     /// than the farthest of the four cells around its direction, plus 1 %.
     bool sees(const PathVertex& y) const;
 
-    std::uint64_t bytes() const { return distance_.size() * sizeof(float); }
+    std::uint64_t bytes() const { return farthest_.size() * sizeof(float); }
 
   private:
     static constexpr std::size_t kSize = 64;  // 32 is a little noisier, 128 not less than 64
+    static constexpr std::size_t kCells = kSize - 1;
 
     Vec3 origin_;
-    std::vector<float> distance_;  // by v, u; infinite where nothing is met
+    std::vector<float> farthest_;  // by cell, v and u: squared; infinite where nothing is met
 };
 
 }  // namespace lacuna

@@ -230,8 +230,8 @@ class SkeletonConnections final : public Method {
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
         picks_.forEachPick(vertices_, rng, [&](int s, double u, double n) {
-            const auto count = double(vertices_.count(s));
             if (slot == kNone) {
+                const auto count = double(vertices_.count(s));
                 const auto place = vertices_.begin(s) + std::size_t(u * count);
                 sink.add({vertices_.prefix(place), count / (m * n), kRows});
                 return;
