@@ -35,8 +35,9 @@ void fillEyePart(FullPath& path, Subpath eye) {
     }
 }
 
-/// Whether `v` certainly scatters nothing towards `other`: what most connections fail at, found out
-/// before roots and divisions.
+/// Whether `v` certainly scatters nothing towards `other`: what many connections fail at, found out
+/// before roots and divisions. Directions so grazing that rounding could turn this over scatter
+/// nothing either (kMinCosine).
 bool liesBehind(const PathVertex& v, const PathVertex& other) {
     return v.kind == VertexKind::Surface && !other.infinite() && !v.bsdf.transmits() &&
            leadsBehind(v, other.position - v.position);
