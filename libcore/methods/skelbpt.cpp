@@ -246,6 +246,7 @@ class SkeletonConnections final : public Method {
 
     void observe(const LightPool&, IterationContext&) override {
         picks_.learn(vertices_);
+        if (!options_.aware) return;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         expected_.resize(slot_.size() + 1);
         const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {

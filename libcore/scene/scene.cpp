@@ -119,25 +119,27 @@ bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
     return true;
 }
 
+/// All that a material's BSDF is made of, the base colour first.
+std::array<TextureUse, 7> bsdfTextures(const Material& m) {
+    return {m.baseColorTexture,         m.metallicRoughnessTexture, m.transmissionTexture,
+            m.specularTexture,          m.specularColorTexture,     m.clearcoatTexture,
+            m.clearcoatRoughnessTexture};
+}
+
 std::vector<TextureUse> farTexturesOf(const Material& m, std::span<const Texture> textures) {
     constexpr std::size_t kNearBytes = 1 << 18;
     std::vector<TextureUse> uses;
-    for (const TextureUse& use :
-         {m.baseColorTexture, m.metallicRoughnessTexture, m.transmissionTexture, m.specularTexture,
-          m.specularColorTexture, m.clearcoatTexture, m.clearcoatRoughnessTexture}) {
+    for (const TextureUse& use : bsdfTextures(m)) {
         if (use && textures[std::size_t(use.value)].rgba.size() > kNearBytes) uses.push_back(use);
     }
     return uses;
 }
 
 bool usesSecondSet(const Material& m) {
-    const TextureUse* const all[] = {&m.baseColorTexture,    &m.metallicRoughnessTexture,
-                                     &m.specularTexture,     &m.specularColorTexture,
-                                     &m.clearcoatTexture,    &m.clearcoatRoughnessTexture,
-                                     &m.transmissionTexture, &m.normalTexture,
-                                     &m.emissiveTexture};
-    return std::any_of(std::begin(all), std::end(all),
-                       [](const TextureUse* use) { return *use && use->secondSet; });
+    const auto second = [](const TextureUse& use) { return use && use.secondSet; };
+    const std::array<TextureUse, 7> uses = bsdfTextures(m);
+    return std::any_of(uses.begin(), uses.end(), second) || second(m.normalTexture) ||
+           second(m.emissiveTexture);
 }
 
 /// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's
@@ -598,8 +600,9 @@ Bsdf Scene::bsdfAt(const SurfacePoint& point) const {
 }
 
 Scene::PreparedBsdf Scene::prepared(const Material& m, bool vertexColors) const {
-    if (m.metallicRoughnessTexture || m.transmissionTexture || m.specularTexture ||
-        m.specularColorTexture || m.clearcoatTexture || m.clearcoatRoughnessTexture) {
+    const std::array<TextureUse, 7> uses = bsdfTextures(m);
+    if (std::any_of(uses.begin() + 1, uses.end(),
+                    [](const TextureUse& use) { return bool(use); })) {
         return {};
     }
     PreparedBsdf out;

@@ -8,7 +8,7 @@
 namespace lacuna::test {
 namespace {
 
-/// A room without a roof under a lamp; `texels` of its walls' texture along each side.
+/// A closed room with a lamp; `texels` of its walls' texture along each side.
 std::unique_ptr<Scene> room(int texels) {
     SceneBuilder b;
     Texture checks;
