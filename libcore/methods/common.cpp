@@ -33,6 +33,25 @@ Parameter presetParameter() {
             {"measured", "paper"}};
 }
 
+Parameter connectionsParameter(int value) {
+    return {"connections", Parameter::Kind::Integer, double(value), 1,
+            Picks::kMost,  "picks per eye vertex, N"};
+}
+
+Parameter firstConnectionsParameter(int value) {
+    return {"first_connections",
+            Parameter::Kind::Integer,
+            double(value),
+            0,
+            Picks::kMost,
+            "picks at the first eye vertex; 0: as many as `connections` (the paper)"};
+}
+
+Picks picksOf(const Settings& s) {
+    const int all = int(s.integer("connections")), first = int(s.integer("first_connections"));
+    return {first > 0 ? first : all, all, all};
+}
+
 Parameter eyeShareParameter(double value) {
     return {"eye_share",
             Parameter::Kind::Real,

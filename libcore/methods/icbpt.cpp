@@ -12,7 +12,7 @@
 //             contribution h(y) / (M Pbar(y)),  Pbar = mean of P_c(y) over the records
 //   lengths   for every s; or for s > 2 with a probability n (LengthPicks), and divided by it
 //   MIS       credit:  r is one constant, 1 <= r <= M
-//             aware:   r = mean over the records of [1/M + (1 - 1/M) / R_c]^-1,
+//             aware:   r = mean over the records of [1/M + (1 - 1/M) / (N R_c)]^-1,
 //             R_c = max over the four of (w/Q) / Z: what M P_c(y) is for frozen means
 //             Q = (1/M) sum of w and Z of the sum of maxima, per record and s from the earlier
 //             iteration, with V = 1 and rho at the eye vertex; after [Nabata20a eq 14];
@@ -44,6 +44,7 @@ struct Options {
     double density, credit, eyeShare;
     int records;
     bool nextEvent, aware, everyLength;
+    Picks picks;   ///< N
     int qRecords;  ///< N_q
 };
 
@@ -70,14 +71,16 @@ class RecordDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
-        return picks_.at(c.light.count) * (options_.aware ? samplesOf(c) : options_.credit);
+        const double chance = picks_.chance(c.light.count, c.eye.count);
+        return chance * (options_.aware ? samplesOf(c) : options_.credit);
     }
 
   private:
-    /// r of a pick.
+    /// r of the picks that are made.
     double samplesOf(const Connection& c) const {
         const auto around = records_->around(records_->serving(*c.eye.vertex));
-        if (around.empty()) return 1.0;
+        const double picks = picks_.repeats(c.light.count, c.eye.count);
+        if (around.empty()) return picks;
         const auto perSubpath = 1.0 / double(options_.subpaths);
         const Rgb arriving = c.beta * c.light.scatter;
         const double flow = double(mean(arriving));
@@ -87,9 +90,9 @@ class RecordDensity final : public ConnectionDensity {
         for (const std::uint32_t i : around) {
             const double* q =
                 &learnt_[(std::size_t(i) * kLengths + std::size_t(length)) * kColumns];
-            // A length that was never seen: one sample is as good a guess as any.
+            // A length that was never seen: one sample per pick is as good a guess as any.
             if (!(q[kUniform] > 0.0)) {
-                sum += 1.0;
+                sum += picks;
                 continue;
             }
             const double g = records_->trustedGeometry(i, *c.light.vertex, c.geometry);
@@ -99,7 +102,7 @@ class RecordDensity final : public ConnectionDensity {
             if (q[kUnoccluded] > 0.0) ratio = std::max(ratio, through * g / q[kUnoccluded]);
             if (q[kBounded] > 0.0) ratio = std::max(ratio, flow * bounded / q[kBounded]);
             ratio /= q[kMaxima];
-            sum += 1.0 / (perSubpath + (1.0 - perSubpath) / ratio);
+            sum += 1.0 / (perSubpath + (1.0 - perSubpath) / (picks * ratio));
         }
         return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
     }
@@ -114,7 +117,7 @@ class ImportanceCaching final : public Method {
   public:
     explicit ImportanceCaching(const Options& options)
         : options_(options),
-          picks_(options.everyLength),
+          picks_(options.everyLength, options.picks),
           density_(options, picks_),
           earlier_(kLengths * kColumns, 1, options.qRecords) {}
 
@@ -165,7 +168,7 @@ class ImportanceCaching final : public Method {
         const auto around = records_.around(records_.serving(context.vertex));
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        picks_.forEachPick(vertices_, rng, [&](int s, double u, double n) {
+        picks_.forEachPick(vertices_, context.t(), rng, [&](int s, double u, double n) {
             if (around.empty()) {
                 const auto count = double(vertices_.count(s));
                 const auto place = vertices_.begin(s) + std::size_t(u * count);
@@ -242,6 +245,8 @@ MethodRow importanceCachingRow() {
     row.parts = {"full", "unoccluded", "bounded", "uniform", "fallback"};
     row.parameters = {lightPathsParameter(),
                       {"candidates", Kind::Integer, 1024, 1, 1e6, "light subpaths in the pool, N"},
+                      connectionsParameter(1),
+                      firstConnectionsParameter(8),
                       {"record_density", Kind::Real, 0.001, 0, 16,
                        "eye subpaths that leave importance records, per pixel"},
                       {"records", Kind::Integer, 3, 1, 16, "records that serve an eye vertex"},
@@ -264,7 +269,9 @@ MethodRow importanceCachingRow() {
                        "candidates"},
                       lengthsParameter(),
                       eyeShareParameter(0.25),
-                      nextEventParameter(false)};
+                      nextEventParameter(false),
+                      presetParameter()};
+    row.paper = {{"eye_share", 0}, {"first_connections", 0}, {"lengths", 0}, {"weights", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");
@@ -275,6 +282,7 @@ MethodRow importanceCachingRow() {
         o.nextEvent = s.on("next_event");
         o.aware = s.integer("weights") == 1;
         o.everyLength = s.integer("lengths") == 0;
+        o.picks = picksOf(s);
         o.qRecords = int(s.integer("q_records"));
         return std::make_unique<ImportanceCaching>(o);
     };

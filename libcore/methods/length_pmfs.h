@@ -9,7 +9,7 @@
 
 #include "libcore/base/alias_table.h"
 #include "libcore/bidir/method.h"
-#include "libcore/methods/registry.h"
+#include "libcore/methods/methods.h"
 
 namespace lacuna {
 
@@ -33,28 +33,30 @@ class VerticesByLength {
     std::vector<std::size_t> begin_{0, 0};  // by s
 };
 
-/// For which s an eye vertex gets a pick: for every one, as in the papers, or for s > 2 with a
-/// probability that follows the share of light subpaths that had a y_{s-1} in earlier iterations:
+/// How many picks an eye vertex gets for each s: N, as in the papers, or for s > 2 so many on
+/// average as follows from the share of light subpaths that had a y_{s-1} in earlier iterations:
 /// what carries less is asked less often (in bpt the path itself decides).
 class LengthPicks {
   public:
-    explicit LengthPicks(bool every) : every_(every) {}
+    LengthPicks(bool every, const Picks& picks) : every_(every), picks_(picks) {}
 
-    /// n of length s, in (0, 1].
-    double at(int s) const {
-        const auto i = std::size_t(s);
-        if (every_ || s <= 2 || i >= seen_.size() || seen_[i] == 0) return 1.0;  // or never seen
-        return std::min(1.0, kPicksForTheShare * double(seen_[i]) / double(seen_[2]));
-    }
-    bool always() const { return every_; }
+    /// n: the picks of length s that z_{t-1} gets on average; positive. chance x repeats.
+    double at(int s, int t) const { return picks_.at(t) * share(s); }
+    /// The probability that there is one.
+    double chance(int s, int t) const { return std::min(1.0, at(s, t)); }
+    /// How many there are if there is one, on average.
+    double repeats(int s, int t) const { return std::max(1.0, at(s, t)); }
 
-    /// Calls visit(s, u, n) for every s that is to have a pick, with u in [0, 1) for it.
+    /// Calls visit(s, u, n) for every pick of z_{t-1}, with u in [0, 1) for it.
     template <class Visit>
-    void forEachPick(const VerticesByLength& vertices, Rng& rng, const Visit& visit) const {
+    void forEachPick(const VerticesByLength& vertices, int t, Rng& rng, const Visit& visit) const {
         for (int s = 1; s <= vertices.lengths(); ++s) {
             if (vertices.count(s) == 0) continue;
-            const double n = at(s), draw = rng.uniformDouble();
-            if (draw < n) visit(s, draw / n, n);
+            const double n = at(s, t);
+            for (double left = n; left > 0.0; left -= 1.0) {
+                const double draw = rng.uniformDouble(), probability = std::min(1.0, left);
+                if (draw < probability) visit(s, draw / probability, n);
+            }
         }
     }
 
@@ -66,7 +68,16 @@ class LengthPicks {
 
   private:
     static constexpr double kPicksForTheShare = 2.0;  // among light subpaths with a y_1
+
+    /// Of N; in (0, 1].
+    double share(int s) const {
+        const auto i = std::size_t(s);
+        if (every_ || s <= 2 || i >= seen_.size() || seen_[i] == 0) return 1.0;  // or never seen
+        return std::min(1.0, kPicksForTheShare * double(seen_[i]) / double(seen_[2]));
+    }
+
     bool every_;
+    Picks picks_;
     std::vector<std::uint64_t> seen_;  // by s, over all iterations
 };
 

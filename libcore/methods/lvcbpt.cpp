@@ -72,7 +72,7 @@ MethodRow lvcRow() {
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Parameter::Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
-        {"connections", Parameter::Kind::Integer, 3, 1, 64, "picks per eye vertex, N"},
+        connectionsParameter(3),
         nextEventParameter(false)};
     row.create = [](const Settings& s) {
         return std::make_unique<LightVertexCache>(

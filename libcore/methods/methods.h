@@ -26,6 +26,23 @@ Parameter nextEventParameter(bool defaultOn);
 /// `preset`: our defaults, or those of the row's paper.
 Parameter presetParameter();
 
+/// N: how often an eye vertex z_{t-1} is connected, by its place on the path.
+struct Picks {
+    static constexpr int kMost = 64;
+
+    int first;   ///< at z_1, which the pixel determines: nothing but the light subpath is random
+    int second;  ///< at z_2
+    int later;   ///< after it
+
+    int at(int t) const { return t <= 2 ? first : t == 3 ? second : later; }
+};
+/// `connections`: N at every eye vertex that no other parameter speaks of.
+Parameter connectionsParameter(int value);
+/// `first_connections`: N at z_1; 0: `connections`.
+Parameter firstConnectionsParameter(int value);
+/// What the two say.
+Picks picksOf(const Settings& settings);
+
 /// `eye_share`: see withEyeShare.
 Parameter eyeShareParameter(double value);
 /// n r where picks differ in their light subpath alone: a share of a connection's variance is that

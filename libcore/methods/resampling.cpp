@@ -22,8 +22,7 @@ class ResampledDensity final : public ConnectionDensity {
         q_ = q;
         const auto m = double(options_.subpaths);
         perSubpath_ = 1.0 / m;
-        rest_ = (1.0 - perSubpath_) / options_.picks;
-        virtual_ = options_.picks * m / expectedVertices;
+        perVertex_ = m / expectedVertices;
     }
 
     std::optional<Constants> constants() const override {
@@ -41,11 +40,12 @@ class ResampledDensity final : public ConnectionDensity {
         if (options_.target == CacheTarget::FlowThrough) flow *= c.eye.scatter;
         const double value = double(mean(flow));
         const auto around = points_->around(points_->serving(*c.eye.vertex));
-        double sum = virtual_;
+        const double n = options_.picks.at(c.eye.count), rest = (1.0 - perSubpath_) / n;
+        double sum = n * perVertex_;
         for (const std::uint32_t i : around) {
             const double target = value * points_->trustedGeometry(i, *c.light.vertex, c.geometry);
             if (q_[i] > 0.0 && target > 0.0) {
-                sum += 1.0 / (perSubpath_ + rest_ * std::max(options_.clamp, q_[i] / target));
+                sum += 1.0 / (perSubpath_ + rest * std::max(options_.clamp, q_[i] / target));
             }
         }
         return withEyeShare(sum / double(around.size() + 1), c.eye.count, options_.eyeShare);
@@ -55,7 +55,7 @@ class ResampledDensity final : public ConnectionDensity {
     ResamplingOptions options_;
     const CachePoints* points_ = nullptr;
     std::span<const double> q_;
-    double perSubpath_ = 1.0, rest_ = 0.0, virtual_ = 1.0;
+    double perSubpath_ = 1.0, perVertex_ = 1.0;
 };
 
 class Resampling final : public Method {
@@ -112,7 +112,8 @@ class Resampling final : public Method {
         const auto around = points_.around(points_.serving(context.vertex));
         const auto filled = std::size_t(std::count_if(
             around.begin(), around.end(), [&](std::uint32_t c) { return !pmfs_.empty(c); }));
-        for (int n = 0; n < options_.picks; ++n) {
+        const int picks = options_.picks.at(context.t());
+        for (int n = 0; n < picks; ++n) {
             const std::uint32_t choice = rng.below(std::uint32_t(filled) + 1);
             const double u = rng.uniformDouble();
             std::uint32_t index = 0;
@@ -129,7 +130,7 @@ class Resampling final : public Method {
             double sum = uniform;
             for (const std::uint32_t c : around) sum += pmfs_.pmf(c, index);
             sink.add({pool_->prefix(candidates_[index]),
-                      double(filled + 1) / (sum * double(options_.subpaths) * options_.picks), 0});
+                      double(filled + 1) / (sum * double(options_.subpaths) * picks), 0});
         }
     }
 
@@ -183,10 +184,13 @@ std::unique_ptr<Method> makeResampling(const ResamplingOptions& options) {
     return std::make_unique<Resampling>(options);
 }
 
-std::vector<Parameter> resamplingParameters(double candidates, CacheTarget target) {
+std::vector<Parameter> resamplingParameters(double candidates, int firstConnections,
+                                            CacheTarget target) {
     using Kind = Parameter::Kind;
     return {lightPathsParameter(),
             {"candidates", Kind::Integer, candidates, 1, 1e6, "light subpaths in the pool, M"},
+            connectionsParameter(1),
+            firstConnectionsParameter(firstConnections),
             {"cache_density", Kind::Real, 0.004, 0, 16,
              "eye subpaths that leave cache points, per pixel"},
             {"cache_points", Kind::Integer, 3, 1, 16, "cache points that serve an eye vertex, N_c"},
@@ -207,6 +211,7 @@ std::vector<Parameter> resamplingParameters(double candidates, CacheTarget targe
 ResamplingOptions resamplingOptions(const Settings& s) {
     ResamplingOptions o;
     o.subpaths = s.integer("candidates");
+    o.picks = picksOf(s);
     o.cacheDensity = s.real("cache_density");
     o.cachePoints = int(s.integer("cache_points"));
     o.target = s.integer("target") == 0 ? CacheTarget::Flow : CacheTarget::FlowThrough;

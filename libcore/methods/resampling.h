@@ -20,13 +20,13 @@
 #include <memory>
 
 #include "libcore/methods/cache_pmfs.h"
-#include "libcore/methods/registry.h"
+#include "libcore/methods/methods.h"
 
 namespace lacuna {
 
 struct ResamplingOptions {
     std::uint64_t subpaths;  ///< M
-    int picks = 1;           ///< N
+    Picks picks;             ///< N
     double cacheDensity;     ///< eye subpaths that leave cache points, per pixel
     int cachePoints;         ///< N_c
     CacheTarget target;
@@ -43,7 +43,8 @@ struct ResamplingOptions {
 std::unique_ptr<Method> makeResampling(const ResamplingOptions& options);
 
 /// The parameters that both rows have.
-std::vector<Parameter> resamplingParameters(double candidates, CacheTarget target);
+std::vector<Parameter> resamplingParameters(double candidates, int firstConnections,
+                                            CacheTarget target);
 /// Their values.
 ResamplingOptions resamplingOptions(const Settings& settings);
 

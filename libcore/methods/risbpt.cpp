@@ -12,8 +12,7 @@ namespace {
 /// What both rows have.
 std::vector<Parameter> awareParameters() {
     using Kind = Parameter::Kind;
-    std::vector<Parameter> parameters = resamplingParameters(200, CacheTarget::Flow);
-    parameters.push_back({"connections", Kind::Integer, 1, 1, 64, "picks per eye vertex, N"});
+    std::vector<Parameter> parameters = resamplingParameters(200, 4, CacheTarget::Flow);
     parameters.push_back({"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
     parameters.push_back(eyeShareParameter(0.1));
     return parameters;
@@ -21,7 +20,6 @@ std::vector<Parameter> awareParameters() {
 
 ResamplingOptions awareOptions(const Settings& s) {
     ResamplingOptions o = resamplingOptions(s);
-    o.picks = int(s.integer("connections"));
     o.clamp = s.real("clamp");
     o.eyeShare = s.real("eye_share");
     o.aware = true;
@@ -49,7 +47,8 @@ MethodRow resamplingAwareRow() {
                               1,
                               "density that the weights see: resampling-aware, or r = 1",
                               {"ris", "plain"}});
-    row.paper = {{"eye_share", 0}, {"next_event", 0}, {"q_iterations", 1}};
+    row.paper = {
+        {"first_connections", 0}, {"eye_share", 0}, {"next_event", 0}, {"q_iterations", 1}};
     row.create = [](const Settings& s) {
         ResamplingOptions o = awareOptions(s);
         o.qPoints = int(s.integer("q_points"));
@@ -71,7 +70,7 @@ MethodRow currentSetRow() {
     row.biased = true;
     row.parameters = awareParameters();
     std::erase_if(row.parameters, [](const Parameter& p) { return p.name == "light_paths"; });
-    row.paper = {{"eye_share", 0}, {"next_event", 0}};
+    row.paper = {{"first_connections", 0}, {"eye_share", 0}, {"next_event", 0}};
     row.create = [](const Settings& s) {
         ResamplingOptions o = awareOptions(s);
         o.currentQ = true;

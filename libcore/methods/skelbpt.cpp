@@ -13,11 +13,11 @@
 //             whole film before the first iteration, not by those of earlier iterations: a crop
 //             sees the same nodes, and the first iteration has distributions as well
 //   MIS       credit:  r is one constant, 1 <= r <= M (the authors' code: M)
-//             aware:   r = [1/M + (1 - 1/M) / R]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M P(y)
-//             is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of maxima,
-//             all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V counts where
-//             the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact for the choice
-//             by mass and stands in for the even one
+//             aware:   r = [1/M + (1 - 1/M) / (N R)]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M
+//             P(y) is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of
+//             maxima, all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V
+//             counts where the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact
+//             for the choice by mass and stands in for the even one
 //   lengths   a pick for every s [4.3], or for s > 2 with a probability n (LengthPicks), and
 //             divided by it
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
@@ -46,6 +46,7 @@ struct Options {
     bool use[kRows];
     Choice choice;
     bool nextEvent, aware, everyLength;
+    Picks picks;  ///< N
 };
 
 /// Nodes of both sides of a surface in one tag, so that the tag is a function of the vertex alone.
@@ -108,24 +109,26 @@ class SkeletonDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
-        return picks_.at(c.light.count) * (options_.aware ? samplesOf(c) : options_.credit);
+        const double chance = picks_.chance(c.light.count, c.eye.count);
+        return chance * (options_.aware ? samplesOf(c) : options_.credit);
     }
 
   private:
-    /// r of a pick.
+    /// r of the picks that are made.
     double samplesOf(const Connection& c) const {
         const auto m = double(options_.subpaths);
         const PathVertex& z = *c.eye.vertex;
         const Vec3 back = c.eye.predecessor->position - z.position;
         std::uint32_t node = lookup_.at(z, back);
-        if (expected_->empty()) return 1.0;
+        const double picks = picks_.repeats(c.light.count, c.eye.count);
+        if (expected_->empty()) return picks;
         const std::size_t nodes = expected_->size() - 1;
         const std::uint32_t slot = node < nodes ? (*slot_)[node] : kNone;
         if (slot == kNone) node = std::uint32_t(nodes);
         const std::vector<Expected>& row = (*expected_)[node];
         const auto s = std::size_t(c.light.count);
-        // A length that was never seen: one sample is as good a guess as any.
-        if (s >= row.size() || !(row[s].uniform > 0.0)) return 1.0;
+        // A length that was never seen: one sample per pick is as good a guess as any.
+        if (s >= row.size() || !(row[s].uniform > 0.0)) return picks;
         const Expected& e = row[s];
         double ratio = 1.0 / e.uniform;
         if (node < nodes) {
@@ -137,7 +140,7 @@ class SkeletonDensity final : public ConnectionDensity {
             if (options_.use[kUnseen] && e.unseen > 0.0) ratio = std::max(ratio, w / e.unseen);
             ratio /= std::max(e.maxima, 1e-3);
         }
-        return ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / ratio) : 1.0 / m;
+        return ratio > 0.0 ? 1.0 / (1.0 / m + (1.0 - 1.0 / m) / (picks * ratio)) : 1.0 / m;
     }
 
     const Options& options_;
@@ -151,7 +154,9 @@ class SkeletonDensity final : public ConnectionDensity {
 class SkeletonConnections final : public Method {
   public:
     explicit SkeletonConnections(const Options& options)
-        : options_(options), picks_(options.everyLength), density_(options_, lookup_, picks_) {}
+        : options_(options),
+          picks_(options.everyLength, options.picks),
+          density_(options_, lookup_, picks_) {}
 
     void useSkeleton(std::shared_ptr<const Skeleton> skeleton) override {
         lookup_.use(std::move(skeleton));
@@ -229,7 +234,7 @@ class SkeletonConnections final : public Method {
         const std::uint32_t slot = node < slot_.size() ? slot_[node] : kNone;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        picks_.forEachPick(vertices_, rng, [&](int s, double u, double n) {
+        picks_.forEachPick(vertices_, context.t(), rng, [&](int s, double u, double n) {
             if (slot == kNone) {
                 const auto count = double(vertices_.count(s));
                 const auto place = vertices_.begin(s) + std::size_t(u * count);
@@ -348,6 +353,8 @@ MethodRow skeletonRow() {
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Kind::Integer, 1024, 1, 1e6, "light subpaths in the pool, N"},
+        connectionsParameter(1),
+        firstConnectionsParameter(8),
         {"node_acceptance", Kind::Real, 1, 0, 1e6,
          "nodes with at most so many times the mean number of eye vertices get no distributions"},
         {"distributions",
@@ -384,7 +391,7 @@ MethodRow skeletonRow() {
          "voxels along the longest side of the skeleton's cache"},
         nextEventParameter(false),
         presetParameter()};
-    row.paper = {{"weights", 0}, {"lengths", 0}};
+    row.paper = {{"first_connections", 0}, {"weights", 0}, {"lengths", 0}};
     row.create = [](const Settings& s) {
         Options o;
         o.subpaths = s.integer("candidates");
@@ -396,6 +403,7 @@ MethodRow skeletonRow() {
         o.use[kUniform] = true;
         o.choice = s.integer("choice") == 0 ? Choice::Even : Choice::Mass;
         o.aware = s.integer("weights") == 1;
+        o.picks = picksOf(s);
         o.everyLength = s.integer("lengths") == 0;
         o.nextEvent = s.on("next_event");
         return std::make_unique<SkeletonConnections>(o);

@@ -8,7 +8,7 @@
 //   stage 2   y out of LVC_i with probability P_r = mean(beta) / sum of mean(beta) in LVC_i [eq 9]
 //   pick      N per eye vertex; contribution h(y) / (M N Gamma P_r)           [eq 10]
 //             an empty LVC_i is a zero sample that counts among the N
-//             N by t: fewer after z_2, where a pick carries less (the paper: one N)
+//             N by t: more at z_1, fewer after z_2, where a pick carries less (the paper: one N)
 //   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
 //             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
 //             1/(min(j, W_i) M) in iteration j, and M W_i in r
@@ -41,19 +41,14 @@ namespace lacuna {
 namespace {
 
 constexpr std::size_t kEntriesPerTask = 4096;
-constexpr int kMostPicks = 64;
 constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
 struct Options {
     std::uint64_t subpaths;  ///< M
-    int picks;               ///< N of z_1 and z_2
-    int deepPicks;           ///< N of the eye vertices after them
-    bool resamplingAware;    ///< the weights: ris, or the paper's
-    std::uint64_t reuse;     ///< M_0, 0: none
-    bool queue;              ///< keep M_0 vertices, not whole iterations: biased
-
-    /// N of z_{t-1}.
-    int picksAt(int t) const { return t <= 3 ? picks : deepPicks; }
+    Picks picks;
+    bool resamplingAware;  ///< the weights: ris, or the paper's
+    std::uint64_t reuse;   ///< M_0, 0: none
+    bool queue;            ///< keep M_0 vertices, not whole iterations: biased
 };
 
 /// Both subspaces of a vertex in one tag: that of its own walk's role, and that of the other role,
@@ -177,7 +172,7 @@ class SubspaceDensity final : public ConnectionDensity {
         const double gamma =
             classes_.gamma(i, classes_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.maker));
         if (!(gamma > 0.0)) return 0.0;
-        const double q = classes_.q(i), n = options_.picksAt(c.eye.count);
+        const double q = classes_.q(i), n = options_.picks.at(c.eye.count);
         const double m = double(options_.subpaths) * classes_.window(i);
         if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
         return 1.0 / ((1.0 / m + (1.0 - 1.0 / m) * q / beta) / (n * gamma) + (1.0 - 1.0 / n) / m);
@@ -257,8 +252,8 @@ class SubspaceConnections final : public Method {
             const Cell* cell;
             const Subpath* light;
         };
-        std::array<Pick, kMostPicks> storage;  // not initialised: few of them are used
-        const auto picks = std::span(storage).first(std::size_t(options_.picksAt(context.t())));
+        std::array<Pick, Picks::kMost> storage;  // not initialised: few of them are used
+        const auto picks = std::span(storage).first(std::size_t(options_.picks.at(context.t())));
         for (Pick& p : picks) {
             p.u = rng.uniformDouble();
             column.prefetch(p.u);
@@ -278,7 +273,7 @@ class SubspaceConnections final : public Method {
             p.light = &p.cell->members[within.index];
             __builtin_prefetch(p.light);
         }
-        const double nm = double(options_.picksAt(context.t())) * double(options_.subpaths);
+        const double nm = double(options_.picks.at(context.t())) * double(options_.subpaths);
         for (const Pick& p : picks) {
             if (!p.light) continue;
             prefetch(p.light->back());
@@ -368,8 +363,9 @@ MethodRow rowOf(bool queue) {
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
-        {"connections", Kind::Integer, 3, 1, kMostPicks, "picks per eye vertex, N"},
-        {"deep_connections", Kind::Integer, 1, 0, kMostPicks,
+        connectionsParameter(3),
+        firstConnectionsParameter(12),
+        {"deep_connections", Kind::Integer, 1, 0, Picks::kMost,
          "picks per eye vertex after the first two; 0: as many as there"},
         {"weights",
          Kind::Choice,
@@ -390,12 +386,12 @@ MethodRow rowOf(bool queue) {
         {"train.light_share", Kind::Real, 0.2, 0, 1,
          "share of the light subspaces that divide the lights themselves"},
         presetParameter()};
-    row.paper = {{"deep_connections", 0}, {"weights", 1}, {"reuse", 200}};
+    row.paper = {{"first_connections", 0}, {"deep_connections", 0}, {"weights", 1}, {"reuse", 200}};
     row.create = [queue](const Settings& s) {
-        const int picks = int(s.integer("connections")), deep = int(s.integer("deep_connections"));
-        return std::make_unique<SubspaceConnections>(
-            Options{s.integer("candidates"), picks, deep > 0 ? deep : picks,
-                    s.integer("weights") == 0, s.integer("reuse"), queue});
+        Picks picks = picksOf(s);
+        if (const auto deep = int(s.integer("deep_connections")); deep > 0) picks.later = deep;
+        return std::make_unique<SubspaceConnections>(Options{
+            s.integer("candidates"), picks, s.integer("weights") == 0, s.integer("reuse"), queue});
     };
     return row;
 }

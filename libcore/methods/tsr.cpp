@@ -9,10 +9,11 @@
 //             T_j = q2* / q1*, q1* = beta G                                         [eq 16]
 //             U_j = B_j / distance^2, positive for all (B_j for vertices at infinity, whose
 //             beta is per area)
-//   pick      c uniform among the N_c cache points around z, j by P2:  h / (M1 P1 P2)
+//   pick      N times: c uniform among the N_c cache points around z, j by P2:  h / (M1 N P1 P2)
 //             (the printed 1 / (M1 M2) belongs to draws from one P1 over all of Y)
 //   MIS       the mean over the N_c points of                                       [eq 17]
-//                 [ 1/M1 + (1 - 1/M1) ( (1/M2) p/q1 + (1 - 1/M2) p/q2 ) ]^-1,
+//                 [ 1/M1 + (1 - 1/M1) ( (1/M2) p/q1 + (1/N) (1 - 1/M2) p/q2 ) ]^-1,
+//             (as printed: N = 1)
 //             p/q1 = Q1(c) / q1*(y, z), p/q2 = Q2(c) / q2*(y, z), each at least `clamp`, V = 1;
 //             Q1 = (1/M1) sum_j B_j G, Q2 = (1/M1) sum_j T_j of earlier iterations,
 //             averaged (as printed: of the one before)
@@ -39,6 +40,7 @@ struct Options {
     std::uint64_t subpaths;  ///< M1
     std::uint32_t clusters;  ///< M2
     double cacheDensity;
+    Picks picks;      ///< N
     int cachePoints;  ///< N_c
     int qPoints;      ///< N_q
     int qSets;        ///< earlier iterations whose Q are averaged
@@ -78,13 +80,14 @@ class TwoStageDensity final : public ConnectionDensity {
         const double power = double(mean(c.beta));
         const double flow = double(mean(c.beta * c.light.scatter));
         if (!(power > 0.0) || !(flow > 0.0)) return 0.0;  // in no cluster, or nothing to carry
+        const double n = options_.picks.at(c.eye.count);
         double sum = 0.0;
         for (const std::uint32_t i : around) {
             const double g = points_->trustedGeometry(i, *c.light.vertex, c.geometry);
             const double q1 = q_[2 * i], q2 = q_[2 * i + 1];
             const double ratio1 = std::max(options_.clamp, q1 / (power * g));
             const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
-            sum += effective(ratio1, ratio2);
+            sum += effective(ratio1, ratio2 / n);
         }
         return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
     }
@@ -160,23 +163,27 @@ class TwoStageResampling final : public Method {
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (options_.nextEvent) proposeFreshLight(context, rng, sink);
         const auto around = points_.around(points_.serving(context.vertex));
-        const double u = rng.uniformDouble();
-        if (around.empty()) {
-            const std::size_t n = candidates_.size();
-            if (n == 0) return;
-            sink.add({pool_->prefix(candidates_[std::size_t(u * double(n))]),
-                      double(n) / double(options_.subpaths), 0});
-            return;
+        const int picks = options_.picks.at(context.t());
+        for (int i = 0; i < picks; ++i) {
+            const double u = rng.uniformDouble();
+            if (around.empty()) {
+                const std::size_t n = candidates_.size();
+                if (n == 0) return;
+                sink.add({pool_->prefix(candidates_[std::size_t(u * double(n))]),
+                          double(n) / (double(options_.subpaths) * picks), 0});
+                continue;
+            }
+            // All points see the same pool: none is empty where another is not.
+            const std::uint32_t c = around[rng.below(std::uint32_t(around.size()))];
+            if (offered_[c] == 0) return;
+            const Offer* begin = offers_.data() + c * perPoint_;
+            const Offer* found = std::upper_bound(
+                begin, begin + offered_[c], u,
+                [](double value, const Offer& offer) { return value < offer.cdf; });
+            const double pmf = found->cdf - (found == begin ? 0.0 : (found - 1)->cdf);
+            sink.add(
+                {pool_->prefix(candidates_[found->candidate]), found->scale / (pmf * picks), 0});
         }
-        // All points see the same pool: none is empty where another is not.
-        const std::uint32_t c = around[rng.below(std::uint32_t(around.size()))];
-        if (offered_[c] == 0) return;
-        const Offer* begin = offers_.data() + c * perPoint_;
-        const Offer* found =
-            std::upper_bound(begin, begin + offered_[c], u,
-                             [](double value, const Offer& offer) { return value < offer.cdf; });
-        const double pmf = found->cdf - (found == begin ? 0.0 : (found - 1)->cdf);
-        sink.add({pool_->prefix(candidates_[found->candidate]), found->scale / pmf, 0});
     }
 
     void observe(const LightPool&, IterationContext& context) override {
@@ -293,6 +300,8 @@ MethodRow twoStageResamplingRow() {
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Kind::Integer, 1e4, 1, 1e8, "light subpaths in the pool, M1"},
+        connectionsParameter(1),
+        firstConnectionsParameter(8),
         {"second_candidates", Kind::Integer, 200, 1, 1e6, "clusters of a cut, M2"},
         {"cache_density", Kind::Real, 0.004, 0, 16,
          "eye subpaths that leave cache points, per pixel"},
@@ -323,16 +332,14 @@ MethodRow twoStageResamplingRow() {
          {"tsr", "ris", "plain"}},
         nextEventParameter(true),
         presetParameter()};
-    row.paper = {{"eye_share", 0},
-                 {"next_event", 0},
-                 {"q_iterations", 1},
-                 {"cache_points", 3},
-                 {"target", 1}};
+    row.paper = {{"first_connections", 0}, {"eye_share", 0},    {"next_event", 0},
+                 {"q_iterations", 1},      {"cache_points", 3}, {"target", 1}};
     row.create = [](const Settings& s) -> std::unique_ptr<Method> {
         Options o;
         o.subpaths = s.integer("candidates");
         o.clusters = std::uint32_t(s.integer("second_candidates"));
         o.cacheDensity = s.real("cache_density");
+        o.picks = picksOf(s);
         o.cachePoints = int(s.integer("cache_points"));
         o.qPoints = int(s.integer("q_points"));
         o.qSets = int(s.integer("q_iterations"));

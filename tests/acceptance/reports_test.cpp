@@ -128,8 +128,10 @@ TEST_P(Reports, facesThatLieTwiceInOnePlaceChangeNothing) {
 TEST_P(Reports, samplesThatOverflowAreDroppedAndCounted) {
     SceneBuilder b;
     b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
-    b.add(pointLight({0, 0.04, 0}, Rgb(8e36f)));  // the sum of its channels' powers is just a float
-    b.add(lookAt({0, 1, 1.5}, {0, 0, 0}, 20));
+    // The sum of its channels' powers is just a float; near enough that a part of a sample, where a
+    // method makes several, overflows as well.
+    b.add(pointLight({0, 0.01, 0}, Rgb(8e36f)));
+    b.add(lookAt({0, 1, 1.5}, {0, 0, 0}, 5));
     Shot shot = quickShot(20);
     shot.maxDepth = 2;
     const Picture p = render(*b.build(), row(), shot);
