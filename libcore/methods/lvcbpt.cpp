@@ -2,7 +2,8 @@
 //
 //   pool      Y, all connectable vertices of M light subpaths, new in every iteration
 //   pick      N per eye vertex, uniform over Y:  contribution |Y| / (M N) h(y), |Y| realised now
-//   MIS       r = N M / Vbar, Vbar the expected number of stored vertices of M subpaths, frozen: it
+//   MIS       n r = N M / Vbar, Vbar the expected number of stored vertices of M subpaths, frozen:
+//   it
 //             comes from a warm-up that is thrown away, never from the pool that it weighs
 //   s = 1     from the pool (y_0 is stored), or from next event: then y_0 is in neither Y nor Vbar
 #include "libcore/methods/methods.h"
@@ -13,16 +14,19 @@ namespace {
 
 class LightVertexCache final : public Method {
   public:
-    LightVertexCache(std::uint64_t subpaths, int picks, bool nextEvent)
-        : subpaths_(subpaths), picks_(picks), nextEvent_(nextEvent), density_(1.0, 1.0) {}
+    LightVertexCache(std::uint64_t subpaths, const Picks& picks, bool nextEvent)
+        : subpaths_(subpaths),
+          picks_(picks),
+          nextEvent_(nextEvent),
+          density_(picks, nextEvent, 1.0) {}
 
     int warmupIterations() const override { return 1; }
     PoolRequest pool() const override { return {subpaths_}; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
         // Any positive Vbar is unbiased: one vertex stands in where the warm-up saw none.
-        const double r = double(picks_) * double(subpaths_) / std::max(expectedVertices_, 1.0);
-        density_ = ConstantDensity(nextEvent_ ? 1.0 : r, r);
+        density_ =
+            PicksDensity(picks_, nextEvent_, double(subpaths_) / std::max(expectedVertices_, 1.0));
         return density_;
     }
 
@@ -38,8 +42,9 @@ class LightVertexCache final : public Method {
         if (nextEvent_) proposeFreshLight(context, rng, sink);
         const auto size = std::uint32_t(candidates_.size());
         if (size == 0) return;
-        const double weight = double(size) / (double(subpaths_) * picks_);
-        for (int i = 0; i < picks_; ++i) {
+        const int picks = picks_.at(context.t());
+        const double weight = double(size) / (double(subpaths_) * picks);
+        for (int i = 0; i < picks; ++i) {
             sink.add({pool_->prefix(candidates_[rng.below(size)]), weight, 0});
         }
     }
@@ -52,11 +57,11 @@ class LightVertexCache final : public Method {
 
   private:
     std::uint64_t subpaths_;
-    int picks_;
+    Picks picks_;
     bool nextEvent_;
     bool warm_ = false;
     double expectedVertices_ = 0.0;
-    ConstantDensity density_;
+    PicksDensity density_;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;
 };
@@ -73,10 +78,11 @@ MethodRow lvcRow() {
         lightPathsParameter(),
         {"candidates", Parameter::Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
         connectionsParameter(3),
+        firstConnectionsParameter(0),
         nextEventParameter(false)};
     row.create = [](const Settings& s) {
-        return std::make_unique<LightVertexCache>(
-            s.integer("candidates"), int(s.integer("connections")), s.on("next_event"));
+        return std::make_unique<LightVertexCache>(s.integer("candidates"), picksOf(s),
+                                                  s.on("next_event"));
     };
     return row;
 }

@@ -35,6 +35,7 @@ struct Picks {
     int later;   ///< after it
 
     int at(int t) const { return t <= 2 ? first : t == 3 ? second : later; }
+    bool alike() const { return first == second && second == later; }
 };
 /// `connections`: N at every eye vertex that no other parameter speaks of.
 Parameter connectionsParameter(int value);
@@ -65,6 +66,27 @@ class ConstantDensity final : public ConnectionDensity {
 
   private:
     Constants constants_;
+};
+
+/// n r where every pick is worth the same r: picks x r. With next event s = 1 has one sample.
+class PicksDensity final : public ConnectionDensity {
+  public:
+    PicksDensity(const Picks& picks, bool nextEvent, double r)
+        : picks_(picks), nextEvent_(nextEvent), r_(r) {}
+    std::optional<Constants> constants() const override {
+        if (!picks_.alike()) return std::nullopt;
+        return Constants{at(1, 2), at(2, 2)};
+    }
+    double effectiveSamples(const Connection& c) const override {
+        return at(c.light.count, c.eye.count);
+    }
+
+  private:
+    double at(int s, int t) const { return nextEvent_ && s == 1 ? 1.0 : picks_.at(t) * r_; }
+
+    Picks picks_;
+    bool nextEvent_;
+    double r_;
 };
 
 }  // namespace lacuna

@@ -11,8 +11,8 @@ MethodRow probabilisticConnectionsRow() {
     row.reference = "Popov15";
     row.summary = "probabilistic connections: light vertices resampled at nearby cache points";
     row.techniques = {.hits = true, .connects = true, .splats = true};
-    row.parameters = resamplingParameters(100, 0, CacheTarget::Flow);
-    row.paper = {{"next_event", 0}, {"target", 1}};
+    row.parameters = resamplingParameters(100, CacheTarget::Flow);
+    row.paper = {{"first_connections", 0}, {"next_event", 0}, {"target", 1}};
     row.create = [](const Settings& s) { return makeResampling(resamplingOptions(s)); };
     return row;
 }

@@ -25,11 +25,7 @@ class ResampledDensity final : public ConnectionDensity {
         perVertex_ = m / expectedVertices;
     }
 
-    std::optional<Constants> constants() const override {
-        if (options_.aware) return std::nullopt;
-        return Constants{1.0, 1.0};
-    }
-    bool tagsVertices() const override { return options_.aware; }
+    bool tagsVertices() const override { return true; }
     std::uint32_t tagOf(const PathVertex& vertex) const override {
         return points_->nearest(vertex.position);
     }
@@ -61,7 +57,10 @@ class ResampledDensity final : public ConnectionDensity {
 class Resampling final : public Method {
   public:
     explicit Resampling(const ResamplingOptions& options)
-        : options_(options), density_(options), earlier_(1, options.qSets, options.qPoints) {}
+        : options_(options),
+          plain_(options.picks, options.nextEvent, 1.0),
+          density_(options),
+          earlier_(1, options.qSets, options.qPoints) {}
 
     // The first finds out how many vertices there are and leaves cache points, the second fills
     // them.
@@ -70,6 +69,7 @@ class Resampling final : public Method {
     bool learns() const override { return true; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
+        if (!options_.aware) return plain_;
         const double expected = pools_ ? double(vertices_) / double(pools_) : 0.0;
         // Any positive number is unbiased: one vertex stands in where none was seen.
         density_.freeze(points_, q_, std::max(expected, 1.0));
@@ -166,6 +166,7 @@ class Resampling final : public Method {
     }
 
     ResamplingOptions options_;
+    PicksDensity plain_;
     ResampledDensity density_;
     CachePoints points_;     // of this iteration
     std::vector<double> q_;  // by point, from earlier iterations
@@ -184,13 +185,12 @@ std::unique_ptr<Method> makeResampling(const ResamplingOptions& options) {
     return std::make_unique<Resampling>(options);
 }
 
-std::vector<Parameter> resamplingParameters(double candidates, int firstConnections,
-                                            CacheTarget target) {
+std::vector<Parameter> resamplingParameters(double candidates, CacheTarget target) {
     using Kind = Parameter::Kind;
     return {lightPathsParameter(),
             {"candidates", Kind::Integer, candidates, 1, 1e6, "light subpaths in the pool, M"},
             connectionsParameter(1),
-            firstConnectionsParameter(firstConnections),
+            firstConnectionsParameter(4),
             {"cache_density", Kind::Real, 0.004, 0, 16,
              "eye subpaths that leave cache points, per pixel"},
             {"cache_points", Kind::Integer, 3, 1, 16, "cache points that serve an eye vertex, N_c"},

@@ -43,8 +43,7 @@ struct ResamplingOptions {
 std::unique_ptr<Method> makeResampling(const ResamplingOptions& options);
 
 /// The parameters that both rows have.
-std::vector<Parameter> resamplingParameters(double candidates, int firstConnections,
-                                            CacheTarget target);
+std::vector<Parameter> resamplingParameters(double candidates, CacheTarget target);
 /// Their values.
 ResamplingOptions resamplingOptions(const Settings& settings);
 

@@ -12,7 +12,7 @@ namespace {
 /// What both rows have.
 std::vector<Parameter> awareParameters() {
     using Kind = Parameter::Kind;
-    std::vector<Parameter> parameters = resamplingParameters(200, 4, CacheTarget::Flow);
+    std::vector<Parameter> parameters = resamplingParameters(200, CacheTarget::Flow);
     parameters.push_back({"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"});
     parameters.push_back(eyeShareParameter(0.1));
     return parameters;

@@ -64,11 +64,7 @@ class TwoStageDensity final : public ConnectionDensity {
         uniform_ = m1 / expectedVertices;
     }
 
-    std::optional<Constants> constants() const override {
-        if (options_.weights != Weights::Plain) return std::nullopt;
-        return Constants{1.0, 1.0};
-    }
-    bool tagsVertices() const override { return options_.weights != Weights::Plain; }
+    bool tagsVertices() const override { return true; }
     std::uint32_t tagOf(const PathVertex& vertex) const override {
         return points_->nearest(vertex.position);
     }
@@ -115,7 +111,10 @@ struct Offer {
 class TwoStageResampling final : public Method {
   public:
     explicit TwoStageResampling(const Options& options)
-        : options_(options), density_(options), earlier_(2, options.qSets, options.qPoints) {}
+        : options_(options),
+          plain_(options.picks, options.nextEvent, 1.0),
+          density_(options),
+          earlier_(2, options.qSets, options.qPoints) {}
 
     // The first leaves cache points, the second finds their Q.
     int warmupIterations() const override { return 2; }
@@ -123,6 +122,7 @@ class TwoStageResampling final : public Method {
     bool learns() const override { return true; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
+        if (options_.weights == Weights::Plain) return plain_;
         const double expected = pools_ ? double(vertices_) / double(pools_) : 0.0;
         density_.freeze(points_, q_, std::max(expected, 1.0));
         return density_;
@@ -273,6 +273,7 @@ class TwoStageResampling final : public Method {
     }
 
     Options options_;
+    PicksDensity plain_;
     TwoStageDensity density_;
     CachePoints points_;     // of this iteration
     std::vector<double> q_;  // Q1, Q2 by point, from earlier iterations

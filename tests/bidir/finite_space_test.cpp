@@ -76,6 +76,7 @@ std::vector<Case> everyRow() {
             for (std::size_t i = 0; i < p.choices.size(); ++i) {
                 if (double(i) != p.defaultValue) add(p.name + "=" + p.choices[i]);
             }
+            if (p.name == "connections") add("connections=2");
             if (p.name == "cache_density") add("cache_density=2");
             if (p.name == "cache_points") add("cache_points=1");
             if (p.name == "untested") add("untested=0.3");
