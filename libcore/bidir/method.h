@@ -153,6 +153,12 @@ struct EyeContext {
 
     int t() const { return int(eyePath.size()); }
     const PathVertex& predecessor() const { return eyePath[eyePath.size() - 2]; }
+    /// Connection::order of connections with this vertex.
+    int order() const {
+        const auto between = eyePath.subspan(1, eyePath.size() - 2);
+        return 1 + int(std::ranges::count_if(
+                       between, [](const PathVertex& v) { return !isDelta(v.event); }));
+    }
 };
 
 /// Which techniques a method takes part in; fixed for the render.

@@ -45,7 +45,8 @@ double samplesByDensity(const FullPath& path, const Techniques& techniques, int 
          .light = {path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s,
                    path.scatter[s - 1], s >= 2 ? path.makerOf(s - 2) : EdgeMaker::Connection},
          .beta = path.beta[s - 1],
-         .geometry = path.geometry[s - 1]});
+         .geometry = path.geometry[s - 1],
+         .order = path.orderOf(s)});
 }
 
 /// effectiveCount() where it depends on nothing but the kind of strategy.

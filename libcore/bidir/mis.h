@@ -43,6 +43,9 @@ struct Connection {
     ConnectionEnd eye, light;
     Rgb beta;         ///< throughput that light tracing would have had at the light's end
     double geometry;  ///< G of the edge
+    /// Which of the eye vertices that a connection could end at the eye's end is: 1 for the first,
+    /// z_1 or what is seen in mirrors and through glass.
+    int order;
 };
 
 /// What MIS believes about the selector: the effective number of samples n r of methods.md that
@@ -135,6 +138,10 @@ struct FullPath {
         if (edges == 1 && t == 1 && !splattable) return false;
         // The connection's two ends scatter smoothly, as the light's point and the lens always do.
         return !delta[s - 1] && !delta[s];
+    }
+    /// Connection::order where the eye's end is x_i.
+    int orderOf(int i) const {
+        return 1 + int(std::count(delta.begin() + i + 1, delta.begin() + edges, false));
     }
     /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
     double lightRoulette(int i, int rouletteDepth) const {

@@ -164,11 +164,14 @@ class Products {
             return s == 1 ? c->direct : c->indirect;
         }
         const auto v = std::size_t(s);
+        int order = 1;
+        for (int i = s + 1; i < k_; ++i) order += smooth(i);
         return techniques_.connections->effectiveSamples(
             {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
              .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
              .beta = beta_[v - 1],
-             .geometry = geometry_[v - 1]});
+             .geometry = geometry_[v - 1],
+             .order = order});
     }
 
     /// log(n_t r_t p_t).

@@ -44,7 +44,9 @@ Parameter firstConnectionsParameter(int value) {
             double(value),
             0,
             Picks::kMost,
-            "picks at the first eye vertex; 0: as many as `connections` (the paper)"};
+            "picks at the first eye vertex, also behind glass and in mirrors; 0: as many as "
+            "`connections` "
+            "(the paper)"};
 }
 
 Picks picksOf(const Settings& s) {
@@ -53,17 +55,18 @@ Picks picksOf(const Settings& s) {
 }
 
 Parameter eyeShareParameter(double value) {
-    return {"eye_share",
-            Parameter::Kind::Real,
-            value,
-            0,
-            1,
-            "share of a connection's variance that is its eye subpath's (t > 2), as the weights "
-            "believe; 0: none (the paper)"};
+    return {
+        "eye_share",
+        Parameter::Kind::Real,
+        value,
+        0,
+        1,
+        "share of a connection's variance that is its eye subpath's, as the weights believe of all "
+        "but the first eye vertex; 0: none (the paper)"};
 }
 
-double withEyeShare(double samples, int t, double share) {
-    if (t <= 2 || !(samples > 0.0)) return samples;
+double withEyeShare(double samples, int order, double share) {
+    if (order <= 1 || !(samples > 0.0)) return samples;
     return samples / (share * samples + (1.0 - share));
 }
 

@@ -8,9 +8,11 @@
 //             U the same without V, B the same without V and rho_c and with G bounded by what it is
 //             at four times the distance to the records around, C = 1 / |L_s|
 //             combined by the maximum heuristic, one of them chosen evenly (length_pmfs.h)
-//   pick      one y per s, from one of the records evenly; divided by the mixture's probability:
-//             contribution h(y) / (M Pbar(y)),  Pbar = mean of P_c(y) over the records
-//   lengths   for every s; or for s > 2 with a probability n (LengthPicks), and divided by it
+//   pick      N y per s (the paper: one), each from one of the records evenly; divided by the
+//             mixture's probability:  contribution h(y) / (M N Pbar(y)),
+//             Pbar = mean of P_c(y) over the records
+//   lengths   N for every s; or for s > 2 a share of N on average (LengthPicks), and divided by
+//             that
 //   MIS       credit:  r is one constant, 1 <= r <= M
 //             aware:   r = mean over the records of [1/M + (1 - 1/M) / (N R_c)]^-1,
 //             R_c = max over the four of (w/Q) / Z: what M P_c(y) is for frozen means
@@ -71,7 +73,7 @@ class RecordDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
-        const double chance = picks_.chance(c.light.count, c.eye.count);
+        const double chance = picks_.chance(c.light.count, c.order);
         return chance * (options_.aware ? samplesOf(c) : options_.credit);
     }
 
@@ -79,7 +81,7 @@ class RecordDensity final : public ConnectionDensity {
     /// r of the picks that are made.
     double samplesOf(const Connection& c) const {
         const auto around = records_->around(records_->serving(*c.eye.vertex));
-        const double picks = picks_.repeats(c.light.count, c.eye.count);
+        const double picks = picks_.repeats(c.light.count, c.order);
         if (around.empty()) return picks;
         const auto perSubpath = 1.0 / double(options_.subpaths);
         const Rgb arriving = c.beta * c.light.scatter;
@@ -104,7 +106,7 @@ class RecordDensity final : public ConnectionDensity {
             ratio /= q[kMaxima];
             sum += 1.0 / (perSubpath + (1.0 - perSubpath) / (picks * ratio));
         }
-        return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
+        return withEyeShare(sum / double(around.size()), c.order, options_.eyeShare);
     }
 
     Options options_;
@@ -168,7 +170,7 @@ class ImportanceCaching final : public Method {
         const auto around = records_.around(records_.serving(context.vertex));
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        picks_.forEachPick(vertices_, context.t(), rng, [&](int s, double u, double n) {
+        picks_.forEachPick(vertices_, context.order(), rng, [&](int s, double u, double n) {
             if (around.empty()) {
                 const auto count = double(vertices_.count(s));
                 const auto place = vertices_.begin(s) + std::size_t(u * count);

@@ -40,19 +40,21 @@ class LengthPicks {
   public:
     LengthPicks(bool every, const Picks& picks) : every_(every), picks_(picks) {}
 
-    /// n: the picks of length s that z_{t-1} gets on average; positive. chance x repeats.
-    double at(int s, int t) const { return picks_.at(t) * share(s); }
+    /// n: the picks of length s that an eye vertex gets on average, by its Connection::order;
+    /// positive. chance x repeats.
+    double at(int s, int order) const { return picks_.at(order) * share(s); }
     /// The probability that there is one.
-    double chance(int s, int t) const { return std::min(1.0, at(s, t)); }
+    double chance(int s, int order) const { return std::min(1.0, at(s, order)); }
     /// How many there are if there is one, on average.
-    double repeats(int s, int t) const { return std::max(1.0, at(s, t)); }
+    double repeats(int s, int order) const { return std::max(1.0, at(s, order)); }
 
-    /// Calls visit(s, u, n) for every pick of z_{t-1}, with u in [0, 1) for it.
+    /// Calls visit(s, u, n) for every pick of an eye vertex, with u in [0, 1) for it.
     template <class Visit>
-    void forEachPick(const VerticesByLength& vertices, int t, Rng& rng, const Visit& visit) const {
+    void forEachPick(const VerticesByLength& vertices, int order, Rng& rng,
+                     const Visit& visit) const {
         for (int s = 1; s <= vertices.lengths(); ++s) {
             if (vertices.count(s) == 0) continue;
-            const double n = at(s, t);
+            const double n = at(s, order);
             for (double left = n; left > 0.0; left -= 1.0) {
                 const double draw = rng.uniformDouble(), probability = std::min(1.0, left);
                 if (draw < probability) visit(s, draw / probability, n);

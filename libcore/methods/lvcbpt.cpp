@@ -3,8 +3,7 @@
 //   pool      Y, all connectable vertices of M light subpaths, new in every iteration
 //   pick      N per eye vertex, uniform over Y:  contribution |Y| / (M N) h(y), |Y| realised now
 //   MIS       n r = N M / Vbar, Vbar the expected number of stored vertices of M subpaths, frozen:
-//   it
-//             comes from a warm-up that is thrown away, never from the pool that it weighs
+//             from a warm-up that is thrown away, never from the pool that it weighs
 //   s = 1     from the pool (y_0 is stored), or from next event: then y_0 is in neither Y nor Vbar
 #include "libcore/methods/methods.h"
 
@@ -42,7 +41,7 @@ class LightVertexCache final : public Method {
         if (nextEvent_) proposeFreshLight(context, rng, sink);
         const auto size = std::uint32_t(candidates_.size());
         if (size == 0) return;
-        const int picks = picks_.at(context.t());
+        const int picks = picks_.at(context.order());
         const double weight = double(size) / (double(subpaths_) * picks);
         for (int i = 0; i < picks; ++i) {
             sink.add({pool_->prefix(candidates_[rng.below(size)]), weight, 0});

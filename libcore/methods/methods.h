@@ -26,20 +26,20 @@ Parameter nextEventParameter(bool defaultOn);
 /// `preset`: our defaults, or those of the row's paper.
 Parameter presetParameter();
 
-/// N: how often an eye vertex z_{t-1} is connected, by its place on the path.
+/// N: how often an eye vertex is connected, by its Connection::order.
 struct Picks {
     static constexpr int kMost = 64;
 
-    int first;   ///< at z_1, which the pixel determines: nothing but the light subpath is random
-    int second;  ///< at z_2
-    int later;   ///< after it
+    int first;  ///< the pixel determines it: nothing but the light subpath is random
+    int second;
+    int later;
 
-    int at(int t) const { return t <= 2 ? first : t == 3 ? second : later; }
+    int at(int order) const { return order <= 1 ? first : order == 2 ? second : later; }
     bool alike() const { return first == second && second == later; }
 };
 /// `connections`: N at every eye vertex that no other parameter speaks of.
 Parameter connectionsParameter(int value);
-/// `first_connections`: N at z_1; 0: `connections`.
+/// `first_connections`: N at the first; 0: `connections`.
 Parameter firstConnectionsParameter(int value);
 /// What the two say.
 Picks picksOf(const Settings& settings);
@@ -48,9 +48,9 @@ Picks picksOf(const Settings& settings);
 Parameter eyeShareParameter(double value);
 /// n r where picks differ in their light subpath alone: a share of a connection's variance is that
 /// of its eye subpath, which all of them have in common [Grittmann21]. `samples` are what light
-/// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at z_1
-/// (t = 2), which the pixel determines.
-double withEyeShare(double samples, int t, double share);
+/// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at the
+/// first eye vertex (Connection::order), which the pixel determines.
+double withEyeShare(double samples, int order, double share);
 
 /// Proposes one fresh light point: next event (s = 1, r = 1).
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
@@ -75,14 +75,14 @@ class PicksDensity final : public ConnectionDensity {
         : picks_(picks), nextEvent_(nextEvent), r_(r) {}
     std::optional<Constants> constants() const override {
         if (!picks_.alike()) return std::nullopt;
-        return Constants{at(1, 2), at(2, 2)};
+        return Constants{at(1, 1), at(2, 1)};
     }
     double effectiveSamples(const Connection& c) const override {
-        return at(c.light.count, c.eye.count);
+        return at(c.light.count, c.order);
     }
 
   private:
-    double at(int s, int t) const { return nextEvent_ && s == 1 ? 1.0 : picks_.at(t) * r_; }
+    double at(int s, int order) const { return nextEvent_ && s == 1 ? 1.0 : picks_.at(order) * r_; }
 
     Picks picks_;
     bool nextEvent_;

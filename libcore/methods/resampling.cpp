@@ -36,7 +36,7 @@ class ResampledDensity final : public ConnectionDensity {
         if (options_.target == CacheTarget::FlowThrough) flow *= c.eye.scatter;
         const double value = double(mean(flow));
         const auto around = points_->around(points_->serving(*c.eye.vertex));
-        const double n = options_.picks.at(c.eye.count), rest = (1.0 - perSubpath_) / n;
+        const double n = options_.picks.at(c.order), rest = (1.0 - perSubpath_) / n;
         double sum = n * perVertex_;
         for (const std::uint32_t i : around) {
             const double target = value * points_->trustedGeometry(i, *c.light.vertex, c.geometry);
@@ -44,7 +44,7 @@ class ResampledDensity final : public ConnectionDensity {
                 sum += 1.0 / (perSubpath_ + rest * std::max(options_.clamp, q_[i] / target));
             }
         }
-        return withEyeShare(sum / double(around.size() + 1), c.eye.count, options_.eyeShare);
+        return withEyeShare(sum / double(around.size() + 1), c.order, options_.eyeShare);
     }
 
   private:
@@ -112,7 +112,7 @@ class Resampling final : public Method {
         const auto around = points_.around(points_.serving(context.vertex));
         const auto filled = std::size_t(std::count_if(
             around.begin(), around.end(), [&](std::uint32_t c) { return !pmfs_.empty(c); }));
-        const int picks = options_.picks.at(context.t());
+        const int picks = options_.picks.at(context.order());
         for (int n = 0; n < picks; ++n) {
             const std::uint32_t choice = rng.below(std::uint32_t(filled) + 1);
             const double u = rng.uniformDouble();

@@ -4,10 +4,10 @@
 //   node      n(z): nearest node by geodesic distance (node_map.h), on the side the eye path is on
 //   weight    w_n(y) = mean(beta(y)) / max(|P_n - y|, d)^2, at infinity mean(beta(y))   [eq 5]
 //             d: a share of the ball's radius, because a light vertex may lie on the node
-//   pmfs      over L_s, per node and s:  V ∝ w_n V(n, y) [eq 6],  U ∝ w_n [eq 7],  C = 1 / |L_s|
-//   [eq 8]
+//   pmfs      over L_s, per node and s:  V ∝ w_n V(n, y) [eq 6],  U ∝ w_n [eq 7],
+//             C = 1 / |L_s| [eq 8]
 //             combined by the maximum heuristic, one of them chosen                 [4.3]
-//   pick      one y per s:  contribution h(y) / (M P(y))                            [eq 9]
+//   pick      N y per s (the paper: one):  contribution h(y) / (M N P(y))           [eq 9]
 //   accepted  nodes that more than `node_acceptance` times the mean of all nodes' eye vertices are
 //             mapped to [4.4]; at the others C alone. Counted by eye subpaths of their own over the
 //             whole film before the first iteration, not by those of earlier iterations: a crop
@@ -18,8 +18,8 @@
 //             maxima, all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V
 //             counts where the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact
 //             for the choice by mass and stands in for the even one
-//   lengths   a pick for every s [4.3], or for s > 2 with a probability n (LengthPicks), and
-//             divided by it
+//   lengths   N for every s [4.3], or for s > 2 a share of N on average (LengthPicks), and divided
+//             by that
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
@@ -109,7 +109,7 @@ class SkeletonDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
-        const double chance = picks_.chance(c.light.count, c.eye.count);
+        const double chance = picks_.chance(c.light.count, c.order);
         return chance * (options_.aware ? samplesOf(c) : options_.credit);
     }
 
@@ -120,7 +120,7 @@ class SkeletonDensity final : public ConnectionDensity {
         const PathVertex& z = *c.eye.vertex;
         const Vec3 back = c.eye.predecessor->position - z.position;
         std::uint32_t node = lookup_.at(z, back);
-        const double picks = picks_.repeats(c.light.count, c.eye.count);
+        const double picks = picks_.repeats(c.light.count, c.order);
         if (expected_->empty()) return picks;
         const std::size_t nodes = expected_->size() - 1;
         const std::uint32_t slot = node < nodes ? (*slot_)[node] : kNone;
@@ -234,7 +234,7 @@ class SkeletonConnections final : public Method {
         const std::uint32_t slot = node < slot_.size() ? slot_[node] : kNone;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         const auto m = double(options_.subpaths);
-        picks_.forEachPick(vertices_, context.t(), rng, [&](int s, double u, double n) {
+        picks_.forEachPick(vertices_, context.order(), rng, [&](int s, double u, double n) {
             if (slot == kNone) {
                 const auto count = double(vertices_.count(s));
                 const auto place = vertices_.begin(s) + std::size_t(u * count);

@@ -8,7 +8,8 @@
 //   stage 2   y out of LVC_i with probability P_r = mean(beta) / sum of mean(beta) in LVC_i [eq 9]
 //   pick      N per eye vertex; contribution h(y) / (M N Gamma P_r)           [eq 10]
 //             an empty LVC_i is a zero sample that counts among the N
-//             N by t: more at z_1, fewer after z_2, where a pick carries less (the paper: one N)
+//             N by order: more at the first eye vertex, fewer after the second, where a pick
+//             carries less (the paper: one N)
 //   reuse     subspace i keeps all its vertices of the last W_i = ceil(M_0 / (M v_i)) whole
 //             iterations, v_i its vertices per subpath, frozen from lacuna-train: 1/M becomes
 //             1/(min(j, W_i) M) in iteration j, and M W_i in r
@@ -172,7 +173,7 @@ class SubspaceDensity final : public ConnectionDensity {
         const double gamma =
             classes_.gamma(i, classes_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.maker));
         if (!(gamma > 0.0)) return 0.0;
-        const double q = classes_.q(i), n = options_.picks.at(c.eye.count);
+        const double q = classes_.q(i), n = options_.picks.at(c.order);
         const double m = double(options_.subpaths) * classes_.window(i);
         if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
         return 1.0 / ((1.0 / m + (1.0 - 1.0 / m) * q / beta) / (n * gamma) + (1.0 - 1.0 / n) / m);
@@ -253,7 +254,8 @@ class SubspaceConnections final : public Method {
             const Subpath* light;
         };
         std::array<Pick, Picks::kMost> storage;  // not initialised: few of them are used
-        const auto picks = std::span(storage).first(std::size_t(options_.picks.at(context.t())));
+        const auto picks =
+            std::span(storage).first(std::size_t(options_.picks.at(context.order())));
         for (Pick& p : picks) {
             p.u = rng.uniformDouble();
             column.prefetch(p.u);
@@ -273,7 +275,7 @@ class SubspaceConnections final : public Method {
             p.light = &p.cell->members[within.index];
             __builtin_prefetch(p.light);
         }
-        const double nm = double(options_.picks.at(context.t())) * double(options_.subpaths);
+        const double nm = double(options_.picks.at(context.order())) * double(options_.subpaths);
         for (const Pick& p : picks) {
             if (!p.light) continue;
             prefetch(p.light->back());

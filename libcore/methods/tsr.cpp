@@ -71,12 +71,12 @@ class TwoStageDensity final : public ConnectionDensity {
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
+        const double n = options_.picks.at(c.order);
         const auto around = points_->around(points_->serving(*c.eye.vertex));
-        if (around.empty()) return uniform_;
+        if (around.empty()) return n * uniform_;
         const double power = double(mean(c.beta));
         const double flow = double(mean(c.beta * c.light.scatter));
         if (!(power > 0.0) || !(flow > 0.0)) return 0.0;  // in no cluster, or nothing to carry
-        const double n = options_.picks.at(c.eye.count);
         double sum = 0.0;
         for (const std::uint32_t i : around) {
             const double g = points_->trustedGeometry(i, *c.light.vertex, c.geometry);
@@ -85,7 +85,7 @@ class TwoStageDensity final : public ConnectionDensity {
             const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
             sum += effective(ratio1, ratio2 / n);
         }
-        return withEyeShare(sum / double(around.size()), c.eye.count, options_.eyeShare);
+        return withEyeShare(sum / double(around.size()), c.order, options_.eyeShare);
     }
 
   private:
@@ -163,7 +163,7 @@ class TwoStageResampling final : public Method {
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (options_.nextEvent) proposeFreshLight(context, rng, sink);
         const auto around = points_.around(points_.serving(context.vertex));
-        const int picks = options_.picks.at(context.t());
+        const int picks = options_.picks.at(context.order());
         for (int i = 0; i < picks; ++i) {
             const double u = rng.uniformDouble();
             if (around.empty()) {

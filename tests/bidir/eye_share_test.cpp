@@ -24,7 +24,7 @@ TEST(EyeShare, oneSampleStaysOneAndNoNumberCountsAsMoreThanTheInverse) {
 }
 
 TEST(EyeShare, thePixelDeterminesTheFirstVertex) {
-    EXPECT_EQ(withEyeShare(1e3, 2, 0.25), 1e3);
+    EXPECT_EQ(withEyeShare(1e3, 1, 0.25), 1e3);
     EXPECT_EQ(withEyeShare(1e3, 7, 0.0), 1e3);
 }
 

@@ -160,6 +160,7 @@ TEST(SightMap, skelbptBelievesWhatItPicks) {
             const auto i = std::size_t(std::lround(y.position.y / 0.4f));
             Connection c{};
             c.eye = {&eye[1], &eye[0], 2, {}};
+            c.order = 1;
             c.light = {&y, &p.light[0], 2, {}};
             c.beta = y.throughput;
             c.geometry = 1.0;
