@@ -6,6 +6,7 @@
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -45,8 +45,7 @@ Parameter firstConnectionsParameter(int value) {
             0,
             Picks::kMost,
             "picks at the first eye vertex, also behind glass and in mirrors; 0: as many as "
-            "`connections` "
-            "(the paper)"};
+            "`connections` (the paper)"};
 }
 
 Picks picksOf(const Settings& s) {
