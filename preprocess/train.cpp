@@ -60,6 +60,18 @@ std::vector<std::uint32_t> labelsOf(const Centroids& centroids, std::span<const 
     return labels;
 }
 
+/// By label, of which the first `first` are no centroid's.
+std::vector<std::vector<std::uint32_t>> neighboursOf(const Centroids& centroids,
+                                                     std::span<const SubpathEnd> centres,
+                                                     std::uint32_t first, const ThreadPool& pool) {
+    std::vector<std::vector<std::uint32_t>> near(first + centres.size());
+    pool.forEach(centres.size(), [&](std::size_t n) {
+        near[first + n] = centroids.nearest(centres[n], kMostNeighbours);
+        for (std::uint32_t& label : near[first + n]) label += first;
+    });
+    return near;
+}
+
 double lookUpNanoseconds(const DecisionTree& tree, std::span<const SubpathEnd> ends) {
     if (ends.empty()) return 0.0;
     using Clock = std::chrono::steady_clock;
@@ -83,15 +95,26 @@ class Classification {
     /// Labels count from `first`; at most `count` different ones, at least one.
     void label(std::uint32_t first, std::size_t count, float sigma2, float directionWeight,
                Rng& rng, const ThreadPool& pool) {
-        const Centroids centroids(drawCentroids(train_.end, train_.weight, count, rng), sigma2,
-                                  directionWeight);
+        const auto centres = drawCentroids(train_.end, train_.weight, count, rng);
+        const Centroids centroids(centres, sigma2, directionWeight);
         report_.centroids = centroids.size();
         labelCount_ = first + std::max<std::uint32_t>(1, std::uint32_t(centroids.size()));
+        neighbours_ = neighboursOf(centroids, centres, first, pool);
         labels_ = labelsOf(centroids, train_.end, first, pool);
         heldOutLabels_ = labelsOf(centroids, heldOut_.end, first, pool);
         if (labels_.empty()) labels_ = {first}, train_.end = {SubpathEnd{}};
     }
     std::uint32_t labelCount() const { return labelCount_; }
+    /// By label, of `labels` of them: the nearest ones, itself first. Those that no centroid has
+    /// are alone.
+    std::vector<std::vector<std::uint32_t>> neighbours(std::uint32_t labels) const {
+        std::vector<std::vector<std::uint32_t>> all = neighbours_;
+        all.resize(labels);
+        for (std::uint32_t n = 0; n < labels; ++n) {
+            if (all[n].empty()) all[n] = {n};
+        }
+        return all;
+    }
 
     DecisionTree grow() {
         DecisionTree tree = growTree(train_.end, labels_, labelCount_);
@@ -110,6 +133,7 @@ class Classification {
   private:
     Ends train_, heldOut_;
     std::vector<std::uint32_t> labels_, heldOutLabels_;
+    std::vector<std::vector<std::uint32_t>> neighbours_;
     std::uint32_t labelCount_ = 1;
     TreeReport report_;
 };
@@ -216,7 +240,9 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
     run("gamma", [&] {
         const GammaData data = gammaData(paths.train, s, kPicks, pool);
         const GammaData heldOut = gammaData(paths.heldOut, s, kPicks, pool);
-        result.gamma = optimiseGamma(data, heldOut, fullGamma(data), settings.epochs, pool, cancel);
+        const FullGamma full =
+            fullGamma(data, {light.neighbours(s.lightCount), eye.neighbours(s.eyeCount)}, pool);
+        result.gamma = optimiseGamma(data, heldOut, full, settings.epochs, pool, cancel);
         s.gamma.assign(result.gamma.gamma.begin(), result.gamma.gamma.end());
         result.emptyEye = emptyShareOfEye(data);
     });

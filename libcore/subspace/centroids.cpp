@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 namespace lacuna {
 
@@ -43,6 +44,17 @@ std::uint32_t Centroids::nearest(const SubpathEnd& end) const {
             }
         }
     }
+    return found;
+}
+
+std::vector<std::uint32_t> Centroids::nearest(const SubpathEnd& end, std::size_t most) const {
+    std::vector<std::pair<float, std::uint32_t>> all;
+    all.reserve(size_);
+    for (std::uint32_t i = 0; i < size_; ++i) all.emplace_back(distance(i, end), i);
+    const auto last = all.begin() + std::ptrdiff_t(std::min(most, size_));
+    std::partial_sort(all.begin(), last, all.end());
+    std::vector<std::uint32_t> found;
+    for (auto a = all.begin(); a != last; ++a) found.push_back(a->second);
     return found;
 }
 

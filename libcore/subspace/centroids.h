@@ -26,6 +26,9 @@ class Centroids {
     std::size_t size() const { return size_; }
     /// Index of the nearest; of equally near ones the first.
     std::uint32_t nearest(const SubpathEnd& end) const;
+    /// Indices of the `most` nearest, or of all where there are fewer; nearest first, of equally
+    /// near ones the first.
+    std::vector<std::uint32_t> nearest(const SubpathEnd& end, std::size_t most) const;
     float distance(std::uint32_t index, const SubpathEnd& end) const;
 
   private:

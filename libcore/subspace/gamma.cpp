@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
@@ -14,7 +15,8 @@ constexpr std::size_t kPathsPerTask = 16384;
 constexpr double kLeast = 1e-6;      // of an entry before the first step
 constexpr double kConverged = 1e-7;  // relative fall of the loss by an epoch
 constexpr int kPatience = 3;         // epochs after the kept one before giving up
-constexpr double kVirtualPaths[] = {1, 3, 10, 30, 100, 300, 1000};
+constexpr double kVirtualPaths[] = {1, 3, 10, 30, 100, 300, 1000, 3000, 10000};
+constexpr std::size_t kLightNeighbours = 4;
 
 std::size_t place(const GammaData& data, const GammaData::Entry& e) {
     return std::size_t(e.eye) * data.lightCount + e.light;
@@ -28,6 +30,40 @@ void normaliseColumns(SubspaceMatrix& matrix, std::uint32_t lightCount) {
             matrix[begin + i] = sum > 0.0 ? matrix[begin + i] / sum : 1.0 / lightCount;
         }
     }
+}
+
+/// The first `most` of the neighbours.
+std::span<const std::uint32_t> nearest(const std::vector<std::uint32_t>& neighbours,
+                                       std::size_t most) {
+    return std::span(neighbours).first(std::min(most, neighbours.size()));
+}
+
+/// a^l: the columns of the `most` nearest eye subspaces together, by their paths; light subspaces
+/// share with the nearest of theirs what they have beyond or below m^0.
+GammaColumns neighbourhoods(const FullGamma& full, const SubspaceNeighbours& neighbours,
+                            std::size_t most, const ThreadPool& pool) {
+    const std::size_t rows = full.mean.size();
+    GammaColumns around;
+    around.q.resize(full.q.size());
+    around.paths.resize(full.paths.size());
+    pool.forEach(full.paths.size(), [&](std::size_t j) {
+        std::vector<double> sum(rows, 0.0);
+        for (const std::uint32_t k : nearest(neighbours.eye[j], most)) {
+            around.paths[j] += full.paths[k];
+            const double* column = full.q.data() + k * rows;
+            for (std::size_t i = 0; i < rows; ++i) sum[i] += full.paths[k] * column[i];
+        }
+        for (std::size_t i = 0; i < rows; ++i) {
+            double together = 0.0, mean = 0.0;
+            for (const std::uint32_t k : nearest(neighbours.light[i], kLightNeighbours)) {
+                together += sum[k];
+                mean += full.mean[k];
+            }
+            around.q[j * rows + i] = full.mean[i] * together / mean;
+        }
+    });
+    normaliseColumns(around.q, std::uint32_t(rows));
+    return around;
 }
 
 }  // namespace
@@ -53,6 +89,15 @@ FullGamma fullGamma(const GammaData& data) {
         normaliseColumns(*q, data.lightCount);
         for (double& v : *q) v = std::max(v, kLeast);
         normaliseColumns(*q, data.lightCount);
+    }
+    return full;
+}
+
+FullGamma fullGamma(const GammaData& data, const SubspaceNeighbours& neighbours,
+                    const ThreadPool& pool) {
+    FullGamma full = fullGamma(data);
+    for (const std::size_t most : kNeighbourhoods) {
+        full.around.push_back(neighbourhoods(full, neighbours, most, pool));
     }
     return full;
 }
@@ -101,27 +146,37 @@ double gammaLoss(const GammaData& data, const SubspaceMatrix& e, const ThreadPoo
 
 namespace {
 
-/// Gamma^full with `virtualPaths` of m in every column.
-SubspaceMatrix drawnToMean(const FullGamma& full, double virtualPaths) {
-    SubspaceMatrix q = full.q;
-    const std::size_t rows = full.mean.size();
-    for (std::size_t n = 0; n < q.size(); ++n) {
-        const double own = full.paths[n / rows];
-        if (own + virtualPaths > 0.0) {
-            q[n] = (own * q[n] + virtualPaths * full.mean[n % rows]) / (own + virtualPaths);
+/// `columns` with `virtualPaths` of `prior` in each: (n q + kappa m) / (n + kappa).
+SubspaceMatrix drawnTo(const SubspaceMatrix& prior, const GammaColumns& columns,
+                       double virtualPaths) {
+    SubspaceMatrix q = columns.q;
+    const std::size_t rows = q.size() / columns.paths.size();
+    for (std::size_t j = 0; j < columns.paths.size(); ++j) {
+        const double paths = columns.paths[j];
+        const double own = paths > 0.0 ? paths / (paths + virtualPaths) : 0.0;
+        for (std::size_t n = j * rows; n < (j + 1) * rows; ++n) {
+            q[n] = own * q[n] + (1.0 - own) * prior[n];
         }
     }
     return q;
 }
 
-/// sum_j lambda_j sum_i m_i^2 / E_ij.
+/// m: what every column is drawn to.
+SubspaceMatrix priorOf(const FullGamma& full, double virtualPaths) {
+    SubspaceMatrix m(full.q.size());
+    for (std::size_t n = 0; n < m.size(); ++n) m[n] = full.mean[n % full.mean.size()];
+    for (const GammaColumns& around : full.around) m = drawnTo(m, around, virtualPaths);
+    return m;
+}
+
+/// sum_j lambda_j sum_i m_ij^2 / E_ij.
 class Penalty {
   public:
-    Penalty(const FullGamma& full, double virtualPaths, const SubspaceMatrix& e,
-            const SubspaceMatrix& derivative)
-        : mean_(full.mean), lambda_(full.paths.size(), 0.0) {
+    Penalty(const FullGamma& full, SubspaceMatrix prior, double virtualPaths,
+            const SubspaceMatrix& e, const SubspaceMatrix& derivative)
+        : rows_(full.mean.size()), prior_(std::move(prior)), lambda_(full.paths.size(), 0.0) {
         for (std::size_t n = 0; n < e.size(); ++n) {
-            const std::size_t j = n / mean_.size();
+            const std::size_t j = n / rows_;
             if (full.paths[j] > 0.0) {
                 lambda_[j] -= virtualPaths / full.paths[j] * e[n] * derivative[n];
             }
@@ -132,8 +187,7 @@ class Penalty {
     double addTo(SubspaceMatrix& derivative, const SubspaceMatrix& e) const {
         double value = 0.0;
         for (std::size_t n = 0; n < e.size(); ++n) {
-            const std::size_t i = n % mean_.size();
-            const double v = lambda_[n / mean_.size()] * mean_[i] * mean_[i] / e[n];
+            const double v = lambda_[n / rows_] * prior_[n] * prior_[n] / e[n];
             value += v;
             derivative[n] -= v / e[n];
         }
@@ -141,7 +195,9 @@ class Penalty {
     }
 
   private:
-    std::vector<double> mean_, lambda_;
+    std::size_t rows_;
+    SubspaceMatrix prior_;
+    std::vector<double> lambda_;
 };
 
 }  // namespace
@@ -157,7 +213,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
     double least = result.fullHeldOutLoss;
     for (const double virtualPaths : kVirtualPaths) {
         if (heldOut.paths() == 0) break;
-        SubspaceMatrix drawn = drawnToMean(full, virtualPaths);
+        SubspaceMatrix drawn = drawnTo(priorOf(full, virtualPaths), full, virtualPaths);
         SubspaceMatrix e = mixedGamma(drawn, rows);
         const double loss = gammaLoss(heldOut, e, pool);
         if (!(loss < least)) continue;
@@ -168,7 +224,8 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
     }
     result.trainLoss = {gammaLoss(train, result.gamma, pool, &derivative)};
     result.heldOutLoss = {least};
-    const Penalty penalty(full, result.virtualPaths, result.gamma, derivative);
+    const Penalty penalty(full, priorOf(full, result.virtualPaths), result.virtualPaths,
+                          result.gamma, derivative);
     double loss = result.trainLoss[0] + penalty.addTo(derivative, result.gamma);
 
     for (int epoch = 1; epoch <= epochs; ++epoch) {

@@ -15,14 +15,20 @@
 // so a step never raises the loss on the paths that it is made from, keeps columns on the simplex
 // and needs no rate: where the paper descends along logits with Adam.
 //
-// A million entries follow a million heavy-tailed paths too closely: Gamma^full is twice as bad on
-// paths that it was not made from. So columns are drawn towards m, that of all eye subspaces
-// together, by kappa virtual paths each, worth as much as the column's own on average:
-//     + sum_j lambda_j sum_i m_i^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
-//     start,
-// n_j the effective number of the column's paths. This is least at E_j = m, convex, and one more
-// -d_ij in the step above. kappa is the one of a few under which the start,
-// (n_j Gamma^full + kappa m) / (n_j + kappa), has the lowest held-out loss.
+// A million entries follow a million heavy-tailed paths too closely: Gamma^full is up to three
+// times as bad on paths that it was not made from. So every column borrows from the eye subspaces
+// around it, level by level, the widest neighbourhood first; kappa virtual paths come from the one
+// before:
+//     m^0   = that of all eye subspaces together
+//     m_j^l = (n_j^l a_j^l + kappa m_j^(l-1)) / (n_j^l + kappa),  the 128, 32 and 8 nearest
+//     [MacKay95] start = (n_j Gamma^full_j + kappa m_j) / (n_j + kappa)
+// with the effective numbers of paths n. In the neighbourhood's own column a^l light subspaces
+// borrow as well, from the 4 nearest, as they have shares of m^0. kappa is the one of a few under
+// which the start has the lowest held-out loss. In the optimisation the virtual paths are worth as
+// much as the column's own on average:
+//     + sum_j lambda_j sum_i m_ij^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
+//     start.
+// This is least at E_j = m_j, convex, and one more -d_ij in the step above.
 #pragma once
 
 #include <atomic>
@@ -65,17 +71,36 @@ struct GammaData {
 /// A matrix over (eye, light) subspaces, column by column.
 using SubspaceMatrix = std::vector<double>;
 
-/// Gamma^full, its columns' effective numbers of paths n_j, and m.
-struct FullGamma {
-    SubspaceMatrix q;
-    std::vector<double> paths;  ///< by eye subspace: (sum c)^2 / sum c^2 of its contributions
-    std::vector<double> mean;   ///< by light subspace; sums to one
+/// Which subspaces of a side lie near each other, by subspace: indices, nearest first, itself among
+/// them.
+struct SubspaceNeighbours {
+    std::vector<std::vector<std::uint32_t>> light, eye;
+};
+
+/// Eye subspaces that a column borrows from, level by level.
+inline constexpr std::size_t kNeighbourhoods[] = {128, 32, 8};
+inline constexpr std::size_t kMostNeighbours = kNeighbourhoods[0];
+
+/// Columns by eye subspace and how many paths speak for each.
+struct GammaColumns {
+    SubspaceMatrix q;           ///< every column sums to one; no entry is 0
+    std::vector<double> paths;  ///< n_j, effective: (sum c)^2 / sum c^2 of the contributions
+};
+
+/// Gamma^full and what its columns borrow from.
+struct FullGamma : GammaColumns {
+    std::vector<double> mean;          ///< m^0, by light subspace; sums to one
+    std::vector<GammaColumns> around;  ///< a^l, widest neighbourhoods first
 };
 
 /// Where every column stands before there is anything to learn from: contributions by the subspaces
 /// that connections of D have [Su22 eq 13], columns without any uniform. Sums to one; no entry is
-/// 0, where a step could not take it up again.
+/// 0, where a step could not take it up again. Nothing is `around`.
 FullGamma fullGamma(const GammaData& data);
+
+/// The same with what is around. `neighbours`: of all subspaces of `data`.
+FullGamma fullGamma(const GammaData& data, const SubspaceNeighbours& neighbours,
+                    const ThreadPool& pool);
 
 /// (1 - c) q + c / N_S.
 SubspaceMatrix mixedGamma(const SubspaceMatrix& q, std::uint32_t lightCount);

@@ -68,6 +68,17 @@ TEST(Centroids, nearestIsTheLeastByEquation18) {
         const std::uint32_t found = centroids.nearest(e);
         EXPECT_NEAR(double(centroids.distance(found, e)), d(centres[found]), 1e-4);
         for (const SubpathEnd& c : centres) EXPECT_GE(d(c), d(centres[found]) - 1e-4);
+
+        const std::vector<std::uint32_t> some = centroids.nearest(e, 9),
+                                         all = centroids.nearest(e, 1000);
+        ASSERT_EQ(some.size(), 9u);
+        ASSERT_EQ(all.size(), centres.size());
+        EXPECT_EQ(some[0], found);
+        EXPECT_TRUE(std::equal(some.begin(), some.end(), all.begin()));
+        for (std::size_t n = 1; n < all.size(); ++n) {
+            EXPECT_GE(d(centres[all[n]]), d(centres[all[n - 1]]) - 1e-4);
+        }
+        EXPECT_EQ(std::set<std::uint32_t>(all.begin(), all.end()).size(), centres.size());
     }
     EXPECT_EQ(Centroids().nearest(asked[0]), 0u);
     // Directions count for more where they are said to.

@@ -114,6 +114,90 @@ TEST(Gamma, twoStartsReachOneLoss) {
     EXPECT_EQ(a.kept, a.trainLoss.size() - 1);
 }
 
+/// Subspaces on a line; paths prefer what lies near in both, and there are fewer than entries.
+GammaData smoothData(std::size_t paths, std::uint32_t n, std::uint64_t seed) {
+    Rng rng(seed, 0, StreamKind::User, 0);
+    GammaData data;
+    data.lightCount = data.eyeCount = n;
+    for (std::size_t p = 0; p < paths; ++p) {
+        const std::uint32_t eye = rng.below(n),
+                            about = std::uint32_t(n * (0.5 + 0.3 * std::sin(eye * 6.0 / n)));
+        const std::uint32_t light = (about + rng.below(n / 10) + rng.below(n / 10)) % n;
+        data.entries.push_back({light, eye, 1.0f});
+        data.endPath(0.1f / (0.05f + rng.uniform()), 0.0f);
+    }
+    return data;
+}
+
+/// On a line; `shuffled`: some ones or others, and itself.
+SubspaceNeighbours neighboursOnALine(std::uint32_t n, bool shuffled) {
+    Rng rng(77, 0, StreamKind::User, 0);
+    SubspaceNeighbours near;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        std::vector<std::uint32_t> of = {i};
+        for (std::uint32_t d = 1; of.size() < kMostNeighbours && d < n; ++d) {
+            if (shuffled)
+                of.push_back(rng.below(n));
+            else
+                for (const std::uint32_t j : {i - d, i + d})
+                    if (j < n) of.push_back(j);
+        }
+        near.light.push_back(of);
+        near.eye.push_back(of);
+    }
+    return near;
+}
+
+TEST(Gamma, columnsBorrowFromTheirNeighbours) {
+    const std::uint32_t n = 300;
+    const GammaData train = smoothData(6000, n, 6), heldOut = smoothData(6000, n, 7),
+                    many = smoothData(2'000'000, n, 8);
+    const auto heldOutLoss = [&](const GammaData& data, const FullGamma& full) {
+        const GammaResult r = optimiseGamma(data, heldOut, full, 20, threads(), kNever);
+        expectColumns(r.gamma, n, 0.999 * kUniformShare / n);
+        return r.heldOutLoss[r.kept];
+    };
+    const double alone = heldOutLoss(train, fullGamma(train));
+    const double best = heldOutLoss(many, fullGamma(many));
+    const double borrowed =
+        heldOutLoss(train, fullGamma(train, neighboursOnALine(n, false), threads()));
+    const double misled =
+        heldOutLoss(train, fullGamma(train, neighboursOnALine(n, true), threads()));
+    EXPECT_LT(best, borrowed);
+    EXPECT_LT(borrowed, 0.5 * alone);
+    EXPECT_LT(misled, 1.2 * alone);  // neighbours that have nothing in common cost little
+}
+
+/// Three subspaces by hand.
+TEST(Gamma, aNeighbourhoodIsItsSubspacesTogether) {
+    GammaData data;
+    data.lightCount = 2;
+    data.eyeCount = 3;
+    const auto add = [&](std::uint32_t light, std::uint32_t eye, int times) {
+        for (int k = 0; k < times; ++k) {
+            data.entries.push_back({light, eye, 1.0f});
+            data.endPath(2.0f, 0.0f);
+        }
+    };
+    add(0, 0, 3), add(1, 0, 1);  // column 0: 3/4, 1/4 of four paths
+    add(0, 1, 1), add(1, 1, 1);  // column 1: 1/2, 1/2 of two
+    add(1, 2, 4);                // column 2: 0, 1 of four; alone
+    const FullGamma full = fullGamma(data, {{{0}, {1}}, {{0, 1}, {1, 0}, {2}}}, threads());
+    ASSERT_EQ(full.around.size(), std::size(kNeighbourhoods));
+    for (const GammaColumns& around : full.around) {
+        EXPECT_NEAR(around.paths[0], 6.0, 1e-9);
+        EXPECT_NEAR(around.paths[2], 4.0, 1e-9);
+        EXPECT_NEAR(around.q[0], 4.0 / 6.0, 1e-5);
+        EXPECT_NEAR(around.q[2], 4.0 / 6.0, 1e-5);
+        EXPECT_NEAR(around.q[4], 0.0, 1e-5);
+    }
+    // Light subspaces that are each other's neighbours have shares as in m^0: 4/10, 6/10.
+    const FullGamma one = fullGamma(data, {{{0, 1}, {1, 0}}, {{0}, {1}, {2}}}, threads());
+    for (const GammaColumns& around : one.around) {
+        for (const std::size_t j : {0, 1, 2}) EXPECT_NEAR(around.q[2 * j], 0.4, 1e-5);
+    }
+}
+
 TEST(Gamma, degenerateDataIsHandled) {
     // Nothing at all.
     GammaData none;
