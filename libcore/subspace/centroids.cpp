@@ -18,7 +18,7 @@ Centroids::Centroids(std::span<const SubpathEnd> centres, float sigma2, float di
     }
 }
 
-float Centroids::distance(std::uint32_t index, const SubpathEnd& end) const {
+float Centroids::distance(std::size_t index, const SubpathEnd& end) const {
     const float* c = value_.data() + index;
     const auto& p = end.value;
     const float x = p[0] - c[0], y = p[1] - c[size_], z = p[2] - c[2 * size_];
@@ -29,14 +29,15 @@ float Centroids::distance(std::uint32_t index, const SubpathEnd& end) const {
 }
 
 std::uint32_t Centroids::nearest(const SubpathEnd& end) const {
-    // Blocks of distances first: that loop has no branch and becomes vector instructions.
+    // Blocks of distances first: that loop has no branch and becomes vector instructions, as long
+    // as the index cannot wrap around (std::size_t).
     constexpr std::size_t kBlock = 64;
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t found = 0;
     std::array<float, kBlock> d;
     for (std::size_t begin = 0; begin < size_; begin += kBlock) {
         const std::size_t n = std::min(kBlock, size_ - begin);
-        for (std::size_t i = 0; i < n; ++i) d[i] = distance(std::uint32_t(begin + i), end);
+        for (std::size_t i = 0; i < n; ++i) d[i] = distance(begin + i, end);
         for (std::size_t i = 0; i < n; ++i) {
             if (d[i] < best) {
                 best = d[i];

@@ -29,7 +29,7 @@ class Centroids {
     /// Indices of the `most` nearest, or of all where there are fewer; nearest first, of equally
     /// near ones the first.
     std::vector<std::uint32_t> nearest(const SubpathEnd& end, std::size_t most) const;
-    float distance(std::uint32_t index, const SubpathEnd& end) const;
+    float distance(std::size_t index, const SubpathEnd& end) const;
 
   private:
     std::size_t size_ = 0;
