@@ -105,8 +105,8 @@ class Classification {
         if (labels_.empty()) labels_ = {first}, train_.end = {SubpathEnd{}};
     }
     std::uint32_t labelCount() const { return labelCount_; }
-    /// By label, of `labels` of them: the nearest ones, itself first. Those that no centroid has
-    /// are alone.
+    /// By label, of `labels` of them: the nearest ones, itself among them. Those that no centroid
+    /// has are alone.
     std::vector<std::vector<std::uint32_t>> neighbours(std::uint32_t labels) const {
         std::vector<std::vector<std::uint32_t>> all = neighbours_;
         all.resize(labels);

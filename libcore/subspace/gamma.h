@@ -15,17 +15,16 @@
 // so a step never raises the loss on the paths that it is made from, keeps columns on the simplex
 // and needs no rate: where the paper descends along logits with Adam.
 //
-// A million entries follow a million heavy-tailed paths too closely: Gamma^full is up to three
-// times as bad on paths that it was not made from. So every column borrows from the eye subspaces
-// around it, level by level, the widest neighbourhood first; kappa virtual paths come from the one
-// before:
-//     m^0   = that of all eye subspaces together
-//     m_j^l = (n_j^l a_j^l + kappa m_j^(l-1)) / (n_j^l + kappa),  the 128, 32 and 8 nearest
-//     [MacKay95] start = (n_j Gamma^full_j + kappa m_j) / (n_j + kappa)
-// with the effective numbers of paths n. In the neighbourhood's own column a^l light subspaces
-// borrow as well, from the 4 nearest, as they have shares of m^0. kappa is the one of a few under
-// which the start has the lowest held-out loss. In the optimisation the virtual paths are worth as
-// much as the column's own on average:
+// A million entries follow a million heavy-tailed paths too closely: Gamma^full is twice as bad on
+// paths that it was not made from. So every column borrows from the eye subspaces around it, level
+// by level, the widest neighbourhood first, as n-grams do from shorter ones [MacKay95]:
+//     m^0   = the column of all eye subspaces together
+//     m_j^l = (n_j^l a_j^l + kappa m_j^(l-1)) / (n_j^l + kappa),   l: the 128, 32, 8 nearest ones
+//     start = (n_j Gamma^full_j + kappa m_j) / (n_j + kappa),      m_j: that of the last level
+// n: effective numbers of paths; kappa: virtual paths. In a neighbourhood's column a^l light
+// subspaces borrow as well, from the 4 nearest, as they have shares of m^0. kappa is the one of a
+// few under which the start has the lowest held-out loss. In the optimisation the virtual paths are
+// worth as much as the column's own on average:
 //     + sum_j lambda_j sum_i m_ij^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
 //     start.
 // This is least at E_j = m_j, convex, and one more -d_ij in the step above.
