@@ -12,8 +12,8 @@
 //   pick      N times: c uniform among the N_c cache points around z, j by P2:  h / (M1 N P1 P2)
 //             (the printed 1 / (M1 M2) belongs to draws from one P1 over all of Y)
 //   MIS       the mean over the N_c points of                                       [eq 17]
-//                 [ 1/M1 + (1 - 1/M1) ( (1/M2) p/q1 + (1/N) (1 - 1/M2) p/q2 ) ]^-1,
-//             (as printed: N = 1)
+//                 [ 1/M1 + (1 - 1/M1) ( (1/M2) p/q1 + (1 - 1/M2) p/q2 / (N (1 - d)) ) ]^-1,
+//             (as printed: N = 1, d = 0)
 //             p/q1 = Q1(c) / q1*(y, z), p/q2 = Q2(c) / q2*(y, z), each at least `clamp`, V = 1;
 //             Q1 = (1/M1) sum_j B_j G, Q2 = (1/M1) sum_j T_j of earlier iterations,
 //             averaged (as printed: of the one before)
@@ -83,7 +83,7 @@ class TwoStageDensity final : public ConnectionDensity {
             const double q1 = q_[2 * i], q2 = q_[2 * i + 1];
             const double ratio1 = std::max(options_.clamp, q1 / (power * g));
             const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (flow * g)) : ratio1;
-            sum += effective(ratio1, ratio2 / n);
+            sum += effective(ratio1, ratio2 / (n * (1.0 - options_.defensive)));
         }
         return withEyeShare(sum / double(around.size()), c.order, options_.eyeShare);
     }
@@ -313,7 +313,7 @@ MethodRow twoStageResamplingRow() {
          "earlier iterations whose Q are averaged; the paper: 1"},
         {"clamp", Kind::Real, 1e-3, 0, 1, "lower limit of p/q in the weights"},
         eyeShareParameter(0.1),
-        {"defensive", Kind::Real, 0.25, 1e-6, 1,
+        {"defensive", Kind::Real, 0.7, 1e-6, 0.99,
          "share of the second stage that goes by power and distance alone"},
         {"untested", Kind::Real, 0.0, 0, 1,
          "share of a pmf, its smallest entries, that no visibility rays are spent on"},
@@ -334,7 +334,8 @@ MethodRow twoStageResamplingRow() {
         nextEventParameter(true),
         presetParameter()};
     row.paper = {{"first_connections", 0}, {"eye_share", 0},    {"next_event", 0},
-                 {"q_iterations", 1},      {"cache_points", 3}, {"target", 1}};
+                 {"q_iterations", 1},      {"cache_points", 3}, {"target", 1},
+                 {"defensive", 0.25}};
     row.create = [](const Settings& s) -> std::unique_ptr<Method> {
         Options o;
         o.subpaths = s.integer("candidates");
