@@ -39,6 +39,7 @@ say "Layout of the sources"
 bash "$project/.ci/format.sh"
 
 say "Scenes: the files are what their generator makes"
+python3 -B -m unittest discover -s "$project/scenes" -t "$project/scenes"
 python3 "$project/scenes/make_scenes.py" --check
 
 say "Hard cases: each has a test, and the table is of these tests"

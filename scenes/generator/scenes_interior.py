@@ -41,11 +41,11 @@ def door() -> SceneFile:
     lamp = s.material(m.emitter("lamp", (3300.0, 3075.0, 2700.0)))
 
     _put_room(s, room((-2.6, 0, -5.6), (2.6, 2.7, 2.4), 0.2), {"walls": wall, "floor": tiles})
-    # The partition is let into floor, ceiling and walls; its doorway is cut down to the partition's lower edge.
-    opening = (2.62 - 1.15, 2.62 - 0.25, -0.1, 2.07)
+    # The partition is let into floor, ceiling and walls; its doorway is cut down to the partition's lower edge and ends inside the frame.
+    opening = (2.62 - 1.18, 2.62 - 0.22, -0.1, 2.10)
     s.add("partition", slab((-2.62, -0.02, -2.0), X, Y, 5.24, 2.74, 0.14, [opening]), wall)
     frame = boxes(((-1.21, -SUNK, -2.15), (-1.15, 2.11, -1.985)), ((-0.25, -SUNK, -2.15), (-0.19, 2.11, -1.985)),
-                  ((-1.15 - SUNK, 2.05, -2.15), (-0.25 + SUNK, 2.11, -1.985)))
+                  ((-1.15 - SUNK, 2.05, -2.15 + SUNK), (-0.25 + SUNK, 2.11 - SUNK, -1.985 - SUNK)))
     s.add("door frame", frame, oak)
     # Hinged on the right, opening towards the camera; the slit under the leaf is 8 mm.
     hinge = s.node("hinge", at=(-0.255, 0.008, -1.98), turned=about_y(38))
@@ -97,10 +97,10 @@ def bedroom_curtain() -> SceneFile:
     rod = s.node("curtain rod", s.mesh("curtain rod", (cylinder(0.015, 2.4, 12), brass)), at=(-1.98, 2.36, 0.4), turned=about_x(-90))
     for i, z in enumerate((0.71, 1.71)):  # along the rod, whose own +Y runs towards -Z
         s.node(f"curtain {i + 1}", leaf, parent=rod, at=(0.0, z, -2.0), turned=about((1, 1, 1), 120))
-    s.add("pelmet", boxes(((-2.1 - SUNK, 2.39, -2.05), (-1.86, 2.42, 0.45)), ((-1.88, 2.2, -2.05), (-1.86, 2.40, 0.45))), wood)
+    s.add("pelmet", boxes(((-2.1 - SUNK, 2.39, -2.05), (-1.86, 2.42, 0.45)), ((-1.87, 2.2, -2.06), (-1.85, 2.43, 0.46))), wood)
 
     bed = s.node("bed", at=(0.55, 0.0, -1.2))
-    s.add("bed frame", boxes(((-0.85, -SUNK, -1.15), (0.85, 0.95, -1.08)), ((-0.85, 0.12, -1.1), (0.85, 0.34, 0.95))), wood, parent=bed)
+    s.add("bed frame", boxes(((-0.85, -SUNK, -1.15), (0.85, 0.95, -1.08)), ((-0.84, 0.12, -1.1), (0.84, 0.34, 0.95))), wood, parent=bed)
     s.add("mattress", box((-0.8, 0.33, -1.07), (0.8, 0.52, 0.92)), linen, parent=bed)
     s.add("quilt", slab((-0.83, 0.545, 0.95), X, (0, 0, -1), 1.66, 1.35, 0.05), quilt, parent=bed)
     pillow = s.mesh("pillow", (sphere(1.0, 14, 28), linen))
@@ -179,16 +179,17 @@ def kitchen_glass() -> SceneFile:
     opening = (1.92 - 1.5, 1.92 + 1.5, 0.57, 2.27)
     s.add("partition", slab((-1.92, -0.02, 1.3), X, Y, 3.84, 2.54, 0.12, [opening]), wall)
     s.add("pane", box((-1.51, 0.54, 1.23), (1.51, 2.26, 1.242)), glass)
-    s.add("tiled wall", slab((-1.9 - SUNK, 0.88, -1.59), X, Y, 3.8 + 2 * SUNK, 0.72, 0.02), tiles)
+    s.add("tiled wall", slab((-1.9 - SUNK, 0.88, -1.59), X, Y, 3.8 + 2 * SUNK, 0.72, 0.025), tiles)
 
+    # What overlaps inside the walls and the corner is let in to a depth of its own each.
     counter = s.node("counter")
-    s.add("cupboards", boxes(((-1.9 - SUNK, 0.1, -1.6 - SUNK), (1.235, 0.86, -1.0)), ((-1.9 - SUNK, 0.1, -1.02), (-1.3, 0.86, 0.6))), front, parent=counter)
-    s.add("plinth", boxes(((-1.9 - SUNK, -SUNK, -1.6 - SUNK), (1.235, 0.12, -1.06)), ((-1.9 - SUNK, -SUNK, -1.1), (-1.36, 0.12, 0.56))), steel, parent=counter)
-    s.add("worktop", slab((-1.9 - SUNK, 0.9, 0.63), X, (0, 0, -1), 3.14, 2.24, 0.045, [(0.63, 4.0, -1.0, 1.6)]), worktop, parent=counter)
+    s.add("cupboards", boxes(((-1.9 - SUNK, 0.1, -1.6 - SUNK), (1.235, 0.86, -1.0)), ((-1.9 - 2 * SUNK, 0.1 + SUNK, -1.02), (-1.3, 0.86 - SUNK, 0.6))), front, parent=counter)
+    s.add("plinth", boxes(((-1.9 - 3 * SUNK, -SUNK, -1.6 - 2 * SUNK), (1.225, 0.12, -1.06)), ((-1.9 - 4 * SUNK, -2 * SUNK, -1.1), (-1.36, 0.12 - SUNK, 0.56))), steel, parent=counter)
+    s.add("worktop", slab((-1.9 - 5 * SUNK, 0.9, 0.63), X, (0, 0, -1), 3.15, 2.24, 0.045, [(0.64, 4.0, -1.0, 1.6)]), worktop, parent=counter)
     handle = s.mesh("handle", (cylinder(0.008, 0.3, 10), chrome))
     for x in (-0.95, -0.35, 0.25, 0.85):
         s.node("handle", handle, parent=counter, at=(x - 0.15, 0.78, -0.97), turned=about_z(-90))
-    s.add("fridge", box((1.25, -SUNK, -1.6 - SUNK), (1.9 + SUNK, 1.95, -0.95)), mirror)
+    s.add("fridge", box((1.25, -SUNK, -1.6 - SUNK), (1.9 + 2 * SUNK, 1.95, -0.95)), mirror)
     s.add("wall cupboard", box((-1.1, 1.6 - SUNK, -1.6 - SUNK), (1.0, 2.25, -1.25)), front)
     s.add("under-cupboard light", quad((-0.9, 1.594, -1.5), (1.7, 0, 0), (0, 0, 0.06)), lamp)
 
@@ -230,7 +231,7 @@ def glossy_room() -> SceneFile:
 
     _put_room(s, room((-2.2, 0, -2.4), (2.2, 2.6, 2.4), 0.2), {"walls": wall, "floor": floor, "left": blue, "back": panel})
     # A trough along the right wall hides the lamp from everything below it.
-    s.add("trough", boxes(((1.75, 1.88, -2.2), (2.2 + SUNK, 1.9, 2.0)), ((1.75, 1.88, -2.2), (1.77, 2.08, 2.0))), wall)
+    s.add("trough", boxes(((1.76, 1.88, -2.19), (2.2 + SUNK, 1.9, 1.99)), ((1.75, 1.87, -2.2), (1.77, 2.08, 2.0))), wall)
     s.add("light", quad((1.9, 1.92, 1.4), (0.18, 0, 0), (0, 0, -2.9)), lamp)
 
     ball = sphere(0.32, 20, 40)

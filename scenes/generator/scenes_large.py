@@ -60,7 +60,7 @@ def court() -> SceneFile:
 
     # Arcades 2.5 m deep run along three sides; the space above the middle is open.
     yard = s.node("court")
-    sides = room((-6.5, 0, -7.5), (6.5, 6.5, 5.0), 0.4, {"ceiling": [(-4, 4, -5, 5.5)]})
+    sides = room((-6.5, 0, -7.5), (6.5, 6.5, 5.0), 0.4, {"ceiling": [(-3.98, 3.98, -5, 5.5)]})
     for side, mesh in sides.items():
         if side != "front":
             s.add(side, mesh, {"floor": paving}.get(side, plaster), parent=yard)
@@ -68,17 +68,17 @@ def court() -> SceneFile:
     arch = s.mesh("arch", (arch_panel(2.0, 4.0 + SUNK, 0.75, 0.5, 20), brick))
     pillar = s.mesh("pillar", (objects.column(2.5, 0.2, 20), plaster))
 
-    def arcade(name: str, count: int, **placing: object) -> None:
-        """Along +X from the origin; every bay 2 m."""
+    def arcade(name: str, count: int, pillars: range, **placing: object) -> None:
+        """Along +X from the origin; every bay 2 m. Bay i stands between pillars i and i + 1; those in the court's corners are the back's."""
         group = s.node(name, **placing)
         for i in range(count):
             s.node(f"arch {i + 1}", arch, parent=group, at=(2.0 * i + 1.0, 2.5, 0.0))
-        for i in range(count + 1):
+        for i in pillars:
             s.node(f"pillar {i + 1}", pillar, parent=group, at=(2.0 * i, 0.0, 0.0))
 
-    arcade("back arcade", 4, at=(-4.0, 0.0, -5.0))
-    arcade("left arcade", 5, at=(-4.25, 0.0, 5.2), turned=about_y(90))
-    arcade("right arcade", 5, at=(4.25, 0.0, -4.8), turned=about_y(-90))
+    arcade("back arcade", 4, range(5), at=(-4.0, 0.0, -5.0))
+    arcade("left arcade", 5, range(5), at=(-4.25, 0.0, 5.2), turned=about_y(90))
+    arcade("right arcade", 5, range(1, 6), at=(4.25, 0.0, -4.8), turned=about_y(-90))
 
     well = s.node("fountain", at=(0.4, 0.0, -1.2))
     s.add("basin", lathe([(0.0, -SUNK), (1.25, -SUNK), (1.25, 0.45), (1.05, 0.45), (1.05, 0.1), (0.0, 0.1)], 40), plaster, parent=well)
@@ -121,7 +121,7 @@ def nave() -> SceneFile:
     column = s.mesh("column", (objects.column(3.7, 0.33), stone))
     panel = s.mesh("arch", (arch_panel(bay, 2.9, 1.42, 0.5, 24), stone))
     vault_rib = s.mesh("rib", (rib(2.62, 2.95, 0.32, 32), stone))
-    pew = s.mesh("pew", (boxes(((-0.9, 0.38, -0.2), (0.9, 0.43, 0.2)), ((-0.9, 0.4, 0.16), (0.9, 0.9, 0.2)),
+    pew = s.mesh("pew", (boxes(((-0.9, 0.38, -0.2), (0.9, 0.43, 0.2)), ((-0.905, 0.4, 0.17), (0.905, 0.895, 0.21)),
                                ((-0.93, -SUNK, -0.22), (-0.89, 0.9, 0.22)), ((0.89, -SUNK, -0.22), (0.93, 0.9, 0.22))), wood))
 
     def half(name: str, **placing: object) -> None:

@@ -6,6 +6,7 @@ import json
 import struct
 from typing import Any, Iterator
 
+from .coincident import coincident_faces, placed_triangles
 from .vector import cross, dot, length, sub
 
 COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
@@ -131,6 +132,12 @@ def _extensions(glb: Glb) -> Iterator[str]:
         yield f"extensionsUsed is {glb.json.get('extensionsUsed')}, found {sorted(found)}"
 
 
+def _coincidence(glb: Glb) -> Iterator[str]:
+    for (a, b), (area, corner) in sorted(coincident_faces(list(placed_triangles(glb))).items()):
+        at = ", ".join(f"{c:.3f}" for c in corner)
+        yield f"{a} and {b} have {area:.6f} square metres of face in common, near ({at})"
+
+
 def _conventions(glb: Glb, files: set[str]) -> Iterator[str]:
     extras = glb.json["scenes"][0]["extras"]
     if len(glb.all("cameras")) != 1:
@@ -150,6 +157,6 @@ def problems(data: bytes, files: set[str]) -> list[str]:
     glb = Glb(data)
     found = list(_references(glb))
     if not found:
-        for check in (_packing(glb), _geometry(glb), _extensions(glb), _conventions(glb, files)):
+        for check in (_packing(glb), _geometry(glb), _extensions(glb), _coincidence(glb), _conventions(glb, files)):
             found += check
     return found
