@@ -38,7 +38,7 @@ double typicalSpacing2(std::span<const Vec3> positions) {
 }  // namespace
 
 CachePoints::CachePoints(IterationContext& context, double density, int neighbours,
-                         std::uint32_t generation) {
+                         std::uint32_t generation, Which which) {
     const auto paths =
         std::max<std::uint64_t>(1, std::uint64_t(std::ceil(density * double(context.filmPixels))));
     struct Chunk {
@@ -58,12 +58,16 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
     std::vector<Vec3> positions;
     for (const Chunk& chunk : chunks) {
         context.statistics.add(chunk.tally);
+        bool first = true;
         for (const PathVertex& v : chunk.vertices) {
-            if (v.kind == VertexKind::Surface && v.connectable()) {
+            if (v.kind == VertexKind::Lens) first = true;
+            if (v.kind == VertexKind::Surface && v.connectable() &&
+                (first || which == Which::All)) {
                 points_.push_back(std::uint32_t(vertices_.size()));
                 positions.push_back(v.position);
             }
             vertices_.push_back(v);
+            if (v.kind == VertexKind::Surface && !isDelta(v.event)) first = false;
         }
     }
     const double spacing2 = typicalSpacing2(positions);

@@ -19,12 +19,16 @@ namespace lacuna {
 
 class CachePoints {
   public:
+    /// Which of an eye subpath's connectable vertices are points: all, or those that are first
+    /// (Connection::order 1).
+    enum class Which { All, First };
+
     /// No points: everything is served by nobody.
     CachePoints() = default;
-    /// All connectable vertices of `density` x (pixels of the film) eye subpaths, at least one
-    /// path. `neighbours`: N_c. `generation` addresses the random numbers.
-    CachePoints(IterationContext& context, double density, int neighbours,
-                std::uint32_t generation);
+    /// Vertices of `density` x (pixels of the film) eye subpaths, at least one path.
+    /// `neighbours`: N_c. `generation` addresses the random numbers.
+    CachePoints(IterationContext& context, double density, int neighbours, std::uint32_t generation,
+                Which which = Which::All);
 
     std::size_t size() const { return points_.size(); }
     bool empty() const { return points_.empty(); }

@@ -18,13 +18,17 @@
 //             maxima, all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V
 //             counts where the node's map of distances (sight_map.h) has V(n, y) = 1; Z is exact
 //             for the choice by mass and stands in for the even one
+//   first     record_density > 0: the first eye vertex of a path is served by importance records on
+//             surfaces instead (importance_records.h), the others by nodes [Noel15 6, outlook]
 //   lengths   N for every s [4.3], or for s > 2 a share of N on average (LengthPicks), and divided
 //             by that
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "libcore/base/parallel.h"
+#include "libcore/methods/importance_records.h"
 #include "libcore/methods/length_pmfs.h"
 #include "libcore/methods/methods.h"
 #include "libcore/methods/sight_map.h"
@@ -36,9 +40,12 @@ namespace {
 
 constexpr std::uint64_t kCountingPaths = 16384, kCountingPathsPerTask = 256;
 constexpr std::size_t kVerticesPerTask = 512;
-constexpr double kNearest = 0.1;  // of the ball's radius: the closest a light vertex counts as
+constexpr double kNearest = 0.1;    // of the ball's radius: the closest a light vertex counts as
+constexpr int kEarlierRecords = 3;  // of the iteration before that tell a record its sums
 constexpr std::uint32_t kUnmapped = NodeMap::kNone;
 enum Row : std::uint32_t { kSeen, kUnseen, kUniform, kRows };
+/// Label of the first of the records' distributions, after the nodes' and what has none.
+constexpr std::uint32_t kRecordParts = kRows + 1;
 
 struct Options {
     std::uint64_t subpaths;
@@ -47,6 +54,7 @@ struct Options {
     Choice choice;
     bool nextEvent, aware, everyLength;
     Picks picks;  ///< N
+    std::optional<ImportanceRecords::Options> firstRecords;
 };
 
 /// Nodes of both sides of a surface in one tag, so that the tag is a function of the vertex alone.
@@ -86,8 +94,10 @@ struct Expected {
 
 class SkeletonDensity final : public ConnectionDensity {
   public:
-    SkeletonDensity(const Options& options, const NodeLookup& lookup, const LengthPicks& picks)
-        : options_(options), lookup_(lookup), picks_(picks) {}
+    /// `firstRecords`: null where nodes serve the first eye vertex as well.
+    SkeletonDensity(const Options& options, const NodeLookup& lookup, const LengthPicks& picks,
+                    const ImportanceRecords* firstRecords)
+        : options_(options), lookup_(lookup), picks_(picks), firstRecords_(firstRecords) {}
 
     /// `expected` by node (the last row: where there is none) and s, `slot` by node, `sight` by
     /// slot.
@@ -102,20 +112,42 @@ class SkeletonDensity final : public ConnectionDensity {
         if (options_.aware || !options_.everyLength) return std::nullopt;
         return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
     }
-    bool tagsVertices() const override { return options_.aware && lookup_.skeleton(); }
-    std::uint32_t tagOf(const PathVertex& vertex) const override {
-        return lookup_.bothSides(vertex);
+    bool tagsVertices() const override {
+        return options_.aware && (lookup_.skeleton() || firstRecords_);
+    }
+    /// First vertices of eye walks are tagged with their record, all others with their nodes.
+    void tagWalk(std::span<PathVertex> walk) const override {
+        bool first = firstRecords_ && !walk.empty() && walk.front().kind == VertexKind::Lens;
+        for (PathVertex& v : walk) {
+            if (v.kind != VertexKind::Surface) continue;
+            if (v.tag == kNone && v.connectable()) {
+                if (first) {
+                    v.tag = firstRecords_->nearest(v);
+                } else if (lookup_.skeleton()) {
+                    v.tag = lookup_.bothSides(v);
+                }
+            }
+            first = first && isDelta(v.event);
+        }
     }
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
         const double chance = picks_.chance(c.light.count, c.order);
-        return chance * (options_.aware ? samplesOf(c) : options_.credit);
+        if (!options_.aware) return chance * options_.credit;
+        const bool byRecord = firstRecords_ && c.order == 1;
+        return chance * (byRecord ? samplesByRecord(c) : samplesByNode(c));
     }
 
   private:
+    double samplesByRecord(const Connection& c) const {
+        const PathVertex& z = *c.eye.vertex;
+        const bool tagged = c.eye.maker == EdgeMaker::EyeWalk && z.tag != kNone;
+        return firstRecords_->samplesOf(c, tagged ? z.tag : firstRecords_->nearest(z),
+                                        picks_.repeats(c.light.count, c.order));
+    }
     /// r of the picks that are made.
-    double samplesOf(const Connection& c) const {
+    double samplesByNode(const Connection& c) const {
         const auto m = double(options_.subpaths);
         const PathVertex& z = *c.eye.vertex;
         const Vec3 back = c.eye.predecessor->position - z.position;
@@ -146,6 +178,7 @@ class SkeletonDensity final : public ConnectionDensity {
     const Options& options_;
     const NodeLookup& lookup_;
     const LengthPicks& picks_;
+    const ImportanceRecords* firstRecords_;
     const std::vector<std::vector<Expected>>* expected_ = nullptr;
     const std::vector<std::uint32_t>* slot_ = nullptr;
     const std::vector<SightMap>* sight_ = nullptr;
@@ -156,14 +189,19 @@ class SkeletonConnections final : public Method {
     explicit SkeletonConnections(const Options& options)
         : options_(options),
           picks_(options.everyLength, options.picks),
-          density_(options_, lookup_, picks_) {}
+          firstRecords_(options.firstRecords),
+          density_(options_, lookup_, picks_, firstRecords_ ? &*firstRecords_ : nullptr) {}
 
     void useSkeleton(std::shared_ptr<const Skeleton> skeleton) override {
         lookup_.use(std::move(skeleton));
     }
-    int warmupIterations() const override { return 1; }
+    int warmupIterations() const override {
+        return firstRecords_ ? ImportanceRecords::kWarmupIterations : 1;
+    }
     PoolRequest pool() const override { return {options_.subpaths}; }
-    bool learns() const override { return options_.aware || !options_.everyLength; }
+    bool learns() const override {
+        return options_.aware || !options_.everyLength || firstRecords_;
+    }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
         density_.freeze(&expected_, &slot_, &sight_);
@@ -176,6 +214,7 @@ class SkeletonConnections final : public Method {
             if (options_.aware && options_.use[kSeen]) lookAround(context);
         }
         vertices_.assign(pool, !options_.nextEvent);
+        if (firstRecords_) firstRecords_->prepare(vertices_, context);
         const std::size_t n = vertices_.size();
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         found_.assign(used_.size() * lengths, {});
@@ -230,6 +269,32 @@ class SkeletonConnections final : public Method {
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (firstRecords_ && context.order() == 1) {
+            selectByRecord(context, rng, sink);
+        } else {
+            selectByNode(context, rng, sink);
+        }
+    }
+
+    void observe(const LightPool&, IterationContext& context) override {
+        picks_.learn(vertices_);
+        if (firstRecords_) firstRecords_->observe(context);
+        if (options_.aware) learnExpected();
+    }
+
+  private:
+    void selectByRecord(const EyeContext& context, Rng& rng, ProposalSink& sink) const {
+        const PathVertex& z = context.vertex;
+        const std::uint32_t serving = z.tag != kNone ? z.tag : firstRecords_->nearest(z);
+        const auto m = double(options_.subpaths);
+        picks_.forEachPick(vertices_, 1, rng, [&](int s, double u, double n) {
+            const ImportanceRecords::Pick pick = firstRecords_->pick(serving, s, u, rng);
+            sink.add({vertices_.prefix(pick.place), 1.0 / (m * n * pick.probability),
+                      kRecordParts + pick.label});
+        });
+    }
+
+    void selectByNode(const EyeContext& context, Rng& rng, ProposalSink& sink) const {
         const std::uint32_t node = lookup_.at(context.vertex, context.vertex.toPrevious);
         const std::uint32_t slot = node < slot_.size() ? slot_[node] : kNone;
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
@@ -249,9 +314,8 @@ class SkeletonConnections final : public Method {
         });
     }
 
-    void observe(const LightPool&, IterationContext&) override {
-        picks_.learn(vertices_);
-        if (!options_.aware) return;
+    /// Frozen means of the coming iterations.
+    void learnExpected() {
         const auto lengths = std::size_t(vertices_.lengths()) + 1;
         expected_.resize(slot_.size() + 1);
         const auto learn = [&](std::size_t node, std::size_t s, const Expected& now) {
@@ -273,7 +337,6 @@ class SkeletonConnections final : public Method {
         }
     }
 
-  private:
     /// Which nodes are worth distributions: those that many eye vertices are mapped to.
     void countEyeVertices(IterationContext& context) {
         const std::size_t nodes = lookup_.skeleton() ? lookup_.skeleton()->nodes.size() : 0;
@@ -329,6 +392,7 @@ class SkeletonConnections final : public Method {
     Options options_;
     NodeLookup lookup_;
     LengthPicks picks_;
+    std::optional<ImportanceRecords> firstRecords_;
     SkeletonDensity density_;
     std::vector<std::uint32_t> slot_;  // by node: place in used_, kNone where not accepted
     std::vector<std::uint32_t> used_;  // accepted nodes
@@ -349,7 +413,8 @@ MethodRow skeletonRow() {
     row.summary = "light vertices resampled at the nodes of the empty space's skeleton";
     row.techniques = {.hits = true, .connects = true, .splats = true};
     row.needsSkeleton = true;
-    row.parts = {"visible", "unoccluded", "uniform", "fallback"};
+    row.parts = {"visible",     "unoccluded",        "uniform",        "fallback",
+                 "record_full", "record_unoccluded", "record_bounded", "record_uniform"};
     row.parameters = {
         lightPathsParameter(),
         {"candidates", Kind::Integer, 1024, 1, 1e6, "light subpaths in the pool, N"},
@@ -389,6 +454,10 @@ MethodRow skeletonRow() {
         lengthsParameter(),
         {"voxels.resolution", Kind::Integer, 128, 8, 1024,
          "voxels along the longest side of the skeleton's cache"},
+        {"record_density", Kind::Real, 0, 0, 16,
+         "eye subpaths that leave an importance record for first eye vertices, per pixel; 0: nodes "
+         "serve them as well"},
+        {"records", Kind::Integer, 3, 1, 16, "records that serve a first eye vertex"},
         nextEventParameter(false),
         presetParameter()};
     row.paper = {{"first_connections", 0}, {"weights", 0}, {"lengths", 0}};
@@ -406,6 +475,11 @@ MethodRow skeletonRow() {
         o.picks = picksOf(s);
         o.everyLength = s.integer("lengths") == 0;
         o.nextEvent = s.on("next_event");
+        if (s.real("record_density") > 0.0) {
+            o.firstRecords = {
+                o.subpaths, s.real("record_density"), int(s.integer("records")), kEarlierRecords,
+                o.aware,    CachePoints::Which::First};
+        }
         return std::make_unique<SkeletonConnections>(o);
     };
     return row;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
@@ -86,6 +87,54 @@ TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
     const CachePoints none;
     EXPECT_EQ(none.serving(PathVertex{}), kNone);
     EXPECT_TRUE(none.around(kNone).empty());
+}
+
+/// Lens, mirror, two surfaces that scatter.
+class BehindAMirror final : public PathSpace {
+  public:
+    BehindAMirror() : tables_(std::vector<float>{1.5f}) {
+        for (std::size_t i = 0; i < path_.size(); ++i) {
+            PathVertex& v = path_[i];
+            v.index = std::uint16_t(i);
+            v.position = {float(i), 0, 0};
+            if (i == 0) {
+                v.kind = VertexKind::Lens;
+                continue;
+            }
+            Bsdf::Parameters p;
+            p.baseColor = Rgb(0.5f);
+            p.metallic = i == 1 ? 1.0f : 0.0f;
+            p.roughness = i == 1 ? 0.0f : 1.0f;
+            v.ng = {0, 0, 1};
+            v.bsdf = Bsdf(p, v.ng, v.ng, tables_);
+            v.event = i == 1 ? ScatterEvent::DeltaReflection : ScatterEvent::Smooth;
+        }
+    }
+    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
+        out.assign(path_.begin(), path_.end());
+    }
+    Arrival arrival(Subpath, Subpath, bool) const override { return {}; }
+    bool visible(const PathVertex&, const PathVertex&, RayTally&) const override { return true; }
+    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
+
+  private:
+    AlbedoTables tables_;
+    std::array<PathVertex, 4> path_;
+};
+
+TEST(CachePoints, canBeFirstVerticesAlone) {
+    const ThreadPool threads(1);
+    const BehindAMirror space;
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 5, 3, statistics};
+    const CachePoints all(context, 1.0, 3, 0);
+    const CachePoints first(context, 1.0, 3, 0, CachePoints::Which::First);
+    ASSERT_EQ(all.size(), 6u) << "three paths, and nothing is connected at a mirror";
+    ASSERT_EQ(first.size(), 3u);
+    for (std::uint32_t i = 0; i < first.size(); ++i) {
+        EXPECT_EQ(first.position(i).x, 2.0f) << "what is seen in the mirror, of every path";
+        EXPECT_EQ(first.eye(i)[0].index, 1) << "with its predecessor";
+    }
 }
 
 /// One eye path from above to a surface at the origin.

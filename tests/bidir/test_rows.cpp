@@ -187,6 +187,15 @@ MethodRow mappedSkeletonRow() {
     return row;
 }
 
+MethodRow recordsFirstRow() {
+    MethodRow row = mappedSkeletonRow();
+    row.name = "test-skelbpt-records-first";
+    for (Parameter& p : row.parameters) {
+        if (p.name == "record_density") p.defaultValue = 0.1;
+    }
+    return row;
+}
+
 MethodRow mappedSubspaceRow() {
     MethodRow row = subspaceRow();
     row.name = "test-spcbpt-mapped";
@@ -207,6 +216,7 @@ std::vector<MethodRow> allRows() {
     rows.push_back(potpourriRow());
     rows.push_back(hashedDensityRow());
     rows.push_back(mappedSkeletonRow());
+    rows.push_back(recordsFirstRow());
     rows.push_back(mappedSubspaceRow());
     return rows;
 }
