@@ -1,0 +1,117 @@
+// Two-stage resampling: that the weights believe what the second stage does.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/material/albedo_tables.h"
+#include "libcore/methods/methods.h"
+#include "tests/bidir/finite_space.h"
+
+namespace lacuna::test {
+namespace {
+
+/// One eye path from above to a surface at the origin. Light vertices arrive with their throughput
+/// and one G, and are seen but for those next to the origin.
+class OneSurface final : public PathSpace {
+  public:
+    static constexpr double kGeometry = 1e-3;  // less than any light vertex really has
+
+    OneSurface() : tables_(std::vector<float>{1.5f}) {
+        Bsdf::Parameters p;
+        p.baseColor = Rgb(0.5f);
+        eye_[0].kind = VertexKind::Lens;
+        eye_[0].position = {0, 1, 2};
+        PathVertex& surface = eye_[1];
+        surface.index = 1;
+        surface.position = {0, 0, 0};
+        surface.ng = {0, 0, 1};
+        surface.toPrevious = normalize(eye_[0].position);
+        surface.bsdf = Bsdf(p, surface.ng, surface.ng, tables_);
+    }
+    Subpath eye() const { return eye_; }
+
+    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
+        out.assign(eye_.begin(), eye_.end());
+    }
+    Arrival arrival(Subpath light, Subpath, bool) const override {
+        return {light.back().throughput, kGeometry};
+    }
+    bool visible(const PathVertex& light, const PathVertex&, RayTally&) const override {
+        return length(light.position) > 0.01f;
+    }
+    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
+
+  private:
+    AlbedoTables tables_;
+    std::array<PathVertex, 2> eye_;
+};
+
+// Where every iteration has the same pool and a cluster is a vertex, Q2 is this pool's, and what
+// the second stage gives a vertex beyond its reserve is what the belief is exact for:
+// n r = 1 / (1/M1 + (1 - 1/M1) w), w the weight of the pick. The reserve goes to the vertex next to
+// the surface: without its share 1 - d the belief would be 1 / (1 - d) times too high.
+TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
+    constexpr int kSubpaths = 6;
+    LightPool pool;
+    pool.reset(kSubpaths);
+    for (int i = 0; i < kSubpaths; ++i) {
+        std::vector<PathVertex> path(2);
+        for (int v = 0; v < 2; ++v) {
+            path[v].kind = VertexKind::LightSource;
+            path[v].position = i == 0 ? Vec3{0, 0, 1e-4f} : Vec3{0.4f * float(i), 0, 1.5f};
+            path[v].throughput = Rgb(float(1 + i * i));
+            path[v].index = std::uint16_t(v);
+        }
+        pool.add(path, 12);
+    }
+    const OneSurface space;
+    const ThreadPool threads(1);
+    const MethodRow row = twoStageResamplingRow();
+    for (const char* defensive : {"defensive=0.25", "defensive=0.7"}) {
+        SCOPED_TRACE(defensive);
+        IterationStatistics statistics;
+        IterationContext context{space, threads, 41, 1, statistics};
+        const std::vector<std::string> settings = {"candidates=6", "second_candidates=1000000",
+                                                   "cache_density=1", defensive};
+        const auto method = row.create(resolve(row, settings));
+        for (std::uint32_t iteration = 0; iteration < 3; ++iteration) {
+            method->freeze(iteration);
+            method->prepare(pool, context);
+            method->observe(pool, context);
+        }
+        const ConnectionDensity& density = method->freeze(3);
+        method->prepare(pool, context);
+
+        const FiniteSpace lights(3);
+        std::vector<double> believed(kSubpaths), picked(kSubpaths);
+        Rng rng(42, 0, StreamKind::EyePath, 0);
+        ProposalSink sink;
+        for (int draw = 0; draw < 4000; ++draw) {
+            sink.clear();
+            const Subpath z = space.eye();
+            method->select({z.back(), z, {}, 0, 3, lights}, rng, sink);
+            for (const Proposal& p : sink.proposals()) {
+                if (p.light.size() != 2) continue;
+                const PathVertex& y = p.light.back();
+                const auto i = std::size_t(std::lround(y.position.x / 0.4f));
+                Connection c{};
+                c.eye = {&z[1], &z[0], 2, {}};
+                c.order = 1;
+                c.light = {&y, &p.light[0], 2, Rgb(1.0f)};
+                c.beta = y.throughput;
+                c.geometry = OneSurface::kGeometry;
+                believed[i] = density.effectiveSamples(c);
+                picked[i] = 1.0 / (1.0 / kSubpaths + (1.0 - 1.0 / kSubpaths) * p.weight);
+            }
+        }
+        for (std::size_t i = 1; i < kSubpaths; ++i) {
+            ASSERT_GT(picked[i], 0.0) << i;
+            EXPECT_NEAR(believed[i] / picked[i], 1.0, 1e-4) << i;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
