@@ -8,6 +8,7 @@
 #include "libcore/methods/methods.h"
 #include "libcore/methods/sight_map.h"
 #include "libcore/skeleton/node_map.h"
+#include "tests/bidir/beliefs.h"
 #include "tests/bidir/finite_space.h"
 
 namespace lacuna::test {
@@ -133,13 +134,7 @@ TEST(SightMap, skelbptBelievesWhatItPicks) {
     const std::vector<std::string> settings = {"candidates=6", "choice=mass", "node_acceptance=0"};
     const auto method = row.create(resolve(row, settings));
     method->useSkeleton(oneNode());
-    for (std::uint32_t iteration = 0; iteration < 2; ++iteration) {
-        method->freeze(iteration);
-        method->prepare(pool, context);
-        method->observe(pool, context);
-    }
-    const ConnectionDensity& density = method->freeze(2);
-    method->prepare(pool, context);
+    const ConnectionDensity& density = settle(*method, pool, context, 2);
 
     std::vector<PathVertex> eye;
     RayTally tally;
@@ -147,30 +142,12 @@ TEST(SightMap, skelbptBelievesWhatItPicks) {
     do {
         space.traceEye(rng, tally, eye);
     } while (eye.size() < 2 || !eye[1].connectable());
-    const FiniteSpace lights(3);
-    std::vector<double> believed(kSubpaths), picked(kSubpaths);
-    ProposalSink sink;
-    for (int draw = 0; draw < 4000; ++draw) {
-        sink.clear();
-        const Subpath z{eye.data(), 2};
-        method->select({z.back(), z, {}, 0, 2, lights}, rng, sink);
-        for (const Proposal& p : sink.proposals()) {
-            if (p.light.size() != 2) continue;
-            const PathVertex& y = p.light.back();
-            const auto i = std::size_t(std::lround(y.position.y / 0.4f));
-            Connection c{};
-            c.eye = {&eye[1], &eye[0], 2, {}};
-            c.order = 1;
-            c.light = {&y, &p.light[0], 2, {}};
-            c.beta = y.throughput;
-            c.geometry = 1.0;
-            believed[i] = density.effectiveSamples(c);
-            picked[i] = 1.0 / (1.0 / kSubpaths + (1.0 - 1.0 / kSubpaths) * p.weight);
-        }
-    }
+    const auto found =
+        beliefs(*method, density, {eye.data(), 2}, kSubpaths, 1.0,
+                [](const PathVertex& y) { return std::size_t(std::lround(y.position.y / 0.4f)); });
     for (std::size_t i = 0; i < kSubpaths; ++i) {
-        ASSERT_GT(picked[i], 0.0) << i;
-        EXPECT_NEAR(believed[i] / picked[i], 1.0, 1e-6) << i;
+        ASSERT_GT(found[i].picked, 0.0) << i;
+        EXPECT_NEAR(found[i].believed / found[i].picked, 1.0, 1e-6) << i;
     }
 }
 

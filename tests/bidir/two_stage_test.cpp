@@ -7,7 +7,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/material/albedo_tables.h"
 #include "libcore/methods/methods.h"
-#include "tests/bidir/finite_space.h"
+#include "tests/bidir/beliefs.h"
 
 namespace lacuna::test {
 namespace {
@@ -76,39 +76,13 @@ TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
         const std::vector<std::string> settings = {"candidates=6", "second_candidates=1000000",
                                                    "cache_density=1", defensive};
         const auto method = row.create(resolve(row, settings));
-        for (std::uint32_t iteration = 0; iteration < 3; ++iteration) {
-            method->freeze(iteration);
-            method->prepare(pool, context);
-            method->observe(pool, context);
-        }
-        const ConnectionDensity& density = method->freeze(3);
-        method->prepare(pool, context);
-
-        const FiniteSpace lights(3);
-        std::vector<double> believed(kSubpaths), picked(kSubpaths);
-        Rng rng(42, 0, StreamKind::EyePath, 0);
-        ProposalSink sink;
-        for (int draw = 0; draw < 4000; ++draw) {
-            sink.clear();
-            const Subpath z = space.eye();
-            method->select({z.back(), z, {}, 0, 3, lights}, rng, sink);
-            for (const Proposal& p : sink.proposals()) {
-                if (p.light.size() != 2) continue;
-                const PathVertex& y = p.light.back();
-                const auto i = std::size_t(std::lround(y.position.x / 0.4f));
-                Connection c{};
-                c.eye = {&z[1], &z[0], 2, {}};
-                c.order = 1;
-                c.light = {&y, &p.light[0], 2, Rgb(1.0f)};
-                c.beta = y.throughput;
-                c.geometry = OneSurface::kGeometry;
-                believed[i] = density.effectiveSamples(c);
-                picked[i] = 1.0 / (1.0 / kSubpaths + (1.0 - 1.0 / kSubpaths) * p.weight);
-            }
-        }
+        const ConnectionDensity& density = settle(*method, pool, context, 3);
+        const auto found = beliefs(
+            *method, density, space.eye(), kSubpaths, OneSurface::kGeometry,
+            [](const PathVertex& y) { return std::size_t(std::lround(y.position.x / 0.4f)); });
         for (std::size_t i = 1; i < kSubpaths; ++i) {
-            ASSERT_GT(picked[i], 0.0) << i;
-            EXPECT_NEAR(believed[i] / picked[i], 1.0, 1e-4) << i;
+            ASSERT_GT(found[i].picked, 0.0) << i;
+            EXPECT_NEAR(found[i].believed / found[i].picked, 1.0, 1e-4) << i;
         }
     }
 }
