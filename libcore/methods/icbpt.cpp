@@ -45,9 +45,8 @@ class RecordDensity final : public ConnectionDensity {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
         const double chance = picks_.chance(c.light.count, c.order);
         if (!options_.records.aware) return chance * options_.credit;
-        const PathVertex& z = *c.eye.vertex;
-        const std::uint32_t serving = z.tag != kNone ? z.tag : records_.nearest(z);
-        const double r = records_.samplesOf(c, serving, picks_.repeats(c.light.count, c.order));
+        const double r = records_.samplesOf(c, records_.serving(*c.eye.vertex),
+                                            picks_.repeats(c.light.count, c.order));
         return chance * withEyeShare(r, c.order, options_.eyeShare);
     }
 
@@ -77,8 +76,7 @@ class ImportanceCaching final : public Method {
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (options_.nextEvent) proposeFreshLight(context, rng, sink);
-        const PathVertex& z = context.vertex;
-        const std::uint32_t serving = z.tag != kNone ? z.tag : records_.nearest(z);
+        const std::uint32_t serving = records_.serving(context.vertex);
         const auto m = double(options_.records.subpaths);
         picks_.forEachPick(vertices_, context.order(), rng, [&](int s, double u, double n) {
             const ImportanceRecords::Pick pick = records_.pick(serving, s, u, rng);

@@ -42,7 +42,10 @@ class ImportanceRecords {
 
     explicit ImportanceRecords(const Options& options);
 
-    /// The record that serves an eye vertex without a tag; kNone in the first iteration.
+    /// The record that serves an eye vertex: its tag where it has one; kNone in the first
+    /// iteration.
+    std::uint32_t serving(const PathVertex& eye) const { return points_.serving(eye); }
+    /// The same whatever its tag.
     std::uint32_t nearest(const PathVertex& eye) const { return points_.nearest(eye.position); }
     /// r of a pick among `picks` of its length, at a connection whose eye vertex the record
     /// `serving` serves; kNone: r = picks. Frozen for the iteration.

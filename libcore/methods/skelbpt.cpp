@@ -141,10 +141,11 @@ class SkeletonDensity final : public ConnectionDensity {
 
   private:
     double samplesByRecord(const Connection& c) const {
+        // The tag is a record where the eye walk made the vertex, and a node where the light's did.
         const PathVertex& z = *c.eye.vertex;
-        const bool tagged = c.eye.maker == EdgeMaker::EyeWalk && z.tag != kNone;
-        return firstRecords_->samplesOf(c, tagged ? z.tag : firstRecords_->nearest(z),
-                                        picks_.repeats(c.light.count, c.order));
+        const std::uint32_t serving = c.eye.maker == EdgeMaker::EyeWalk ? firstRecords_->serving(z)
+                                                                        : firstRecords_->nearest(z);
+        return firstRecords_->samplesOf(c, serving, picks_.repeats(c.light.count, c.order));
     }
     /// r of the picks that are made.
     double samplesByNode(const Connection& c) const {
@@ -284,8 +285,7 @@ class SkeletonConnections final : public Method {
 
   private:
     void selectByRecord(const EyeContext& context, Rng& rng, ProposalSink& sink) const {
-        const PathVertex& z = context.vertex;
-        const std::uint32_t serving = z.tag != kNone ? z.tag : firstRecords_->nearest(z);
+        const std::uint32_t serving = firstRecords_->serving(context.vertex);
         const auto m = double(options_.subpaths);
         picks_.forEachPick(vertices_, 1, rng, [&](int s, double u, double n) {
             const ImportanceRecords::Pick pick = firstRecords_->pick(serving, s, u, rng);
