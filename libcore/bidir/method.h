@@ -6,7 +6,6 @@
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -155,11 +154,7 @@ struct EyeContext {
     int t() const { return int(eyePath.size()); }
     const PathVertex& predecessor() const { return eyePath[eyePath.size() - 2]; }
     /// Connection::order of connections with this vertex.
-    int order() const {
-        const auto between = eyePath.subspan(1, eyePath.size() - 2);
-        return 1 + int(std::ranges::count_if(
-                       between, [](const PathVertex& v) { return !isDelta(v.event); }));
-    }
+    int order() const { return connectionOrder(eyePath); }
 };
 
 /// Which techniques a method takes part in; fixed for the render.

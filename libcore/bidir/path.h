@@ -4,6 +4,7 @@
 // from its own end: y_0 on the light, z_0 on the lens.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -61,6 +62,14 @@ static_assert(std::is_trivially_copyable_v<PathVertex>);
 
 /// y_0 .. y_{s-1} or z_0 .. z_{t-1}; the last vertex is the one that is connected.
 using Subpath = std::span<const PathVertex>;
+
+/// Connection::order of connections with the last vertex of an eye subpath z_0 .. z_{t-1}, t >= 2:
+/// 1 for the first one that nothing but mirrors and smooth glass lies before.
+inline int connectionOrder(Subpath eyePath) {
+    const auto between = eyePath.subspan(1, eyePath.size() - 2);
+    return 1 + int(std::ranges::count_if(between,
+                                         [](const PathVertex& v) { return !isDelta(v.event); }));
+}
 
 /// Geometry of the edge between two vertices; symmetric but for the cosines.
 struct Edge {

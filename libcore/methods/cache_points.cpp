@@ -58,16 +58,14 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
     std::vector<Vec3> positions;
     for (const Chunk& chunk : chunks) {
         context.statistics.add(chunk.tally);
-        bool first = true;
         for (const PathVertex& v : chunk.vertices) {
-            if (v.kind == VertexKind::Lens) first = true;
             if (v.kind == VertexKind::Surface && v.connectable() &&
-                (first || which == Which::All)) {
+                (which == Which::All ||
+                 connectionOrder(Subpath(&v - v.index, v.index + 1u)) == 1)) {
                 points_.push_back(std::uint32_t(vertices_.size()));
                 positions.push_back(v.position);
             }
             vertices_.push_back(v);
-            if (v.kind == VertexKind::Surface && !isDelta(v.event)) first = false;
         }
     }
     const double spacing2 = typicalSpacing2(positions);

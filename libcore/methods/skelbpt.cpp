@@ -117,17 +117,16 @@ class SkeletonDensity final : public ConnectionDensity {
     }
     /// First vertices of eye walks are tagged with their record, all others with their nodes.
     void tagWalk(std::span<PathVertex> walk) const override {
-        bool first = firstRecords_ && !walk.empty() && walk.front().kind == VertexKind::Lens;
-        for (PathVertex& v : walk) {
-            if (v.kind != VertexKind::Surface) continue;
-            if (v.tag == kNone && v.connectable()) {
-                if (first) {
-                    v.tag = firstRecords_->nearest(v);
-                } else if (lookup_.skeleton()) {
-                    v.tag = lookup_.bothSides(v);
-                }
+        const bool byRecord =
+            firstRecords_ && !walk.empty() && walk.front().kind == VertexKind::Lens;
+        for (std::size_t i = 1; i < walk.size(); ++i) {
+            PathVertex& v = walk[i];
+            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
+            if (byRecord && connectionOrder(walk.first(i + 1)) == 1) {
+                v.tag = firstRecords_->nearest(v);
+            } else if (lookup_.skeleton()) {
+                v.tag = lookup_.bothSides(v);
             }
-            first = first && isDelta(v.event);
         }
     }
 

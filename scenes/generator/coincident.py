@@ -83,6 +83,7 @@ def _overlap(a: Triangle, b: Triangle, normal: Vec3) -> float:
 def coincident_faces(triangles: Sequence[tuple[str, Triangle]]) -> dict[tuple[str, str], tuple[float, Vec3]]:
     """Pairs of names of nodes whose faces coincide: the area that they share (square metres) and a corner of one of them."""
     planes = [_plane(t) for _, t in triangles]
+    bounds = [[(min(c), max(c)) for c in zip(*t)] for _, t in triangles]
     buckets: dict[tuple[int, ...], list[int]] = defaultdict(list)
     for i, (n, d) in enumerate(planes):
         # A triangle near a bucket's border lies in both, so that neighbours always meet in one.
@@ -94,7 +95,6 @@ def coincident_faces(triangles: Sequence[tuple[str, Triangle]]) -> dict[tuple[st
     found: dict[tuple[str, str], tuple[float, Vec3]] = {}
     seen: set[tuple[int, int]] = set()
     for members in buckets.values():
-        bounds = {i: [(min(c), max(c)) for c in zip(*triangles[i][1])] for i in members}
         members.sort(key=lambda i: bounds[i][0][0])
         for at, i in enumerate(members):
             n, d = planes[i]

@@ -31,16 +31,8 @@ Settings settingsOf(const MethodRow& row, const Shot& shot) {
     return resolve(row, assignments);
 }
 
-/// Standard errors, estimated from `iterations`, that one of `tests` two-sided tests exceeds with
-/// probability kFalseAlarm.
 double threshold(double tests, std::uint64_t iterations) {
-    const double significance = sidak(kFalseAlarm, tests);
-    double low = 0, high = 40;
-    for (int i = 0; i < 100; ++i) {
-        const double z = 0.5 * (low + high);
-        (normalTail(z, 2) > significance ? low : high) = z;
-    }
-    return studentQuantile(low, double(iterations) - 1.0);
+    return allowedErrors(kFalseAlarm, tests, double(iterations) - 1.0);
 }
 
 float channel(const Rgb& c, int i) {

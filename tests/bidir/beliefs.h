@@ -9,6 +9,22 @@
 
 namespace lacuna::test {
 
+/// Light subpaths of y_0 and y_1, both as describe(i, vertex) makes those of subpath i.
+template <class Describe>
+LightPool poolOfPairs(int subpaths, const Describe& describe) {
+    LightPool pool;
+    pool.reset(std::uint64_t(subpaths));
+    for (int i = 0; i < subpaths; ++i) {
+        PathVertex y;
+        y.kind = VertexKind::LightSource;
+        describe(i, y);
+        std::vector<PathVertex> path(2, y);
+        path[1].index = 1;
+        pool.add(path, 12);
+    }
+    return pool;
+}
+
 /// Runs `iterations` with the same pool and prepares one more, whose density it returns.
 inline const ConnectionDensity& settle(Method& method, const LightPool& pool,
                                        IterationContext& context, std::uint32_t iterations) {

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
-#include "libcore/material/albedo_tables.h"
 #include "tests/bidir/finite_space.h"
+#include "tests/bidir/fixed_eye_path.h"
 
 namespace lacuna::test {
 namespace {
@@ -90,36 +89,18 @@ TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
 }
 
 /// Lens, mirror, two surfaces that scatter.
-class BehindAMirror final : public PathSpace {
+class BehindAMirror final : public FixedEyePath {
   public:
-    BehindAMirror() : tables_(std::vector<float>{1.5f}) {
-        for (std::size_t i = 0; i < path_.size(); ++i) {
-            PathVertex& v = path_[i];
-            v.index = std::uint16_t(i);
-            v.position = {float(i), 0, 0};
-            if (i == 0) {
-                v.kind = VertexKind::Lens;
-                continue;
-            }
-            Bsdf::Parameters p;
-            p.baseColor = Rgb(0.5f);
-            p.metallic = i == 1 ? 1.0f : 0.0f;
-            p.roughness = i == 1 ? 0.0f : 1.0f;
-            v.ng = {0, 0, 1};
-            v.bsdf = Bsdf(p, v.ng, v.ng, tables_);
-            v.event = i == 1 ? ScatterEvent::DeltaReflection : ScatterEvent::Smooth;
-        }
+    BehindAMirror() {
+        Bsdf::Parameters mirror, grey;
+        mirror.baseColor = grey.baseColor = Rgb(0.5f);
+        mirror.metallic = 1.0f;
+        mirror.roughness = 0.0f;
+        addLens({0, 0, 0});
+        addSurface({1, 0, 0}, mirror, ScatterEvent::DeltaReflection);
+        addSurface({2, 0, 0}, grey);
+        addSurface({3, 0, 0}, grey);
     }
-    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
-        out.assign(path_.begin(), path_.end());
-    }
-    Arrival arrival(Subpath, Subpath, bool) const override { return {}; }
-    bool visible(const PathVertex&, const PathVertex&, RayTally&) const override { return true; }
-    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
-
-  private:
-    AlbedoTables tables_;
-    std::array<PathVertex, 4> path_;
 };
 
 TEST(CachePoints, canBeFirstVerticesAlone) {
@@ -138,32 +119,16 @@ TEST(CachePoints, canBeFirstVerticesAlone) {
 }
 
 /// One eye path from above to a surface at the origin.
-class OnePoint final : public PathSpace {
+class OnePoint final : public FixedEyePath {
   public:
-    explicit OnePoint(float transmission) : tables_(std::vector<float>{1.5f}) {
+    explicit OnePoint(float transmission) {
         Bsdf::Parameters p;
         p.baseColor = Rgb(0.5f);
         p.roughness = 0.5f;
         p.transmission = transmission;
-        lens_.kind = VertexKind::Lens;
-        lens_.position = {0, 1, 2};
-        surface_.kind = VertexKind::Surface;
-        surface_.index = 1;
-        surface_.position = {0, 0, 0};
-        surface_.ng = {0, 0, 1};
-        surface_.toPrevious = normalize(lens_.position);
-        surface_.bsdf = Bsdf(p, surface_.ng, surface_.ng, tables_);
+        addLens({0, 1, 2});
+        addSurface({0, 0, 0}, p);
     }
-    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
-        out = {lens_, surface_};
-    }
-    Arrival arrival(Subpath, Subpath, bool) const override { return {}; }
-    bool visible(const PathVertex&, const PathVertex&, RayTally&) const override { return true; }
-    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
-
-  private:
-    AlbedoTables tables_;
-    PathVertex lens_, surface_;
 };
 
 TEST(CachePoints, weightsDoNotCountOnWhatIsBehindASurface) {

@@ -113,19 +113,11 @@ std::shared_ptr<const Skeleton> oneNode() {
 // is what the belief is exact for: r = 1 / (1/M + (1 - 1/M) / R) with R = M P(y), seen or not.
 TEST(SightMap, skelbptBelievesWhatItPicks) {
     constexpr int kSubpaths = 6;
-    LightPool pool;
-    pool.reset(kSubpaths);
-    for (int i = 0; i < kSubpaths; ++i) {
-        std::vector<PathVertex> path(2);
-        for (int v = 0; v < 2; ++v) {
-            path[v].kind = VertexKind::LightSource;
-            path[v].position = {i % 2 == 0 ? 0.9f : 2.0f + 0.3f * float(i), 0.4f * float(i), 0.1f};
-            // What is hidden is bright: taken for seen it would be believed to be picked often.
-            path[v].throughput = Rgb((i % 2 == 0 ? 1.0f : 20.0f) * float(1 + i * i));
-            path[v].index = std::uint16_t(v);
-        }
-        pool.add(path, 12);
-    }
+    const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
+        y.position = {i % 2 == 0 ? 0.9f : 2.0f + 0.3f * float(i), 0.4f * float(i), 0.1f};
+        // What is hidden is bright: taken for seen it would be believed to be picked often.
+        y.throughput = Rgb((i % 2 == 0 ? 1.0f : 20.0f) * float(1 + i * i));
+    });
     const BehindAWall space;
     const ThreadPool threads(1);
     IterationStatistics statistics;

@@ -1,39 +1,27 @@
 // Two-stage resampling: that the weights believe what the second stage does.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
-#include "libcore/material/albedo_tables.h"
 #include "libcore/methods/methods.h"
 #include "tests/bidir/beliefs.h"
+#include "tests/bidir/fixed_eye_path.h"
 
 namespace lacuna::test {
 namespace {
 
 /// One eye path from above to a surface at the origin. Light vertices arrive with their throughput
 /// and one G, and are seen but for those next to the origin.
-class OneSurface final : public PathSpace {
+class OneSurface final : public FixedEyePath {
   public:
     static constexpr double kGeometry = 1e-3;  // less than any light vertex really has
 
-    OneSurface() : tables_(std::vector<float>{1.5f}) {
+    OneSurface() {
         Bsdf::Parameters p;
         p.baseColor = Rgb(0.5f);
-        eye_[0].kind = VertexKind::Lens;
-        eye_[0].position = {0, 1, 2};
-        PathVertex& surface = eye_[1];
-        surface.index = 1;
-        surface.position = {0, 0, 0};
-        surface.ng = {0, 0, 1};
-        surface.toPrevious = normalize(eye_[0].position);
-        surface.bsdf = Bsdf(p, surface.ng, surface.ng, tables_);
-    }
-    Subpath eye() const { return eye_; }
-
-    void traceEye(Rng&, RayTally&, std::vector<PathVertex>& out) const override {
-        out.assign(eye_.begin(), eye_.end());
+        addLens({0, 1, 2});
+        addSurface({0, 0, 0}, p);
     }
     Arrival arrival(Subpath light, Subpath, bool) const override {
         return {light.back().throughput, kGeometry};
@@ -41,11 +29,6 @@ class OneSurface final : public PathSpace {
     bool visible(const PathVertex& light, const PathVertex&, RayTally&) const override {
         return length(light.position) > 0.01f;
     }
-    float reach(const Vec3&, const Vec3&, RayTally&) const override { return 1.0f; }
-
-  private:
-    AlbedoTables tables_;
-    std::array<PathVertex, 2> eye_;
 };
 
 // Where every iteration has the same pool and a cluster is a vertex, Q2 is this pool's, and what
@@ -54,18 +37,10 @@ class OneSurface final : public PathSpace {
 // the surface: without its share 1 - d the belief would be 1 / (1 - d) times too high.
 TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
     constexpr int kSubpaths = 6;
-    LightPool pool;
-    pool.reset(kSubpaths);
-    for (int i = 0; i < kSubpaths; ++i) {
-        std::vector<PathVertex> path(2);
-        for (int v = 0; v < 2; ++v) {
-            path[v].kind = VertexKind::LightSource;
-            path[v].position = i == 0 ? Vec3{0, 0, 1e-4f} : Vec3{0.4f * float(i), 0, 1.5f};
-            path[v].throughput = Rgb(float(1 + i * i));
-            path[v].index = std::uint16_t(v);
-        }
-        pool.add(path, 12);
-    }
+    const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
+        y.position = i == 0 ? Vec3{0, 0, 1e-4f} : Vec3{0.4f * float(i), 0, 1.5f};
+        y.throughput = Rgb(float(1 + i * i));
+    });
     const OneSurface space;
     const ThreadPool threads(1);
     const MethodRow row = twoStageResamplingRow();

@@ -42,6 +42,18 @@ inline double sidak(double total, double tests) {
     return -std::expm1(std::log1p(-total) / tests);
 }
 
+/// Standard errors, estimated from dof + 1 samples, that one of `tests` two-sided tests exceeds
+/// with probability `total`.
+inline double allowedErrors(double total, double tests, double dof) {
+    const double significance = sidak(total, tests);
+    double low = 0.0, high = 40.0;
+    for (int i = 0; i < 100; ++i) {
+        const double z = 0.5 * (low + high);
+        (normalTail(z, 2) > significance ? low : high) = z;
+    }
+    return studentQuantile(low, dof);
+}
+
 /// Mean and its standard error, in one pass.
 class Moments {
   public:

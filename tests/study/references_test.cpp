@@ -71,9 +71,7 @@ TEST_F(ShippedReferences, ShowWhatIsRenderedHere) {
             << "the scene has changed: render the reference anew (tests/README.md)";
 
         const double strips = 3.0 * (here.width() + here.height());
-        double allowed = 0.0;
-        while (normalTail(allowed, 2) > sidak(kFalseAlarm, strips)) allowed += 0.01;
-        allowed = studentQuantile(allowed, kIterations - 1);
+        const double allowed = allowedErrors(kFalseAlarm, strips, kIterations - 1);
         for (const std::string channel : {"R", "G", "B"}) {
             const double worst = worstStrip(reference, here, channel);
             RecordProperty(channel + " worst standard errors", std::to_string(worst));
