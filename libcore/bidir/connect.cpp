@@ -39,8 +39,13 @@ void fillEyePart(FullPath& path, Subpath eye) {
 /// before roots and divisions. Directions so grazing that rounding could turn this over scatter
 /// nothing either (kMinCosine).
 bool liesBehind(const PathVertex& v, const PathVertex& other) {
-    return v.kind == VertexKind::Surface && !other.infinite() && !v.bsdf.transmits() &&
-           leadsBehind(v, other.position - v.position);
+    return v.kind == VertexKind::Surface && !v.bsdf.transmits() &&
+           leadsBehind(v, other.infinite() ? other.position : other.position - v.position);
+}
+
+/// Whether `v` is on a light that sends nothing along `direction`.
+bool isDark(const Lights& lights, const PathVertex& v, const Vec3& direction) {
+    return v.index == 0 && !(emissionOf(lights, v, direction).profile > 0.0f);
 }
 
 /// The path's size and who made its edges, but for a connection's one.
@@ -95,13 +100,15 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     if (!projection || !crop.contains(int(projection->raster.x), int(projection->raster.y))) {
         return std::nullopt;
     }
+    if (liesBehind(y, z0) || isDark(lights, y, -edge.direction) ||
+        !connected(walker.scene(), y, z0, RayKind::Splat, tally)) {
+        return std::nullopt;
+    }
     const EndValue end = lightEnd(lights, y, -edge.direction);
     const Rgb through = transmittance(walker.scene().absorption(), z0, edge.direction, y);
     const Closed closed{y.throughput * end.f * through * (edge.geometry * projection->pdfW), 1,
                         projection->raster};
-    if (isBlack(closed.contribution) || !connected(walker.scene(), y, z0, RayKind::Splat, tally)) {
-        return std::nullopt;
-    }
+    if (isBlack(closed.contribution)) return std::nullopt;
 
     setEdges(path, light.size(), 1);
     const int k = path.edges;
@@ -126,17 +133,17 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
     const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
     if (!(edge.geometry > 0.0f)) return std::nullopt;
     const Lights& lights = walker.scene().lights();
+    if (isDark(lights, y, edge.direction) ||
+        !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
+        return std::nullopt;
+    }
     const EndValue atLight = lightEnd(lights, y, edge.direction);
-    if (isBlack(atLight.f)) return std::nullopt;
     const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
     const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
     const Closed closed{z.throughput * atEye.f * atLight.f * through * y.throughput * edge.geometry,
                         int(eye.size()),
                         {}};
-    if (isBlack(closed.contribution) ||
-        !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
-        return std::nullopt;
-    }
+    if (isBlack(closed.contribution)) return std::nullopt;
 
     const int s = int(light.size());
     setEdges(path, light.size(), eye.size());

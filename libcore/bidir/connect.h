@@ -1,7 +1,8 @@
 // Full paths from subpaths: the three ways in which a strategy closes a path (hit, splat, connect),
 // each giving the contribution without its weight, and the FullPath that the weight is made from.
-// In the order of what it costs to find out that a path carries nothing: contribution, visibility;
-// the FullPath only where there is something to weigh.
+// In the order of what it costs to find out that a path carries nothing: cosines and the light's
+// own profile; visibility, because where light has to find its way most connections are blocked;
+// BSDFs, which are seldom zero; the FullPath only where there is something to weigh.
 #pragma once
 
 #include <optional>
