@@ -8,24 +8,25 @@ namespace lacuna {
 
 DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
     const double largest = largestWeight(weights, "discrete distribution");
-    cdf_.resize(weights.size());
+    cdf_.resize(weights.size() + 1);
     if (largest == 0.0) return;
 
     // Relative to the largest weight, so that the sum neither overflows nor goes denormal.
+    const std::span<double> ends = std::span(cdf_).subspan(1);
     double sum = 0.0;
     std::size_t lastPositive = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         sum += weights[i] / largest;
-        cdf_[i] = sum;
+        ends[i] = sum;
         if (weights[i] > 0.0) lastPositive = i;
     }
-    for (std::size_t i = 0; i < lastPositive; ++i) cdf_[i] = std::min(cdf_[i] / sum, 1.0);
-    for (std::size_t i = lastPositive; i < cdf_.size(); ++i) cdf_[i] = 1.0;
+    for (std::size_t i = 0; i < lastPositive; ++i) ends[i] = std::min(ends[i] / sum, 1.0);
+    for (std::size_t i = lastPositive; i < ends.size(); ++i) ends[i] = 1.0;
     total_ = sum * largest;
 
-    guide_.reserve(cdf_.size() + 1);
-    for (std::size_t k = 0, i = 0; k < cdf_.size(); ++k) {
-        while (bucket(cdf_[i]) < k) ++i;  // ends: the last entry is one
+    guide_.reserve(ends.size() + 1);
+    for (std::size_t k = 0, i = 0; k < ends.size(); ++k) {
+        while (bucket(ends[i]) < k) ++i;  // it ends: the last entry is one
         guide_.push_back(std::uint32_t(i));
     }
     guide_.push_back(std::uint32_t(lastPositive));

@@ -22,13 +22,12 @@ class DiscreteDistribution {
 
     /// No outcome can be picked: all weights are zero, or there are none.
     bool empty() const { return total_ <= 0.0; }
-    std::size_t size() const { return cdf_.size(); }
+    std::size_t size() const { return cdf_.size() - 1; }
     /// Sum of the weights.
     double total() const { return total_; }
     /// Realised probability of `index`, zero out of range.
     double pmf(std::size_t index) const {
-        if (index >= cdf_.size()) return 0.0;
-        return index == 0 ? cdf_[0] : cdf_[index] - cdf_[index - 1];
+        return index < size() ? cdf_[index + 1] - cdf_[index] : 0.0;
     }
 
     struct Pick {
@@ -40,14 +39,18 @@ class DiscreteDistribution {
     };
     /// u in [0, 1). Not to be called when empty().
     Pick sample(double u) const {
-        const std::size_t k = std::min(bucket(u), cdf_.size() - 1);
-        // First entry above u: an outcome of zero width can never be it. All entries of smaller
-        // buckets are at most u, and the first one of a larger bucket is above it.
-        const double* const it =
-            std::upper_bound(cdf_.data() + guide_[k], cdf_.data() + guide_[k + 1], u);
-        const auto index = std::size_t(it - cdf_.data());
-        const double below = index == 0 ? 0.0 : cdf_[index - 1];
-        return {std::uint32_t(index), cdf_[index] - below, u - below};
+        const std::size_t k = std::min(bucket(u), size() - 1);
+        // The first outcome that ends above u: one of zero width can never be it. Those that end in
+        // smaller buckets end at most at u, and the first one that ends in a larger one, above it.
+        const double* const ends = cdf_.data() + 1;
+        std::size_t index = guide_[k];
+        // A sum and not a branch: no predictor could know on which side of it a random number is,
+        // and where outcomes are about equally likely it is the only step.
+        index += std::size_t(ends[index] <= u);
+        if (ends[index] <= u) {
+            index = std::size_t(std::upper_bound(ends + index, ends + guide_[k + 1], u) - ends);
+        }
+        return {std::uint32_t(index), cdf_[index + 1] - cdf_[index], u - cdf_[index]};
     }
 
     std::uint64_t bytes() const {
@@ -56,9 +59,9 @@ class DiscreteDistribution {
 
   private:
     /// Which guide entry serves u; monotonic, whatever rounding does.
-    std::size_t bucket(double u) const { return std::size_t(u * double(cdf_.size())); }
+    std::size_t bucket(double u) const { return std::size_t(u * double(size())); }
 
-    std::vector<double> cdf_;
+    std::vector<double> cdf_ = {0.0};   // where each outcome begins, and the end of the last one
     std::vector<std::uint32_t> guide_;  // by bucket: the first outcome that it may pick; one more
     double total_ = 0.0;
 };
