@@ -45,7 +45,8 @@ struct BidirIntegrator::Worker {
     std::array<std::vector<PathVertex>, kTile> eye, light;
     std::vector<Rng> rngs;  // by subpath
     std::vector<Walk> walks;
-    ProposalSink proposals;
+    ProposalSink proposals;                 // for all vertices of an eye path
+    std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}
     FullPath path;
 };
 
@@ -277,23 +278,19 @@ void BidirIntegrator::closeEyePath(std::uint32_t iteration, Subpath path, Subpat
     const auto pixelIndex =
         std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
 
-    Rng selection(settings_.seed, iteration, StreamKind::Connection, filmIndex);
+    select(iteration, path, light, filmIndex, worker);
+    const std::span<const Proposal> proposals = worker.proposals.proposals();
+    std::size_t next = 0;
     for (std::size_t t = 2; t <= path.size(); ++t) {
         const Subpath eye = path.first(t);
-        const PathVertex& z = eye.back();
-        if (techniqueSet_.hits && z.light != kNone) {
+        if (techniqueSet_.hits && eye.back().light != kNone) {
             if (const auto closed = closeHit(walker_, eye, worker.path)) {
                 deliver(*closed, nullptr, 1.0, iteration, filmIndex, pixelIndex, &pixel, worker,
                         chunk);
             }
         }
-        if (!techniqueSet_.connects || z.infinite() || !z.connectable() ||
-            int(t) > settings_.limits.maxDepth) {
-            continue;
-        }
-        worker.proposals.clear();
-        method_.select({z, eye, light, filmIndex, iteration, walker_}, selection, worker.proposals);
-        for (const Proposal& proposal : worker.proposals.proposals()) {
+        for (; next < worker.proposalEnds[t]; ++next) {
+            const Proposal& proposal = proposals[next];
             if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
             const auto closed =
                 closeConnection(walker_, proposal.light, eye, chunk.tally, worker.path);
@@ -301,6 +298,24 @@ void BidirIntegrator::closeEyePath(std::uint32_t iteration, Subpath path, Subpat
             deliver(*closed, &proposal, proposal.weight, iteration, filmIndex, pixelIndex, &pixel,
                     worker, chunk);
         }
+    }
+}
+
+/// For all vertices of the path before the first one is connected: light vertices lie anywhere in
+/// memory, and those that were picked are on their way from there meanwhile.
+void BidirIntegrator::select(std::uint32_t iteration, Subpath path, Subpath light,
+                             std::uint32_t filmIndex, Worker& worker) const {
+    worker.proposals.clear();
+    worker.proposalEnds.assign(path.size() + 1, 0);
+    if (!techniqueSet_.connects) return;
+    Rng rng(settings_.seed, iteration, StreamKind::Connection, filmIndex);
+    for (std::size_t t = 2; t <= path.size(); ++t) {
+        const PathVertex& z = path[t - 1];
+        if (!z.infinite() && z.connectable() && int(t) <= settings_.limits.maxDepth) {
+            method_.select({z, path.first(t), light, filmIndex, iteration, walker_}, rng,
+                           worker.proposals);
+        }
+        worker.proposalEnds[t] = worker.proposals.proposals().size();
     }
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <span>
@@ -82,23 +83,25 @@ struct Proposal {
     std::uint32_t label = 0;  ///< routes the contribution to a layer (distribution, node, subspace)
 };
 
-/// Collects the proposals for one eye vertex; fresh light vertices live in it until it is cleared.
+/// Collects the proposals for the vertices of an eye path; fresh light vertices live in it until it
+/// is cleared.
 class ProposalSink {
   public:
-    static constexpr std::size_t kFreshCapacity = 64;
-
     void clear() {
         proposals_.clear();
         freshCount_ = 0;
     }
     void add(const Proposal& proposal) { proposals_.push_back(proposal); }
-    /// Room for a fresh light vertex; at most kFreshCapacity between two calls of clear().
-    PathVertex& newVertex() { return fresh_.at(freshCount_++); }
+    /// Room for a fresh light vertex, which stays where it is.
+    PathVertex& newVertex() {
+        if (freshCount_ == fresh_.size()) fresh_.emplace_back();
+        return fresh_[freshCount_++];
+    }
     std::span<const Proposal> proposals() const { return proposals_; }
 
   private:
     std::vector<Proposal> proposals_;
-    std::array<PathVertex, kFreshCapacity> fresh_;
+    std::deque<PathVertex> fresh_;
     std::size_t freshCount_ = 0;
 };
 
