@@ -120,18 +120,8 @@ class Classes {
         return double(std::bit_cast<float>(high << 16));
     }
     void tagWalk(std::span<PathVertex> walk) const {
-        if (walk.empty()) return;
-        const bool eye = walk.front().kind == VertexKind::Lens;
-        const auto label = [&](bool ofEye, const PathVertex& v, const PathVertex& predecessor) {
-            return ofEye ? subspaces_->eyeSubspace(v, predecessor)
-                         : subspaces_->lightSubspace(v, &predecessor);
-        };
-        for (std::size_t i = 1; i < walk.size(); ++i) {
-            PathVertex& v = walk[i];
-            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
-            v.tag = Labels(label(eye, v, walk[i - 1]),
-                           i + 1 < walk.size() ? label(!eye, v, walk[i + 1]) : Labels::kUnknown)
-                        .tag();
+        for (std::size_t first = 1; first < walk.size(); first += kTogether) {
+            tagTogether(walk, first, std::min(walk.size(), first + kTogether));
         }
     }
     /// 0 where no light subpath was seen.
@@ -141,6 +131,41 @@ class Classes {
     std::uint32_t window(std::uint32_t light) const { return windows_[light]; }
 
   private:
+    static constexpr std::size_t kTogether = 8;  // vertices, with two descents each
+
+    /// Both labels of the vertices [begin, end) of a walk. The last one's in the other role waits
+    /// for the vertex that it is connected with.
+    void tagTogether(std::span<PathVertex> walk, std::size_t begin, std::size_t end) const {
+        const bool eye = walk.front().kind == VertexKind::Lens;
+        const DecisionTree& own = eye ? subspaces_->eyeTree : subspaces_->lightTree;
+        const DecisionTree& other = eye ? subspaces_->lightTree : subspaces_->eyeTree;
+        struct Labelling {
+            PathVertex* vertex;
+            DecisionTree::Descent own, other;
+        };
+        std::array<Labelling, kTogether> storage;
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            PathVertex& v = walk[i];
+            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
+            storage[count++] = {
+                &v, {own, subpathEnd(v, walk[i - 1])},
+                i + 1 < walk.size() ? DecisionTree::Descent(other, subpathEnd(v, walk[i + 1]))
+                                    : DecisionTree::Descent(Labels::kUnknown)};
+        }
+        const auto labellings = std::span(storage).first(count);
+        for (bool going = true; going;) {
+            going = false;
+            for (Labelling& l : labellings) {
+                going |= l.own.step();
+                going |= l.other.step();
+            }
+        }
+        for (Labelling& l : labellings) {
+            l.vertex->tag = Labels(l.own.label(), l.other.label()).tag();
+        }
+    }
+
     /// The upper half of a float, rounded to nearest; never zero for what is not.
     static std::uint16_t rounded(float g) {
         if (!(g > 0.0f)) return 0;

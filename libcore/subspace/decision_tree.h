@@ -33,6 +33,7 @@ class DecisionTree {
     /// with labels below `labels`.
     DecisionTree(std::vector<Node> nodes, std::uint32_t labels);
 
+    /// The label of the leaf that `end` comes to.
     std::uint32_t operator()(const SubpathEnd& end) const {
         Node n = root_;
         for (std::uint32_t attribute; (attribute = n.code & kLeaf) != kLeaf;) {
@@ -42,6 +43,7 @@ class DecisionTree {
         }
         return n.code >> 4;
     }
+    class Descent;
 
     std::span<const Node> nodes() const { return nodes_; }
     std::size_t leaves() const { return (nodes_.size() + 1) / 2; }
@@ -57,10 +59,37 @@ class DecisionTree {
     void arrange();
 
     std::vector<Node> nodes_;
-    // The same tree in the order of walks: pairs that follow each other on the way down share a
-    // line, so that a walk of d steps fetches about d / 2.3 lines instead of nearly d.
+    // The same tree in the order of descents: pairs that follow each other on the way down share a
+    // line, so that a descent of d steps fetches about d / 2.3 lines instead of nearly d.
     Node root_;
     std::vector<Line> lines_;
+};
+
+/// A look-up, step by step. Each step waits for memory, so that many of them, in whatever trees, are
+/// best taken in turn. The tree must outlive it.
+class DecisionTree::Descent {
+  public:
+    /// One that has come to a leaf already.
+    explicit Descent(std::uint32_t label = 0) : node_{0.0f, label << 4 | kLeaf} {}
+    Descent(const DecisionTree& tree, const SubpathEnd& end)
+        : lines_(tree.lines_.data()), node_(tree.root_), end_(end) {}
+
+    /// One step down; false at a leaf.
+    bool step() {
+        const std::uint32_t attribute = node_.code & kLeaf;
+        if (attribute == kLeaf) return false;
+        const std::uint32_t second = end_.value[attribute] < node_.threshold ? 0u : 1u;
+        const std::uint32_t i = (node_.code >> 4) + second;
+        node_ = lines_[i / kLine].node[i % kLine];
+        return true;
+    }
+    /// Of the leaf that it has come to.
+    std::uint32_t label() const { return node_.code >> 4; }
+
+  private:
+    const Line* lines_ = nullptr;
+    Node node_;
+    SubpathEnd end_;
 };
 
 /// Grows a tree from labelled samples; labels are below `labels`. Samples that no attribute tells
