@@ -36,8 +36,12 @@ class AliasTable {
         const std::size_t k = slotOf(u);
         const Slot& slot = slots_[k];
         const double inside = u * double(slots_.size()) - double(k), edge = double(slot.threshold);
-        if (inside < edge) return {std::uint32_t(k), double(slot.pmf), below1(inside / edge)};
-        return {slot.alias, double(slot.aliasPmf), below1((inside - edge) / (1.0 - edge))};
+        // Selections, not branches: no predictor could know them, and a wrong guess would be found
+        // out when the slot arrives from memory, with all that follows to be done again.
+        const bool own = inside < edge;
+        const double from = own ? 0.0 : edge, width = own ? edge : 1.0 - edge;
+        return {own ? std::uint32_t(k) : slot.alias, double(own ? slot.pmf : slot.aliasPmf),
+                below1((inside - from) / width)};
     }
     /// Asks the cache for what sample(u) will look at. Harmless when empty().
     void prefetch(double u) const {

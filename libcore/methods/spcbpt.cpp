@@ -201,7 +201,8 @@ class SubspaceDensity final : public ConnectionDensity {
         const double q = classes_.q(i), n = options_.picks.at(c.order);
         const double m = double(options_.subpaths) * classes_.window(i);
         if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
-        return 1.0 / ((1.0 / m + (1.0 - 1.0 / m) * q / beta) / (n * gamma) + (1.0 - 1.0 / n) / m);
+        // Both fractions of r brought to one: divisions cost as much as all the rest.
+        return m * n * gamma * beta / (beta + (m - 1.0) * q + (n - 1.0) * gamma * beta);
     }
 
   private:
