@@ -159,21 +159,29 @@ void measureQ(const Scene& scene, Subspaces& subspaces, const TrainSettings& set
             sums[n].q.assign(subspaces.lightCount, 0.0);
             sums[n].count = sums[n].q;
             std::vector<PathVertex> path;
+            std::vector<double> betas;
+            std::vector<DecisionTree::Descent> descents;
             RayTally tally;
             const std::uint64_t begin = (first + n) * kLightPathsPerTask;
             for (std::uint64_t i = begin;
                  i < std::min(settings.lightPaths, begin + kLightPathsPerTask); ++i) {
                 Rng rng(settings.seed, kLightPathIteration, StreamKind::LightPath, i);
                 walker.traceLight(rng, tally, path);
+                betas.clear();
+                descents.clear();
                 for (std::size_t s = 1; s <= path.size(); ++s) {
                     const PathVertex& y = path[s - 1];
                     if (int(y.index) > walker.limits().maxDepth - 2 || !y.connectable()) continue;
                     const double beta = double(mean(y.throughput));
                     if (!std::isfinite(beta)) continue;
-                    const std::uint32_t label =
-                        subspaces.lightSubspace(y, s > 1 ? &path[s - 2] : nullptr);
-                    sums[n].q[label] += beta;
-                    sums[n].count[label] += 1.0;
+                    betas.push_back(beta);
+                    descents.push_back(
+                        subspaces.toLightSubspace(y, s > 1 ? &path[s - 2] : nullptr));
+                }
+                finish(descents);
+                for (std::size_t d = 0; d < descents.size(); ++d) {
+                    sums[n].q[descents[d].label()] += betas[d];
+                    sums[n].count[descents[d].label()] += 1.0;
                 }
             }
         });

@@ -139,30 +139,21 @@ class Classes {
         const bool eye = walk.front().kind == VertexKind::Lens;
         const DecisionTree& own = eye ? subspaces_->eyeTree : subspaces_->lightTree;
         const DecisionTree& other = eye ? subspaces_->lightTree : subspaces_->eyeTree;
-        struct Labelling {
-            PathVertex* vertex;
-            DecisionTree::Descent own, other;
-        };
-        std::array<Labelling, kTogether> storage;
+        std::array<PathVertex*, kTogether> vertices;
+        std::array<DecisionTree::Descent, 2 * kTogether> descents;
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             PathVertex& v = walk[i];
             if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
-            storage[count++] = {
-                &v, {own, subpathEnd(v, walk[i - 1])},
-                i + 1 < walk.size() ? DecisionTree::Descent(other, subpathEnd(v, walk[i + 1]))
-                                    : DecisionTree::Descent(Labels::kUnknown)};
+            descents[2 * count] = {own, subpathEnd(v, walk[i - 1])};
+            descents[2 * count + 1] = i + 1 < walk.size()
+                                          ? DecisionTree::Descent(other, subpathEnd(v, walk[i + 1]))
+                                          : DecisionTree::Descent(Labels::kUnknown);
+            vertices[count++] = &v;
         }
-        const auto labellings = std::span(storage).first(count);
-        for (bool going = true; going;) {
-            going = false;
-            for (Labelling& l : labellings) {
-                going |= l.own.step();
-                going |= l.other.step();
-            }
-        }
-        for (Labelling& l : labellings) {
-            l.vertex->tag = Labels(l.own.label(), l.other.label()).tag();
+        finish(std::span(descents).first(2 * count));
+        for (std::size_t n = 0; n < count; ++n) {
+            vertices[n]->tag = Labels(descents[2 * n].label(), descents[2 * n + 1].label()).tag();
         }
     }
 

@@ -65,8 +65,8 @@ class DecisionTree {
     std::vector<Line> lines_;
 };
 
-/// A look-up, step by step. Each step waits for memory, so that many of them, in whatever trees, are
-/// best taken in turn. The tree must outlive it.
+/// A look-up, step by step. Each step waits for memory, so that many of them, in whatever trees,
+/// are best taken in turn: finish(). The tree must outlive it.
 class DecisionTree::Descent {
   public:
     /// One that has come to a leaf already.
@@ -91,6 +91,14 @@ class DecisionTree::Descent {
     Node node_;
     SubpathEnd end_;
 };
+
+/// A step of each in turn, until all have come to their leaves.
+inline void finish(std::span<DecisionTree::Descent> descents) {
+    for (bool going = true; going;) {
+        going = false;
+        for (DecisionTree::Descent& d : descents) going |= d.step();
+    }
+}
 
 /// Grows a tree from labelled samples; labels are below `labels`. Samples that no attribute tells
 /// apart end in one leaf under their most frequent label; no samples give one leaf, label 0.

@@ -34,6 +34,12 @@ struct Subspaces {
     std::uint32_t lightSubspace(const PathVertex& vertex, const PathVertex* predecessor) const {
         return predecessor ? lightTree(subpathEnd(vertex, *predecessor)) : cells.cellOf(vertex);
     }
+    /// The same, on its way.
+    DecisionTree::Descent toLightSubspace(const PathVertex& vertex,
+                                          const PathVertex* predecessor) const {
+        return predecessor ? DecisionTree::Descent(lightTree, subpathEnd(vertex, *predecessor))
+                           : DecisionTree::Descent(cells.cellOf(vertex));
+    }
     std::uint32_t eyeSubspace(const PathVertex& vertex, const PathVertex& predecessor) const {
         return eyeTree(subpathEnd(vertex, predecessor));
     }

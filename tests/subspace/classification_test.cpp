@@ -140,6 +140,38 @@ TEST(DecisionTree, standsInForTheNearestCentroid) {
     for (const SubpathEnd& e : heldOut) EXPECT_EQ(again(e), tree(e));
 }
 
+/// By the nodes as they are stored in files.
+std::uint32_t leafOf(const DecisionTree& tree, const SubpathEnd& end) {
+    DecisionTree::Node n = tree.nodes()[0];
+    for (std::uint32_t a; (a = n.code & DecisionTree::kLeaf) != DecisionTree::kLeaf;) {
+        n = tree.nodes()[(n.code >> 4) + (end.value[a] < n.threshold ? 0 : 1)];
+    }
+    return n.code >> 4;
+}
+
+TEST(DecisionTree, descentsInTurnEndWhereEachEndsAlone) {
+    const std::vector<SubpathEnd> grownOn = ends(20000, 9);
+    const Centroids many(ends(100, 10), 1.3f), few(ends(5, 11), 1.3f);
+    const DecisionTree trees[] = {growTree(grownOn, labelsOf(many, grownOn), 100),
+                                  growTree(grownOn, labelsOf(few, grownOn), 5), DecisionTree()};
+    std::vector<SubpathEnd> asked = ends(3000, 12);
+    asked[1].value.fill(std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t together = 1, next = 0; next < asked.size(); together = together % 19 + 1) {
+        std::vector<DecisionTree::Descent> descents{DecisionTree::Descent(77)};
+        std::vector<std::uint32_t> expected{77};
+        for (std::size_t n = 0; n < together && next < asked.size(); ++n, ++next) {
+            const DecisionTree& tree = trees[next % 3];
+            descents.emplace_back(tree, asked[next]);
+            expected.push_back(leafOf(tree, asked[next]));
+            EXPECT_EQ(tree(asked[next]), expected.back());
+        }
+        finish(descents);
+        for (std::size_t n = 0; n < descents.size(); ++n) {
+            EXPECT_EQ(descents[n].label(), expected[n]);
+        }
+    }
+}
+
 TEST(DecisionTree, endsOnDegenerateSamples) {
     EXPECT_EQ(growTree({}, {}, 1)(SubpathEnd{}), 0u);
     // All equal, labels not: the most frequent one.
