@@ -16,8 +16,8 @@ DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
     : nodes_(std::move(nodes)) {
     if (nodes_.empty()) throw std::invalid_argument("decision tree: no node");
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const std::uint32_t attribute = nodes_[i].code & kLeaf, index = nodes_[i].code >> 4;
-        const bool good = attribute == kLeaf ? index < labels
+        const std::uint32_t attribute = nodes_[i].code & kLeaf, index = nodes_[i].index();
+        const bool good = nodes_[i].isLeaf() ? index < labels
                                              : attribute < SubpathEnd::kAttributes && index > i &&
                                                    std::size_t(index) + 1 < nodes_.size();
         if (!good) throw std::invalid_argument("decision tree: node " + std::to_string(i));
@@ -26,7 +26,6 @@ DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
 }
 
 void DecisionTree::arrange() {
-    const auto isLeaf = [](const Node& n) { return (n.code & kLeaf) == kLeaf; };
     // A pair that has no place yet, and where its parent lies.
     struct Pair {
         std::uint32_t first;
@@ -35,7 +34,7 @@ void DecisionTree::arrange() {
     lines_.resize((nodes_.size() - 1 + kLine - 1) / kLine);
     root_ = nodes_[0];
     std::vector<Pair> begins;  // pairs that begin a line, unless there is room in one
-    if (!isLeaf(root_)) begins.push_back({root_.code >> 4, &root_});
+    if (!root_.isLeaf()) begins.push_back({root_.index(), &root_});
     std::deque<Pair> next;  // on the way down from those of this line, nearest first
     for (std::uint32_t place = 0; !begins.empty() || !next.empty(); place += 2) {
         if (place % kLine == 0) {
@@ -52,7 +51,7 @@ void DecisionTree::arrange() {
         for (std::uint32_t k = 0; k < 2; ++k) {
             Node& node = lines_[place / kLine].node[place % kLine + k];
             node = nodes_[pair.first + k];
-            if (!isLeaf(node)) next.push_back({node.code >> 4, &node});
+            if (!node.isLeaf()) next.push_back({node.index(), &node});
         }
     }
 }
@@ -62,8 +61,8 @@ int DecisionTree::depth() const {
     int deepest = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         deepest = std::max(deepest, depth[i]);
-        if ((nodes_[i].code & kLeaf) == kLeaf) continue;
-        const std::size_t child = nodes_[i].code >> 4;
+        if (nodes_[i].isLeaf()) continue;
+        const std::size_t child = nodes_[i].index();
         depth[child] = depth[child + 1] = depth[i] + 1;
     }
     return deepest;

@@ -22,6 +22,10 @@ class DecisionTree {
         float threshold;     ///< below it: first child; else (NaN too) the second
         std::uint32_t code;  ///< attribute in the low 4 bits, above them the first child's index;
                              ///< or kLeaf and the label
+
+        bool isLeaf() const { return (code & kLeaf) == kLeaf; }
+        /// The leaf's label, or the first child's index.
+        std::uint32_t index() const { return code >> 4; }
     };
     static constexpr std::uint32_t kLeaf = 15;
     static constexpr std::uint32_t kMaxIndex = (1u << 28) - 1;
@@ -36,12 +40,8 @@ class DecisionTree {
     /// The label of the leaf that `end` comes to.
     std::uint32_t operator()(const SubpathEnd& end) const {
         Node n = root_;
-        for (std::uint32_t attribute; (attribute = n.code & kLeaf) != kLeaf;) {
-            const std::uint32_t second = end.value[attribute] < n.threshold ? 0u : 1u;
-            const std::uint32_t i = (n.code >> 4) + second;
-            n = lines_[i / kLine].node[i % kLine];
-        }
-        return n.code >> 4;
+        while (!n.isLeaf()) n = childOf(n, lines_.data(), end);
+        return n.index();
     }
     class Descent;
 
@@ -56,6 +56,12 @@ class DecisionTree {
         Node node[kLine];
     };
 
+    /// Where `end` goes on to from a node of the lines that is no leaf.
+    static Node childOf(const Node& n, const Line* lines, const SubpathEnd& end) {
+        const std::uint32_t second = end.value[n.code & kLeaf] < n.threshold ? 0u : 1u;
+        const std::uint32_t i = n.index() + second;
+        return lines[i / kLine].node[i % kLine];
+    }
     void arrange();
 
     std::vector<Node> nodes_;
@@ -76,15 +82,12 @@ class DecisionTree::Descent {
 
     /// One step down; false at a leaf.
     bool step() {
-        const std::uint32_t attribute = node_.code & kLeaf;
-        if (attribute == kLeaf) return false;
-        const std::uint32_t second = end_.value[attribute] < node_.threshold ? 0u : 1u;
-        const std::uint32_t i = (node_.code >> 4) + second;
-        node_ = lines_[i / kLine].node[i % kLine];
+        if (node_.isLeaf()) return false;
+        node_ = childOf(node_, lines_, end_);
         return true;
     }
     /// Of the leaf that it has come to.
-    std::uint32_t label() const { return node_.code >> 4; }
+    std::uint32_t label() const { return node_.index(); }
 
   private:
     const Line* lines_ = nullptr;

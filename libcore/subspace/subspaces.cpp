@@ -20,9 +20,7 @@ void require(bool condition, const char* what) {
 std::uint32_t largestLabel(const DecisionTree& tree) {
     std::uint32_t largest = 0;
     for (const DecisionTree::Node& n : tree.nodes()) {
-        if ((n.code & DecisionTree::kLeaf) == DecisionTree::kLeaf) {
-            largest = std::max(largest, n.code >> 4);
-        }
+        if (n.isLeaf()) largest = std::max(largest, n.index());
     }
     return largest;
 }

@@ -143,10 +143,11 @@ TEST(DecisionTree, standsInForTheNearestCentroid) {
 /// By the nodes as they are stored in files.
 std::uint32_t leafOf(const DecisionTree& tree, const SubpathEnd& end) {
     DecisionTree::Node n = tree.nodes()[0];
-    for (std::uint32_t a; (a = n.code & DecisionTree::kLeaf) != DecisionTree::kLeaf;) {
-        n = tree.nodes()[(n.code >> 4) + (end.value[a] < n.threshold ? 0 : 1)];
+    while (!n.isLeaf()) {
+        const float asked = end.value[n.code & DecisionTree::kLeaf];
+        n = tree.nodes()[n.index() + (asked < n.threshold ? 0 : 1)];
     }
-    return n.code >> 4;
+    return n.index();
 }
 
 TEST(DecisionTree, descentsInTurnEndWhereEachEndsAlone) {
