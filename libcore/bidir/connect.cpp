@@ -53,6 +53,7 @@ void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices
     path.edges = int(lightVertices + eyeVertices) - 1;
     path.lightEdges = std::max(0, int(lightVertices) - 1);
     path.eyeEdges = int(eyeVertices) - 1;
+    path.across = {};
 }
 
 void setSource(FullPath& path, const Scene& scene, const PathVertex& source, const Rgb& beta) {
@@ -125,18 +126,23 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     return closed;
 }
 
-std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
-                                      RayTally& tally, FullPath& path) {
-    const PathVertex& y = light.back();
-    const PathVertex& z = eye.back();
+std::optional<Edge> openConnection(const Walker& walker, const PathVertex& y, const PathVertex& z,
+                                   RayTally& tally) {
     if (liesBehind(y, z) || liesBehind(z, y)) return std::nullopt;
-    const Edge edge = edgeBetween(y, z);  // from the light's end to the eye's
-    if (!(edge.geometry > 0.0f)) return std::nullopt;
-    const Lights& lights = walker.scene().lights();
-    if (isDark(lights, y, edge.direction) ||
+    const Edge edge = edgeBetween(y, z);
+    if (!(edge.geometry > 0.0f) || isDark(walker.scene().lights(), y, edge.direction) ||
         !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
         return std::nullopt;
     }
+    return edge;
+}
+
+std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
+                                      FullPath& path) {
+    const auto& [light, eye, edge, across] = open;
+    const PathVertex& y = light.back();
+    const PathVertex& z = eye.back();
+    const Lights& lights = walker.scene().lights();
     const EndValue atLight = lightEnd(lights, y, edge.direction);
     const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
     const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
@@ -147,6 +153,7 @@ std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpa
 
     const int s = int(light.size());
     setEdges(path, light.size(), eye.size());
+    path.across = across;
     fillLightPart(path, light);
     fillEyePart(path, eye);
     setSource(path, walker.scene(), light[0], light[0].throughput);

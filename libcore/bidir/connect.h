@@ -45,9 +45,13 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
 std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
                                  const PixelRect& crop, RayTally& tally, FullPath& path);
 
-/// s >= 1, t >= 2. Both last vertices must be connectable. Likewise.
-std::optional<Closed> closeConnection(const Walker& walker, Subpath light, Subpath eye,
-                                      RayTally& tally, FullPath& path);
+/// s >= 1, t >= 2. The edge of a connection, from the light subpath's last vertex to the eye's;
+/// both must be connectable. Empty where it carries nothing, whatever the BSDFs.
+std::optional<Edge> openConnection(const Walker& walker, const PathVertex& light,
+                                   const PathVertex& eye, RayTally& tally);
+/// Over that edge. Likewise.
+std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
+                                      FullPath& path);
 
 /// Whether the two vertices see each other.
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,

@@ -47,6 +47,8 @@ struct BidirIntegrator::Worker {
     std::vector<Walk> walks;
     ProposalSink proposals;                 // for all vertices of an eye path
     std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}
+    std::vector<OpenConnection> open;       // of the proposals, those that are seen
+    std::vector<const Proposal*> openedBy;  // by open connection
     FullPath path;
 };
 
@@ -279,7 +281,7 @@ void BidirIntegrator::closeEyePath(std::uint32_t iteration, Subpath path, Subpat
         std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) + std::uint32_t(x - crop.x0);
 
     select(iteration, path, light, filmIndex, worker);
-    const std::span<const Proposal> proposals = worker.proposals.proposals();
+    open(path, worker, chunk);
     std::size_t next = 0;
     for (std::size_t t = 2; t <= path.size(); ++t) {
         const Subpath eye = path.first(t);
@@ -289,13 +291,11 @@ void BidirIntegrator::closeEyePath(std::uint32_t iteration, Subpath path, Subpat
                         chunk);
             }
         }
-        for (; next < worker.proposalEnds[t]; ++next) {
-            const Proposal& proposal = proposals[next];
-            if (int(proposal.light.size() + t) - 1 > settings_.limits.maxDepth) continue;
-            const auto closed =
-                closeConnection(walker_, proposal.light, eye, chunk.tally, worker.path);
+        for (; next < worker.open.size() && worker.open[next].eye.size() == t; ++next) {
+            const auto closed = closeConnection(walker_, worker.open[next], worker.path);
             if (!closed) continue;
-            deliver(*closed, &proposal, proposal.weight, iteration, filmIndex, pixelIndex, &pixel,
+            const Proposal* proposal = worker.openedBy[next];
+            deliver(*closed, proposal, proposal->weight, iteration, filmIndex, pixelIndex, &pixel,
                     worker, chunk);
         }
     }
@@ -317,6 +317,26 @@ void BidirIntegrator::select(std::uint32_t iteration, Subpath path, Subpath ligh
         }
         worker.proposalEnds[t] = worker.proposals.proposals().size();
     }
+}
+
+/// Likewise before the first one is weighed: the rest of the light subpaths, and tags.
+void BidirIntegrator::open(Subpath path, Worker& worker, Chunk& chunk) const {
+    worker.open.clear();
+    worker.openedBy.clear();
+    const std::span<const Proposal> proposals = worker.proposals.proposals();
+    std::size_t next = 0;
+    for (std::size_t t = 2; t <= path.size(); ++t) {
+        for (; next < worker.proposalEnds[t]; ++next) {
+            const Subpath light = proposals[next].light;
+            if (int(light.size() + t) - 1 > settings_.limits.maxDepth) continue;
+            const auto edge = openConnection(walker_, light.back(), path[t - 1], chunk.tally);
+            if (!edge) continue;
+            for (const PathVertex& v : light.first(light.size() - 1)) prefetch(v);
+            worker.open.push_back({light, path.first(t), *edge, {}});
+            worker.openedBy.push_back(&proposals[next]);
+        }
+    }
+    techniques_.tagAcross(worker.open);
 }
 
 void BidirIntegrator::splatLightPath(std::span<PathVertex> path, std::uint32_t iteration,

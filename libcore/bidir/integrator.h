@@ -94,6 +94,7 @@ class BidirIntegrator {
                       Worker& worker, Chunk& chunk, Rgb& pixel);
     void select(std::uint32_t iteration, Subpath path, Subpath light, std::uint32_t filmIndex,
                 Worker& worker) const;
+    void open(Subpath path, Worker& worker, Chunk& chunk) const;
     void splatLightPath(std::span<PathVertex> path, std::uint32_t iteration, std::uint64_t index,
                         Rng& rng, Worker& worker, Chunk& chunk);
     void deliver(const Closed& closed, const Proposal* proposal, double scale,

@@ -41,9 +41,11 @@ namespace {
 double samplesByDensity(const FullPath& path, const Techniques& techniques, int t) {
     const int s = path.edges + 1 - t;
     return techniques.connections->effectiveSamples(
-        {.eye = {path.vertex[s], path.vertex[s + 1], t, path.scatter[s], path.makerOf(s)},
+        {.eye = {path.vertex[s], path.vertex[s + 1], t, path.scatter[s], path.makerOf(s),
+                 path.across.light},
          .light = {path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, s,
-                   path.scatter[s - 1], s >= 2 ? path.makerOf(s - 2) : EdgeMaker::Connection},
+                   path.scatter[s - 1], s >= 2 ? path.makerOf(s - 2) : EdgeMaker::Connection,
+                   s >= 2 ? path.across.eye : kNone},
          .beta = path.beta[s - 1],
          .geometry = path.geometry[s - 1],
          .order = path.orderOf(s)});

@@ -36,6 +36,8 @@ struct ConnectionEnd {
     Rgb scatter;      ///< f between predecessor and the other end (y_0: emission profile)
     /// Of the edge to the predecessor; Connection where it is not known.
     EdgeMaker maker = EdgeMaker::Connection;
+    /// Where a connection made that edge: OpenConnection's tag for this end, or kNone.
+    std::uint32_t tagAcross = kNone;
 };
 
 /// The edge that a strategy closes a path by.
@@ -46,6 +48,20 @@ struct Connection {
     /// Which of the eye vertices that a connection could end at the eye's end is: 1 for the first,
     /// z_1 or what is seen in mirrors and through glass.
     int order;
+};
+
+/// What a density keeps for the two ends of a connection in the role that the other walk would have
+/// given them: predecessor is then the other end. kNone: nothing.
+struct TagsAcross {
+    std::uint32_t light = kNone;  ///< of y_{s-1} as an eye vertex
+    std::uint32_t eye = kNone;    ///< of z_{t-1} as a light vertex
+};
+
+/// Two subpaths whose last vertices see each other: s >= 1, t >= 2.
+struct OpenConnection {
+    Subpath light, eye;
+    Edge edge;  ///< from the light's last vertex to the eye's
+    TagsAcross across;
 };
 
 /// What MIS believes about the selector: the effective number of samples n r of methods.md that
@@ -80,6 +96,8 @@ class ConnectionDensity {
             if (v.kind == VertexKind::Surface && v.tag == kNone) v.tag = tagOf(v);
         }
     }
+    /// Fills `across` of each, so that effectiveSamples need not look it up for each of them alone.
+    virtual void tagAcross(std::span<OpenConnection> connections) const { (void)connections; }
 };
 
 /// How many samples each technique has, as seen from every other one: fixed for an iteration.
@@ -106,6 +124,9 @@ struct Techniques {
     void tag(std::span<PathVertex> walk) const {
         if (tags) connections->tagWalk(walk);
     }
+    void tagAcross(std::span<OpenConnection> open) const {
+        if (tags) connections->tagAcross(open);
+    }
 };
 
 /// A full path with the densities of both walks: what misWeight reads. All arrays by vertex, x_0
@@ -124,6 +145,7 @@ struct FullPath {
     std::span<const Rgb> absorption;             ///< of the scene, by material (absorption.h)
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;
+    TagsAcross across;  ///< of the edge that a connection made
 
     /// Of the edge x_i, x_{i+1}.
     EdgeMaker makerOf(int i) const {

@@ -97,20 +97,16 @@ class Classes {
     }
 
     std::uint32_t lightCount() const { return subspaces_->lightCount; }
-    /// The subspace of the light vertex y; the edge to its predecessor was made by `maker`.
-    std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor,
-                          EdgeMaker maker) const {
-        const std::uint32_t known = maker == EdgeMaker::LightWalk ? Labels(y.tag).own()
-                                    : maker == EdgeMaker::EyeWalk ? Labels(y.tag).other()
-                                                                  : Labels::kUnknown;
-        return known != Labels::kUnknown ? known : subspaces_->lightSubspace(y, predecessor);
+    /// The subspace of a light vertex, and that of an eye vertex.
+    std::uint32_t lightOf(const ConnectionEnd& y) const {
+        const std::uint32_t known = knownOf(y, EdgeMaker::LightWalk);
+        return known != Labels::kUnknown ? known
+                                         : subspaces_->lightSubspace(*y.vertex, y.predecessor);
     }
-    /// The subspace of the eye vertex z, likewise.
-    std::uint32_t eyeOf(const PathVertex& z, const PathVertex& predecessor, EdgeMaker maker) const {
-        const std::uint32_t known = maker == EdgeMaker::EyeWalk     ? Labels(z.tag).own()
-                                    : maker == EdgeMaker::LightWalk ? Labels(z.tag).other()
-                                                                    : Labels::kUnknown;
-        return known != Labels::kUnknown ? known : subspaces_->eyeSubspace(z, predecessor);
+    std::uint32_t eyeOf(const ConnectionEnd& z) const {
+        const std::uint32_t known = knownOf(z, EdgeMaker::EyeWalk);
+        return known != Labels::kUnknown ? known
+                                         : subspaces_->eyeSubspace(*z.vertex, *z.predecessor);
     }
     /// To draw light subspaces from.
     const AliasTable& column(std::uint32_t eye) const { return columns_[eye]; }
@@ -124,6 +120,12 @@ class Classes {
             tagTogether(walk, first, std::min(walk.size(), first + kTogether));
         }
     }
+    void tagAcross(std::span<OpenConnection> connections) const {
+        for (std::size_t first = 0; first < connections.size(); first += kTogether) {
+            tagAcrossTogether(
+                connections.subspan(first, std::min(kTogether, connections.size() - first)));
+        }
+    }
     /// 0 where no light subpath was seen.
     double q(std::uint32_t light) const { return q_.empty() ? 0.0 : q_[light]; }
     double unseen() const { return unseen_; }
@@ -131,7 +133,14 @@ class Classes {
     std::uint32_t window(std::uint32_t light) const { return windows_[light]; }
 
   private:
-    static constexpr std::size_t kTogether = 8;  // vertices, with two descents each
+    static constexpr std::size_t kTogether = 8;  // vertices or connections: two descents each
+
+    /// As it was tagged in this role.
+    static std::uint32_t knownOf(const ConnectionEnd& end, EdgeMaker own) {
+        if (end.maker == EdgeMaker::Connection) return Labels(end.tagAcross).own();
+        const Labels labels(end.vertex->tag);
+        return end.maker == own ? labels.own() : labels.other();
+    }
 
     /// Both labels of the vertices [begin, end) of a walk. The last one's in the other role waits
     /// for the vertex that it is connected with.
@@ -154,6 +163,24 @@ class Classes {
         finish(std::span(descents).first(2 * count));
         for (std::size_t n = 0; n < count; ++n) {
             vertices[n]->tag = Labels(descents[2 * n].label(), descents[2 * n + 1].label()).tag();
+        }
+    }
+
+    /// Ends that no strategy has in their other role are left out: y_0, and what the lens sees.
+    void tagAcrossTogether(std::span<OpenConnection> connections) const {
+        std::array<DecisionTree::Descent, 2 * kTogether> descents;
+        std::size_t count = 0;
+        for (const auto& [light, eye, edge, across] : connections) {
+            const PathVertex &y = light.back(), &z = eye.back();
+            if (light.size() > 1) descents[count++] = {subspaces_->eyeTree, subpathEnd(y, z)};
+            if (eye.size() > 2) descents[count++] = {subspaces_->lightTree, subpathEnd(z, y)};
+        }
+        finish(std::span(descents).first(count));
+        count = 0;
+        const auto next = [&] { return Labels(descents[count++].label(), Labels::kUnknown).tag(); };
+        for (auto& [light, eye, edge, across] : connections) {
+            if (light.size() > 1) across.light = next();
+            if (eye.size() > 2) across.eye = next();
         }
     }
 
@@ -181,13 +208,15 @@ class SubspaceDensity final : public ConnectionDensity {
     bool tagsVertices() const override { return true; }
     void tagWalk(std::span<PathVertex> walk) const override { classes_.tagWalk(walk); }
 
+    void tagAcross(std::span<OpenConnection> connections) const override {
+        classes_.tagAcross(connections);
+    }
+
     double effectiveSamples(const Connection& c) const override {
         const auto beta = double(mean(c.beta));
         if (!(beta > 0.0)) return 0.0;  // never picked in stage 2
-        const std::uint32_t i =
-            classes_.lightOf(*c.light.vertex, c.light.predecessor, c.light.maker);
-        const double gamma =
-            classes_.gamma(i, classes_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.maker));
+        const std::uint32_t i = classes_.lightOf(c.light);
+        const double gamma = classes_.gamma(i, classes_.eyeOf(c.eye));
         if (!(gamma > 0.0)) return 0.0;
         const double q = classes_.q(i), n = options_.picks.at(c.order);
         const double m = double(options_.subpaths) * classes_.window(i);
@@ -226,7 +255,8 @@ class SubspaceConnections final : public Method {
                  ++n) {
                 const Subpath y = pool.prefix(entries[n]);
                 const PathVertex* predecessor = y.size() > 1 ? &y[y.size() - 2] : nullptr;
-                labels[n] = classes_.lightOf(y.back(), predecessor, EdgeMaker::LightWalk);
+                labels[n] = classes_.lightOf(
+                    {&y.back(), predecessor, int(y.size()), {}, EdgeMaker::LightWalk});
             }
         });
         const std::uint32_t count = classes_.lightCount();
@@ -262,8 +292,8 @@ class SubspaceConnections final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        const AliasTable& column = classes_.column(
-            classes_.eyeOf(context.vertex, context.predecessor(), EdgeMaker::EyeWalk));
+        const AliasTable& column = classes_.column(classes_.eyeOf(
+            {&context.vertex, &context.predecessor(), context.t(), {}, EdgeMaker::EyeWalk}));
         // Every look into memory waits for the one before it, so the picks go side by side.
         struct Pick {
             double u, subspacePmf, pmf;
