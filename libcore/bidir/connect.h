@@ -45,11 +45,11 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
 std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
                                  const PixelRect& crop, RayTally& tally, FullPath& path);
 
-/// s >= 1, t >= 2. The edge of a connection, from the light subpath's last vertex to the eye's;
-/// both must be connectable. Empty where it carries nothing, whatever the BSDFs.
+/// s >= 1, t >= 2. The edge between two subpaths' last vertices, from the light's to the eye's;
+/// both must be connectable. Empty where a connection carries nothing, whatever the BSDFs.
 std::optional<Edge> openConnection(const Walker& walker, const PathVertex& light,
                                    const PathVertex& eye, RayTally& tally);
-/// Over that edge. Likewise.
+/// Over that edge. Empty where the BSDFs let nothing through. Fills `path`.
 std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
                                       FullPath& path);
 
