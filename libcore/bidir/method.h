@@ -125,10 +125,11 @@ class PathSpace {
     /// What arrives where a light subpath meets an eye subpath's last vertex; visibility, and what
     /// coloured glass absorbs between the two, left out.
     struct Arrival {
-        Rgb value;            ///< beta rho at the light's end; times rho at the eye's if asked for
+        Rgb flow;             ///< beta rho at the light's end
+        Rgb scattered;        ///< flow times rho at the eye's end, where asked for
         double geometry = 0;  ///< G
     };
-    /// Zero where the eye's last vertex would scatter nothing of it, asked for or not.
+    /// Zero where what comes from behind the eye's last vertex would not be scattered there.
     virtual Arrival arrival(Subpath light, Subpath eye, bool throughEye) const = 0;
     virtual bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const = 0;
     /// Distance along a unit direction from a point in empty space to the first surface; infinite

@@ -16,14 +16,13 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     if (!(edge.geometry > 0.0f)) return {};
     // Whatever scatters at all reflects: only what comes from behind has to ask the material.
     const bool behind = leadsBehind(z, -edge.direction);
-    Rgb atEye(1.0f);
+    Rgb atEye{};
     if (throughEye || behind) {
-        const Rgb f = z.bsdf.evaluate(z.toPrevious, -edge.direction).f;
-        if (isBlack(f)) return {};
-        if (throughEye) atEye = f;
+        atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction).f;
+        if (behind && isBlack(atEye)) return {};
     }
-    const Rgb atLight = lightEnd(walker_.scene().lights(), y, edge.direction).f;
-    return {y.throughput * atLight * atEye, double(edge.geometry)};
+    const Rgb flow = y.throughput * lightEnd(walker_.scene().lights(), y, edge.direction).f;
+    return {flow, throughEye ? flow * atEye : Rgb{}, double(edge.geometry)};
 }
 
 float ScenePaths::reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const {

@@ -119,12 +119,11 @@ void ImportanceRecords::weigh(std::uint32_t record, const PathSpace& space, RayT
     for (std::size_t i = 0; i < vertices_->size(); ++i) {
         weight[kUniform][i] = 1.0;
         const Subpath light = vertices_->prefix(i);
-        const PathSpace::Arrival arriving = space.arrival(light, eye, false);
-        const double flow = double(mean(arriving.value));
+        const PathSpace::Arrival a = space.arrival(light, eye, true);
+        const double flow = double(mean(a.flow));
         if (!(flow > 0.0)) continue;
-        weight[kBounded][i] = flow * std::min(arriving.geometry, kBoundedShare * limit);
-        const PathSpace::Arrival scattered = space.arrival(light, eye, true);
-        const double full = double(mean(scattered.value)) * std::min(arriving.geometry, limit);
+        weight[kBounded][i] = flow * std::min(a.geometry, kBoundedShare * limit);
+        const double full = double(mean(a.scattered)) * std::min(a.geometry, limit);
         weight[kUnoccluded][i] = full;
         if (full > 0.0 && space.visible(light.back(), eye.back(), tally)) {
             weight[kFull][i] = full;

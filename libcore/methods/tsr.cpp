@@ -232,7 +232,7 @@ class TwoStageResampling final : public Method {
             const double own = double(mean(light.back().throughput));
             s.reserves.push_back(own / draw.pmf * falloff(light.back(), eye.back(), limit));
             const PathSpace::Arrival a = context.space.arrival(light, eye, false);
-            const double g = std::min(a.geometry, limit), flow = double(mean(a.value));
+            const double g = std::min(a.geometry, limit), flow = double(mean(a.flow));
             sums_[2 * c] += own / draw.pmf * g * perSubpath;
             s.flows.push_back(flow * g / draw.pmf);
             const double target =

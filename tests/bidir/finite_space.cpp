@@ -242,9 +242,9 @@ void FiniteSpace::traceEye(Rng& rng, RayTally&, std::vector<PathVertex>& out) co
 PathSpace::Arrival FiniteSpace::arrival(Subpath light, Subpath eye, bool throughEye) const {
     const int y = stateOf(light.back()), z = stateOf(eye.back());
     if (y == z) return {};
-    Rgb value = light.back().throughput * towards(light, z);
-    if (throughEye) value *= scatter_[y][z][stateOf(eye[eye.size() - 2])];
-    return {value, geometry(y, z)};
+    const Rgb flow = light.back().throughput * towards(light, z);
+    const Rgb atEye = throughEye ? scatter_[y][z][stateOf(eye[eye.size() - 2])] : Rgb{};
+    return {flow, flow * atEye, geometry(y, z)};
 }
 
 bool FiniteSpace::visible(const PathVertex& light, const PathVertex& eye, RayTally&) const {

@@ -24,7 +24,7 @@ class OneSurface final : public FixedEyePath {
         addSurface({0, 0, 0}, p);
     }
     Arrival arrival(Subpath light, Subpath, bool) const override {
-        return {light.back().throughput, kGeometry};
+        return {light.back().throughput, {}, kGeometry};
     }
     bool visible(const PathVertex& light, const PathVertex&, RayTally&) const override {
         return length(light.position) > 0.01f;
