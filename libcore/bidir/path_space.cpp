@@ -14,15 +14,12 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     const PathVertex &y = light.back(), &z = eye.back();
     const Edge edge = edgeBetween(y, z);
     if (!(edge.geometry > 0.0f)) return {};
+    const auto atEye = [&] { return z.bsdf.evaluate(z.toPrevious, -edge.direction).f; };
     // Whatever scatters at all reflects: only what comes from behind has to ask the material.
-    const bool behind = leadsBehind(z, -edge.direction);
-    Rgb atEye{};
-    if (throughEye || behind) {
-        atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction).f;
-        if (behind && isBlack(atEye)) return {};
-    }
+    if (leadsBehind(z, -edge.direction) && isBlack(atEye())) return {};
     const Rgb flow = y.throughput * lightEnd(walker_.scene().lights(), y, edge.direction).f;
-    return {flow, throughEye ? flow * atEye : Rgb{}, double(edge.geometry)};
+    const Rgb scattered = throughEye && !isBlack(flow) ? flow * atEye() : Rgb{};
+    return {flow, scattered, double(edge.geometry)};
 }
 
 float ScenePaths::reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const {
