@@ -1,8 +1,6 @@
 #include "render/effect_switches.h"
 
 #include <algorithm>
-#include <string_view>
-#include <utility>
 
 #include "libcore/base/error.h"
 
@@ -10,16 +8,6 @@ namespace lacuna {
 namespace {
 
 const std::string kPrefix = "effects.";
-
-constexpr std::pair<std::string_view, LobeKind> kLobes[] = {
-    {"diffuse", LobeKind::Diffuse},
-    {"glossy", LobeKind::Glossy},
-    {"mirror", LobeKind::Mirror},
-    {"rough_refraction", LobeKind::RoughRefraction},
-    {"smooth_refraction", LobeKind::SmoothRefraction},
-    {"rough_thin_transmission", LobeKind::RoughThinTransmission},
-    {"smooth_thin_transmission", LobeKind::SmoothThinTransmission},
-};
 
 /// A texture of one texel.
 TextureUse addTexel(SceneDescription& scene, bool srgb) {
@@ -60,9 +48,7 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) m.emissiveTexture = {};
     } else if (name == "textures") {
         for (Material& m : scene.materials) {
-            m.baseColorTexture = m.metallicRoughnessTexture = m.transmissionTexture = {};
-            m.specularTexture = m.specularColorTexture = {};
-            m.clearcoatTexture = m.clearcoatRoughnessTexture = {};
+            for (const auto texture : kBsdfTextures) m.*texture = {};
         }
     } else if (name == "clearcoat") {
         for (Material& m : scene.materials) m.clearcoat = 0.0f;
@@ -90,9 +76,9 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
     } else if (name == "splats") {
         to.techniques->splats = false;
     }
-    for (const auto& [lobe, kind] : kLobes) {
-        if (name != lobe) continue;
-        for (Material& m : scene.materials) m.without.add(kind);
+    for (const LobeRow& row : lobeTable()) {
+        if (name != row.name) continue;
+        for (Material& m : scene.materials) m.without.add(row.kind);
     }
 }
 

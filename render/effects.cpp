@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "libcore/material/bsdf.h"
-
 namespace lacuna {
 namespace {
 
@@ -43,32 +41,11 @@ struct Inventory {
     }
 };
 
-// A texture may take a factor to any smaller value, so it can switch lobes on as well as off. What
-// is left out by force (Material::without) is looked at where the lobes are counted.
-bool mayBeRough(const Material& m) {
-    return m.roughness * m.roughness >= kMinAlpha;
-}
-bool mayBeSmooth(const Material& m) {
-    return !mayBeRough(m) || m.metallicRoughnessTexture;
-}
-bool reflects(const Material& m) {
-    const bool plastic = (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
-                         (m.transmission < 1.0f || m.transmissionTexture);
-    return m.metallic > 0.0f || (plastic && m.specular > 0.0f && m.ior > 1.0f);
-}
-bool transmits(const Material& m) {
-    return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
-}
-bool isDiffuse(const Material& m) {
-    return !isBlack(m.baseColor) && (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
-           (m.transmission < 1.0f || m.transmissionTexture);
-}
-
-bool mayHaveRoughClearcoat(const Material& m) {
-    return m.clearcoat > 0.0f && m.clearcoatRoughness * m.clearcoatRoughness >= kMinAlpha;
-}
-bool mayHaveSmoothClearcoat(const Material& m) {
-    return m.clearcoat > 0.0f && (!mayHaveRoughClearcoat(m) || m.clearcoatRoughnessTexture);
+/// Of materials: how many may have lobes of a kind that are not left out by force.
+auto withLobes(LobeKind kind) {
+    return [kind](const Material& m) {
+        return lobeTable()[std::size_t(kind)].mayHave(m) && !m.without.has(kind);
+    };
 }
 
 class Table {
@@ -119,9 +96,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("emissive_textures", have.emissiveTextures,
           have.emissiveTextures ? "emission varies over triangles" : "no emissive texture");
     t.add("textures", have.count([](const Material& m) {
-        return m.baseColorTexture || m.metallicRoughnessTexture || m.transmissionTexture ||
-               m.specularTexture || m.specularColorTexture || m.clearcoatTexture ||
-               m.clearcoatRoughnessTexture;
+        return std::any_of(kBsdfTextures.begin(), kBsdfTextures.end(),
+                           [&](TextureUse Material::*texture) { return bool(m.*texture); });
     }),
           "textured material", "", "no texture");
     t.add("alpha_mask",
@@ -136,42 +112,27 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("vertex_colors", have.coloredPrimitives, "coloured primitive", "",
           "no mesh with COLOR_0");
 
-    t.add("diffuse", have.count([](const Material& m) {
-        return isDiffuse(m) && !m.without.has(LobeKind::Diffuse);
-    }),
-          "material", " with a diffuse lobe", "no diffuse material");
-    t.add("glossy", have.count([](const Material& m) {
-        return ((reflects(m) && mayBeRough(m)) || mayHaveRoughClearcoat(m)) &&
-               !m.without.has(LobeKind::Glossy);
-    }),
-          "material", " with a rough reflection", "no rough metal or coat");
+    t.add("diffuse", have.count(withLobes(LobeKind::Diffuse)), "material", " with a diffuse lobe",
+          "no diffuse material");
+    t.add("glossy", have.count(withLobes(LobeKind::Glossy)), "material", " with a rough reflection",
+          "no rough metal or coat");
     t.add("clearcoat", have.count([](const Material& m) { return m.clearcoat > 0.0f; }), "material",
           " under a clearcoat", "no clearcoat");
     t.add("specular_color", have.count([](const Material& m) {
-        return reflects(m) && (m.specularColor != Rgb(1.0f) || m.specularColorTexture);
+        return mayReflect(m) && (m.specularColor != Rgb(1.0f) || m.specularColorTexture);
     }),
           "material", " with a coloured coat", "no coat with a colour of its own");
-    t.add("mirror", have.count([](const Material& m) {
-        return ((reflects(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m)) &&
-               !m.without.has(LobeKind::Mirror);
-    }),
-          "material", " with a perfectly smooth reflection", "no metal or coat of roughness 0");
-    const auto glass = [](LobeKind kind, bool thin, bool rough) {
-        return [kind, thin, rough](const Material& m) {
-            return transmits(m) && m.thin == thin && (rough ? mayBeRough(m) : mayBeSmooth(m)) &&
-                   !m.without.has(kind);
-        };
-    };
+    t.add("mirror", have.count(withLobes(LobeKind::Mirror)), "material",
+          " with a perfectly smooth reflection", "no metal or coat of roughness 0");
     const char* none = "no transmissive solid of that kind: no refraction, no eta factor";
-    t.add("rough_refraction", have.count(glass(LobeKind::RoughRefraction, false, true)),
-          "rough solid", " of glass", none);
-    t.add("smooth_refraction", have.count(glass(LobeKind::SmoothRefraction, false, false)),
-          "smooth solid", " of glass", none);
-    t.add("rough_thin_transmission", have.count(glass(LobeKind::RoughThinTransmission, true, true)),
+    t.add("rough_refraction", have.count(withLobes(LobeKind::RoughRefraction)), "rough solid",
+          " of glass", none);
+    t.add("smooth_refraction", have.count(withLobes(LobeKind::SmoothRefraction)), "smooth solid",
+          " of glass", none);
+    t.add("rough_thin_transmission", have.count(withLobes(LobeKind::RoughThinTransmission)),
           "rough thin sheet", "", "no rough thin sheet");
-    t.add("smooth_thin_transmission",
-          have.count(glass(LobeKind::SmoothThinTransmission, true, false)), "smooth thin sheet", "",
-          "no smooth thin sheet");
+    t.add("smooth_thin_transmission", have.count(withLobes(LobeKind::SmoothThinTransmission)),
+          "smooth thin sheet", "", "no smooth thin sheet");
     t.add("attenuation", have.count([](const Material& m) { return !isBlack(m.absorption); }),
           "coloured solid", " of glass", "no solid of glass with an attenuation colour");
     t.add("thin_lens", lensRadius > 0.0,

@@ -91,7 +91,8 @@ std::vector<Lamp> lampsOf(SceneDescription& scene) {
         Material& m = scene.materials[i];
         if (!(area[i] > 0.0)) continue;
         const Power most = times(m.emission, area[i] * pi * (m.doubleSided ? 2.0 : 1.0));
-        lamps.push_back({&m.emission, most, m.emissiveTexture ? Power{} : most});
+        const bool certain = !m.emissiveTexture && m.alphaMode == Material::Alpha::Opaque;
+        lamps.push_back({&m.emission, most, certain ? most : Power{}});
     }
     for (PunctualLight& l : scene.lights) {
         const auto cap = [](double angle) { return 2.0 * pi * (1.0 - std::cos(angle)); };

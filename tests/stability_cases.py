@@ -40,6 +40,8 @@ GROUPS = [
     ]),
     ("Lights", [
         Case("light-kinds", "every pair of seven kinds of light", "every method agrees with path tracing"),
+        Case("lamps-with-alpha", "lamps of which MASK or BLEND leaves a part",
+             "radiance by form factor and share; every method agrees with path tracing"),
         Case("sky-alone", "nothing, or one convex body, under a constant sky", "the sky; the body's albedo"),
         Case("tiny-light", "a lamp of a millionth of the scene", "every method agrees with path tracing"),
         Case("huge-light", "a lamp a million times the scene", "the radiance under an endless one"),

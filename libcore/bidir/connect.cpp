@@ -56,14 +56,20 @@ void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices
     path.across = {};
 }
 
-void setSource(FullPath& path, const Scene& scene, const PathVertex& source, const Rgb& beta) {
-    const LightKind kind = scene.lights().kind(source.light);
+/// Where the path begins; called last, once both walks' densities are there.
+void setSource(FullPath& path, const Scene& scene, const Rgb& beta, float opacity) {
+    const LightKind kind = scene.lights().kind(path.vertex[0]->light);
     path.absorption = scene.absorption();
     path.sourceBeta = beta;
     path.hittable = isHittable(kind);
     path.splattable = path.hittable;
     path.survival[0] = 1.0f;
     path.delta[0] = false;
+    path.eyePdfA[0] *= opacity;  // the others pass a lamp that is not all there
+}
+/// From y_0, whose beta is known.
+void setSource(FullPath& path, const Scene& scene, const PathVertex& y0) {
+    setSource(path, scene, y0.throughput, scene.lights().opacity(y0.light, y0.lightUv));
 }
 
 }  // namespace
@@ -79,12 +85,10 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
 
     setEdges(path, 0, eye.size());
     fillEyePart(path, eye);
-    // A light that is never picked (no power by our estimate) has p = 0: its beta is never read.
-    setSource(path, walker.scene(), z,
-              point.pdf > 0.0f ? point.exitance * (1.0f / point.pdf) : Rgb{});
     path.scatter[0] = Rgb(emission.profile);
     path.lightPdfA[0] = point.pdf;
     if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
+    setSource(path, walker.scene(), point.throughput(), point.opacity);
     return closed;
 }
 
@@ -114,7 +118,6 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     setEdges(path, light.size(), 1);
     const int k = path.edges;
     fillLightPart(path, light);
-    setSource(path, walker.scene(), light[0], light[0].throughput);
     path.vertex[k] = &z0;
     path.lightPdfA[k] = 0.0f;
     path.eyePdfA[k] = 1.0f;
@@ -123,6 +126,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     path.scatter[k - 1] = end.f;
     path.eyePdfA[k - 1] = projection->pdfW * edge.toSecond;
     if (k >= 2) path.eyePdfA[k - 2] = end.pdfWToPrevious * y.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
     return closed;
 }
 
@@ -156,7 +160,6 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
     path.across = across;
     fillLightPart(path, light);
     fillEyePart(path, eye);
-    setSource(path, walker.scene(), light[0], light[0].throughput);
     path.delta[s - 1] = path.delta[s] = false;
     path.scatter[s - 1] = atLight.f;
     path.scatter[s] = atEye.f;
@@ -164,6 +167,7 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
     path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
     if (s >= 2) path.eyePdfA[s - 2] = atLight.pdfWToPrevious * y.toPreviousFactor;
     if (s + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
     return closed;
 }
 

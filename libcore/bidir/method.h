@@ -109,7 +109,7 @@ class ProposalSink {
 class LightSampler {
   public:
     virtual ~LightSampler() = default;
-    /// False where the scene has no light with power.
+    /// False where the draw gives nothing: no light has power, or the point is dark.
     virtual bool sampleLight(Rng& rng, PathVertex& out) const = 0;
 };
 

@@ -34,6 +34,7 @@ class Products {
         setLightSource();
         for (int i = 1; i < k_; ++i) setScatter(i);
         setLens();
+        eyePdfA_[0] *= double(source_.opacity);  // eye walks find a lamp with alpha that often
         if (techniques_.connections && !techniques_.connections->constants()) setThroughputs();
     }
 
@@ -136,8 +137,7 @@ class Products {
     void setThroughputs() {
         const bool known =
             source_.kind == LightKind::Area || source_.kind == LightKind::Environment;
-        beta_[0] = known && source_.pdf > 0.0f ? source_.exitance * (1.0f / source_.pdf)
-                                               : (known ? Rgb{} : path_.sourceBeta);
+        beta_[0] = known ? source_.throughput() : path_.sourceBeta;
         for (int i = 1; i < k_; ++i) {
             const auto v = std::size_t(i);
             const double pdf = lightPdfA_[v] * lightRoulette(i);

@@ -23,7 +23,8 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
     const Lights& lights = scene_.lights();
     if (lights.empty()) return std::nullopt;
     const LightPoint p = lights.samplePoint(rng);
-    if (!(p.pdf > 0.0f)) return std::nullopt;
+    const Rgb throughput = p.throughput();
+    if (isBlack(throughput)) return std::nullopt;
     std::construct_at(&out);
     out.kind = isInfinite(p.kind) ? VertexKind::Infinite : VertexKind::LightSource;
     out.position = p.position;
@@ -31,10 +32,10 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
     out.light = p.light;
     out.lightUv = p.uv;
     if (p.kind == LightKind::Area && !scene_.absorption().empty()) {
-        out.material = scene_.materialOf(p.light);
+        out.material = lights.material(p.light);
     }
     out.pdfA = p.pdf;
-    out.throughput = p.exitance * (1.0f / p.pdf);
+    out.throughput = throughput;
     return p;
 }
 
@@ -55,7 +56,7 @@ std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) c
     const std::optional<LightPoint> point = sampleLightPoint(rng, y0);
     if (!point) return std::nullopt;
     out.push_back(y0);
-    if (limits_.maxDepth < 2 || isBlack(y0.throughput)) return std::nullopt;
+    if (limits_.maxDepth < 2) return std::nullopt;
 
     const auto ray = scene_.lights().sampleEmission(*point, rng);
     if (!ray) return std::nullopt;

@@ -57,21 +57,45 @@ float perRadiance(const EmissiveTriangle& t) {
     return t.twoSided ? 2.0f * kPi : kPi;
 }
 
-/// Mean emitted colour of a triangle, never zero where any looked-at texel is not.
-Rgb meanTexture(const EmissiveTriangle& t) {
-    if (!t.texture) return Rgb(1.0f);
-    constexpr int kSteps = 8;
+/// How finely emission has to be looked at over the triangle: an edge's length in texels of the
+/// finer of its two textures.
+double texelsAlong(const EmissiveTriangle& t) {
+    const auto longest = [](const Texture* texture, const std::array<Vec2, 3>& uvs) {
+        if (!texture) return 0.0;
+        double most = 0.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec2 d = uvs[(i + 1) % 3] - uvs[i];
+            most = std::max(
+                most, std::hypot(double(d.x) * texture->width, double(d.y) * texture->height));
+        }
+        return most;
+    };
+    const double colour = longest(t.texture, t.uvs);
+    if (!t.alpha) return colour;
+    std::array<Vec2, 3> uvs = t.alpha->uvs;
+    for (Vec2& uv : uvs) uv = t.alpha->material->baseColorTexture.at(uv);
+    return std::max(colour, longest(t.alpha->texture, uvs));
+}
+
+/// Mean over the triangle of what it emits, as a factor on its radiance: never zero where some
+/// point may shine that none of the looks fell on.
+Rgb meanEmission(const EmissiveTriangle& t) {
+    if (!t.texture && !t.alpha) return Rgb(1.0f);
+    constexpr int kFewest = 8, kMost = 64;  // looks along an edge
+    const int steps = int(std::clamp(std::ceil(texelsAlong(t)), double(kFewest), double(kMost)));
     Rgb sum{};
     int n = 0;
-    for (int i = 0; i < kSteps; ++i) {
-        for (int j = 0; j < kSteps - i; ++j, ++n) {
-            const float u = (float(i) + 1.0f / 3) / kSteps, v = (float(j) + 1.0f / 3) / kSteps;
-            sum +=
-                sampleTexture(*t.texture, t.uvs[0] * (1 - u - v) + t.uvs[1] * u + t.uvs[2] * v).rgb;
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps - i; ++j, ++n) {
+            const Vec2 b{(float(i) + 1.0f / 3) / float(steps),
+                         (float(j) + 1.0f / 3) / float(steps)};
+            const Vec2 uv = t.uvs[0] * (1 - b.x - b.y) + t.uvs[1] * b.x + t.uvs[2] * b.y;
+            const float opacity = t.alpha ? t.alpha->opacity(b) : 1.0f;
+            sum += (t.texture ? sampleTexture(*t.texture, uv).rgb : Rgb(1.0f)) * opacity;
         }
     }
-    // A dark mean may still hide a bright texel between the samples: keep the light pickable.
-    return sum * (1.0f / float(n)) + Rgb(1e-3f);
+    const bool constant = !t.texture && !t.alpha->varies();
+    return constant ? sum * (1.0f / float(n)) : sum * (1.0f / float(n)) + Rgb(1e-3f);
 }
 }  // namespace
 
@@ -110,6 +134,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         a.pdfA = area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
         a.twoSided = t.twoSided;
         a.textured = t.texture != nullptr;
+        a.hasHoles = t.alpha.has_value();
     }
 }
 
@@ -118,7 +143,7 @@ std::vector<double> Lights::powers() const {
     std::vector<double> power;
     const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
     for (const EmissiveTriangle& t : triangles_) {
-        power.push_back(meanOf(t.radiance, meanTexture(t)) * triangleArea(t) * std::numbers::pi *
+        power.push_back(meanOf(t.radiance, meanEmission(t)) * triangleArea(t) * std::numbers::pi *
                         (t.twoSided ? 2.0 : 1.0));
     }
     for (const PunctualLight& l : punctual_) {

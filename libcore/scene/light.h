@@ -1,14 +1,14 @@
 // All lights of a scene behind one table: picked by power, sampled as the first vertex of light
 // subpaths (y_0), asked for the density of any point or direction on them.
 //
-// A vertex on a light carries (methods.md 1):
+// A vertex on a light carries:
 //   area light     point and normal; pdf: pmf / area                  [area measure]
 //   point, spot    point;            pdf: pmf                         [delta position left out]
 //   environment    direction;        pdf: pmf * pdfW                  [solid angle]
 //   directional    direction;        pdf: pmf                         [delta direction left out]
-// `beta` of y_0 is its (spatial) exitance over that density; the emission profile
-// f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's density
-// is that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
+// `beta` of y_0 is its (spatial) exitance over that density, times its opacity; the emission
+// profile f_0(w) = Le(w) / exitance plays the BSDF's part. For lights at infinity the next vertex's
+// density is that of a disk that covers the scene, f_0 = 1, and no distance is ever divided by.
 //
 // Exitances are in units of unit(), which is 1 for all but extreme scenes: what a path carries is
 // the power of the lights times densities, and lights of 1e37 W/m^2 leave a float no room for that.
@@ -25,6 +25,7 @@
 #include "libcore/base/rng.h"
 #include "libcore/base/sampling.h"
 #include "libcore/base/vec.h"
+#include "libcore/scene/alpha.h"
 #include "libcore/scene/description.h"
 #include "libcore/scene/environment.h"
 #include "libcore/scene/ray.h"
@@ -39,8 +40,9 @@ struct EmissiveTriangle {
     std::array<Vec2, 3> uvs;
     Rgb radiance;  ///< factor; times the texture where there is one
     const Texture* texture = nullptr;
+    std::optional<TriangleAlpha> alpha;  ///< where some of its points may not be there
     bool twoSided = false;
-    std::uint32_t object = kNone, primitive = kNone;
+    std::uint32_t material = kNone;
 };
 
 /// A point (or, at infinity, a direction) on a light: y_0.
@@ -51,8 +53,15 @@ struct LightPoint {
     Vec3 ng;        ///< area lights: the emitting side
     Vec2 uv;        ///< barycentric (area lights)
     float pdf = 0;  ///< in the light's own measure, see above; includes the selection pmf
-    Rgb exitance;   ///< area: W/m^2; point, spot: W; directional, environment: W/m^2(/sr); per
-                    ///< Lights::unit()
+    /// Area: W/m^2, of what is there; point, spot: W; directional, environment: W/m^2(/sr); per
+    /// Lights::unit().
+    Rgb exitance;
+    /// Share of the rays that find the point there (alpha); the others pass. A light subpath that
+    /// begins here carries that share, an eye subpath that ends here has been found by it.
+    float opacity = 1.0f;
+
+    /// beta of y_0: what leaves the point over its density; zero where that is zero.
+    Rgb throughput() const { return pdf > 0.0f ? exitance * (opacity / pdf) : Rgb{}; }
 };
 
 inline bool isInfinite(LightKind k) {
@@ -74,8 +83,8 @@ class Lights {
     bool empty() const { return selection_.empty(); }
     std::size_t size() const { return kinds_.size(); }
     LightKind kind(std::uint32_t light) const { return kinds_[light]; }
-    /// What EmissiveTriangle::object was, of an area light.
-    std::uint32_t object(std::uint32_t light) const { return triangles_[light].object; }
+    /// What EmissiveTriangle::material was, of an area light.
+    std::uint32_t material(std::uint32_t light) const { return triangles_[light].material; }
     const Environment* environment() const { return environment_; }
     std::uint32_t environmentIndex() const { return environmentIndex_; }
     /// Probability of picking this light (proportional to its power).
@@ -101,7 +110,12 @@ class Lights {
         p.uv = uv;
         p.pdf = a.pdfA;
         p.exitance = a.textured ? texturedExitance(light, uv) : a.exitance;
+        if (a.hasHoles) p.opacity = opacityAt(light, uv);
         return p;
+    }
+    /// LightPoint::opacity of a light's point alone.
+    float opacity(std::uint32_t light, Vec2 uv) const {
+        return light < area_.size() && area_[light].hasHoles ? opacityAt(light, uv) : 1.0f;
     }
     /// The environment in `direction`, likewise. There must be one.
     LightPoint environmentPoint(Vec3 direction) const;
@@ -148,6 +162,9 @@ class Lights {
     void chooseUnit(double power);
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
+    float opacityAt(std::uint32_t light, Vec2 barycentric) const {
+        return triangles_[light].alpha->opacity(barycentric);
+    }
     Emission otherEmission(std::uint32_t light, const Vec3& direction) const;
     Emission spotEmission(const PunctualLight& light, Vec3 direction) const;
 
@@ -157,7 +174,7 @@ class Lights {
         Vec3 ng;
         Rgb exitance;  ///< where it has no texture
         float pdfA;    ///< selection included
-        bool twoSided, textured;
+        bool twoSided, textured, hasHoles;
     };
 
     std::vector<LightKind> kinds_;

@@ -2,8 +2,10 @@
 // asks.
 #pragma once
 
+#include <span>
+
 #include "libcore/base/vec.h"
-#include "libcore/scene/description.h"
+#include "libcore/scene/material.h"
 
 namespace lacuna {
 
@@ -15,6 +17,12 @@ struct Rgba {
 /// Linear colour and alpha at `uv` (glTF: origin at the image's upper left corner, texel centres at
 /// half integers). The texture must have at least one texel.
 Rgba sampleTexture(const Texture& texture, Vec2 uv);
+
+/// The texture that `use` names, at the point with these coordinates of either set.
+inline Rgba sampleTexture(std::span<const Texture> textures, const TextureUse& use, Vec2 uv,
+                          Vec2 uv1) {
+    return sampleTexture(textures[std::size_t(use.value)], use.at(use.secondSet ? uv1 : uv));
+}
 
 /// Asks the cache for what sampleTexture will look at.
 void prefetchTexture(const Texture& texture, Vec2 uv);

@@ -131,6 +131,57 @@ TEST_P(Exact, quadLightHasItsFormFactor) {
     }
 }
 
+/// A lamp sends out what its alpha leaves of it: that share of BLEND, the part that MASK keeps.
+TEST_P(Exact, lampsWithAlphaHaveTheirShare) {
+    using Alpha = lacuna::Material::Alpha;
+    const double y = 1.8, x0 = -0.6, x1 = 0.4, z0 = -0.3, z1 = 0.3, radiance = 2;
+    Texture right;  // clear on the left half, 3/4 on the right one
+    right.width = 64;
+    right.height = 1;
+    right.wrapU = right.wrapV = Texture::Wrap::ClampToEdge;
+    for (int i = 0; i < 64; ++i) {
+        const std::uint8_t texel[] = {255, 255, 255, std::uint8_t(i < 32 ? 0 : 191)};
+        right.rgba.insert(right.rgba.end(), texel, texel + 4);
+    }
+    struct Lamp {
+        const char* name;
+        Alpha mode;
+        float alpha;
+        bool textured;
+        double left, share;  ///< where the lamp begins, and how much of the rest is there
+    };
+    const double middle = 0.5 * (x0 + x1);
+    for (const Lamp& lamp :
+         {Lamp{"blend", Alpha::Blend, 0.3f, false, x0, 0.3},
+          Lamp{"mask above its cutoff", Alpha::Mask, 0.6f, false, x0, 1},
+          Lamp{"mask below its cutoff", Alpha::Mask, 0.4f, false, x1, 1},
+          Lamp{"blend by a texture", Alpha::Blend, 0.4f, true, middle, 0.4 * 191 / 255},
+          Lamp{"mask by a texture", Alpha::Mask, 1, true, middle, 1}}) {
+        expectFloor(
+            row(),
+            [&](SceneBuilder& b) {
+                lacuna::Material m = emitter(Rgb(float(radiance)));
+                m.alphaMode = lamp.mode;
+                m.baseAlpha = lamp.alpha;
+                // Where the interpolated texels are halfway up, the lamp begins.
+                if (lamp.textured) m.alphaCutoff = 0.5f * 191 / 255;
+                if (lamp.textured) m.baseColorTexture = m.emissiveTexture = b.add(right);
+                b.add(quad({float(x0), float(y), float(z0)}, {float(x1 - x0), 0, 0},
+                           {0, 0, float(z1 - z0)}, b.add(m)));
+            },
+            [&](double x, double z) {
+                const auto f = [&](double u, double v) {
+                    return cornerFormFactor((u - x) / y, (v - z) / y);
+                };
+                const double left = lamp.left;
+                const double factor = f(x1, z1) - f(left, z1) - f(x1, z0) + f(left, z0);
+                return std::numbers::pi * radiance * lamp.share * factor;
+            },
+            lamp.name);
+    }
+    stabilityCase("lamps-with-alpha", worstDeviation(), kOfAllowed);
+}
+
 /// The slit alone is what the floor sees of a strip of light close behind it.
 TEST_P(Exact, lightThroughAGapOfAThousandth) {
     const double y = 1.8, half = 0.5e-3, radiance = 100;

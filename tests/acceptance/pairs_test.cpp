@@ -25,6 +25,10 @@ std::vector<Pair> allPairs() {
         for (int j = i + 1; j < kLightChoices; ++j)
             pairs.push_back({LightChoice(i), LightChoice(j)});
     }
+    pairs.push_back({LightChoice::Quad, LightChoice::Veiled});
+    pairs.push_back({LightChoice::VeiledTexture, LightChoice::MaskedTexture});
+    pairs.push_back({LightChoice::MaskedTexture, LightChoice::Environment});
+    pairs.push_back({LightChoice::Hidden, LightChoice::Sphere});
     return pairs;
 }
 
@@ -47,7 +51,12 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
         const MethodRow row = rowNamed(name);
         expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name);
     }
-    stabilityCase("light-kinds", worstDeviation(), kOfAllowed);
+    const bool alpha = std::max(GetParam().a, GetParam().b) > LightChoice::Environment;
+    if (alpha) {
+        stabilityCase("lamps-with-alpha", worstDeviation(), kOfAllowed);
+    } else {
+        stabilityCase("light-kinds", worstDeviation(), kOfAllowed);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LightPairsSlow, testing::ValuesIn(allPairs()), ByParameter());

@@ -59,10 +59,39 @@ std::string sunnySky() {
 }
 
 std::string nameOf(LightChoice light) {
-    static const char* const names[kLightChoices] = {"quad", "two-sided",   "sphere",     "point",
-                                                     "spot", "directional", "environment"};
+    static const char* const names[] = {"quad",           "two-sided",      "sphere",      "point",
+                                        "spot",           "directional",    "environment", "veiled",
+                                        "veiled texture", "masked texture", "hidden"};
     return names[int(light)];
 }
+
+Texture patches() {
+    Texture t;
+    t.width = t.height = 4;
+    for (int i = 0; i < 16; ++i) {
+        const int x = std::min(i % 4, 3 - i % 4), y = std::min(i / 4, 3 - i / 4);
+        const std::uint8_t texel[] = {255, 255, 255, std::uint8_t((x ^ y) ? 230 : 25)};
+        t.rgba.insert(t.rgba.end(), texel, texel + 4);
+    }
+    return t;
+}
+
+namespace {
+
+/// A lamp's material with alpha.
+std::uint32_t alphaLamp(SceneBuilder& b, Rgb radiance, lacuna::Material::Alpha mode,
+                        float baseAlpha, bool textured) {
+    lacuna::Material m = emitter(radiance, false, Rgb(0.3f));
+    m.alphaMode = mode;
+    m.baseAlpha = baseAlpha;
+    if (textured) {
+        m.baseColorTexture = b.add(patches());
+        m.emissiveTexture = m.baseColorTexture;
+    }
+    return b.add(m);
+}
+
+}  // namespace
 
 SceneBuilder stage() {
     SceneBuilder b;
@@ -104,6 +133,24 @@ void addLight(SceneBuilder& b, LightChoice light, float scale) {
             break;
         case LightChoice::Environment:
             b.environment(sunnySky(), double(scale));
+            break;
+        // Close above the things, so that eye paths run into them and through them.
+        case LightChoice::Veiled:
+            b.add(quad({-1.2f, 1.1f, -0.2f}, {0.9f, 0.1f, 0}, {0, 0, 0.7f},
+                       alphaLamp(b, Rgb(5 * scale), lacuna::Material::Alpha::Blend, 0.4f, false)));
+            break;
+        case LightChoice::VeiledTexture:
+            b.add(quad(
+                {0.4f, 1.2f, 0}, {0.8f, 0, 0}, {0, 0.1f, 0.6f},
+                alphaLamp(b, Rgb(6, 5, 4) * scale, lacuna::Material::Alpha::Blend, 0.8f, true)));
+            break;
+        case LightChoice::MaskedTexture:
+            b.add(quad({-0.3f, 1.4f, 0.1f}, {0.7f, 0.1f, 0}, {0, 0, 0.6f},
+                       alphaLamp(b, Rgb(4, 5, 6) * scale, lacuna::Material::Alpha::Mask, 1, true)));
+            break;
+        case LightChoice::Hidden:
+            b.add(quad({-0.9f, 1, 0}, {0.8f, 0, 0}, {0, 0, 0.6f},
+                       alphaLamp(b, Rgb(5 * scale), lacuna::Material::Alpha::Mask, 0.4f, false)));
             break;
     }
 }
@@ -209,9 +256,22 @@ NamedScene colouredBodies() {
     return s;
 }
 
+NamedScene lampsWithAlpha() {
+    NamedScene s{"lamps with alpha", room(0, false)};
+    SceneBuilder& b = s.builder;
+    using Alpha = lacuna::Material::Alpha;
+    const auto veil = alphaLamp(b, {4, 3, 2}, Alpha::Blend, 0.7f, true);
+    const auto mesh = b.add(quad({-0.3f, 0, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, veil),
+                            translation({-0.4, 0.7, 0}));
+    b.instance(mesh, translation({0.4, 0.5, 0}) * scaling({-1.2, 1, 0.8}));
+    b.add(quad({-0.5f, -0.6f, -0.4f}, {0, 0.5f, 0.1f}, {0.5f, 0, 0},
+               alphaLamp(b, {2, 3, 4}, Alpha::Mask, 1, true)));
+    return s;
+}
+
 std::vector<NamedScene> weightScenes() {
-    return {diffuseBox(),     glossyBox(),         deltaBox(),    underTheSky(),
-            punctualLights(), instancedEmitters(), bentNormals(), colouredBodies()};
+    return {diffuseBox(),        glossyBox(),   deltaBox(),       underTheSky(),   punctualLights(),
+            instancedEmitters(), bentNormals(), colouredBodies(), lampsWithAlpha()};
 }
 
 }  // namespace lacuna::test

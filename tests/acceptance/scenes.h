@@ -16,9 +16,24 @@ std::string constantSky(float radiance);
 /// The repository's sky: non-uniform, with a sun of 7 degrees.
 std::string sunnySky();
 
-/// Kinds of light of the pair matrix.
-enum class LightChoice { Quad, TwoSided, Sphere, Point, Spot, Directional, Environment };
+/// Kinds of light of the pair matrix; behind them lamps with alpha: BLEND by a factor and by a
+/// texture, MASK by a texture, and by a factor that leaves nothing.
+enum class LightChoice {
+    Quad,
+    TwoSided,
+    Sphere,
+    Point,
+    Spot,
+    Directional,
+    Environment,
+    Veiled,
+    VeiledTexture,
+    MaskedTexture,
+    Hidden
+};
 inline constexpr int kLightChoices = 7;
+/// 4 x 4 texels whose alpha goes from 0 to 1 in both directions and back, white.
+Texture patches();
 std::string nameOf(LightChoice light);
 
 /// Floor, back wall, and on the floor a Lambert block, a rough metal sphere and a plastic block;
@@ -44,6 +59,8 @@ NamedScene underTheSky();
 NamedScene punctualLights();
 NamedScene instancedEmitters();
 NamedScene bentNormals();
+/// A room under lamps that MASK and BLEND leave a part of.
+NamedScene lampsWithAlpha();
 /// Rough and smooth bodies of coloured glass, one within another, a lamp and the camera outside.
 NamedScene colouredBodies();
 /// All of these.

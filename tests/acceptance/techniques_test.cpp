@@ -171,6 +171,12 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
+        TechniqueScene s{"lamps with alpha", plates(false), 1, 3};
+        addLight(s.builder, LightChoice::VeiledTexture);
+        addLight(s.builder, LightChoice::MaskedTexture);
+        scenes.push_back(s);
+    }
+    {
         TechniqueScene s{"environment", plates(false), 1, 3};
         s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0));
         s.builder.environment(sunnySky());

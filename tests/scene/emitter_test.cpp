@@ -93,6 +93,62 @@ TEST(AreaLights, LightAndEyePathsAgree) {
     }
 }
 
+/// A lamp's points are there as often as rays find them, wherever it stands.
+TEST(AreaLights, PointsAreThereAsOftenAsRaysFindThem) {
+    using Alpha = lacuna::Material::Alpha;
+    for (const NamedTransform& t : transforms()) {
+        if (t.name == "tiny" || t.name == "nearly flat") continue;  // too small against the scene
+        for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+            for (const Alpha mode : {Alpha::Mask, Alpha::Blend}) {
+                SCOPED_TRACE(t.name + (placement == Placement::Baked ? ", baked" : ", instanced"));
+                SceneBuilder b;
+                lacuna::Material m = emitter({5, 4, 3});
+                m.alphaMode = mode;
+                m.baseAlpha = 0.9f;
+                m.baseColorTexture = b.add(gradient());
+                for (std::size_t i = 0; i < b.d.textures[0].rgba.size(); i += 4) {
+                    b.d.textures[0].rgba[i + 3] = b.d.textures[0].rgba[i];
+                }
+                Mesh sheet = quad({-0.5f, -0.4f, 0}, {1, 0, 0}, {0, 0.8f, 0.1f}, b.add(m));
+                sheet.colors = {{1, 1, 1, 0.6f}, {1, 1, 1, 1}, {1, 1, 1, 0.8f}, {1, 1, 1, 1}};
+                place(b, sheet, t.toWorld, placement);
+                const auto scene = b.build();
+                const Lights& lights = scene->lights();
+                RayTally tally;
+                double expected = 0, found = 0;
+                int asked = 0;
+                for (unsigned i = 0; i < 2000; ++i) {
+                    Rng rng(9, 0, StreamKind::User, i);
+                    const LightPoint y = lights.samplePoint(rng);
+                    const auto& k = y.uv;
+                    if (std::min({k.x, k.y, 1 - k.x - k.y}) < 0.02f) continue;
+                    ASSERT_TRUE(mode == Alpha::Blend || y.opacity == 0.0f || y.opacity == 1.0f);
+                    const Vec3 away = normalize(y.ng + randomDirection(rng) * 0.3f);
+                    const auto hit = scene->intersect(y.position + away * 0.2f, {}, -away,
+                                                      RayKind::EyeWalk, tally);
+                    const bool there =
+                        hit && length(hit->position - y.position) < 1e-5f / dot(y.ng, away);
+                    ++asked;
+                    expected += double(y.opacity);
+                    found += there;
+                    if (!there) continue;
+                    const LightPoint z =
+                        lights.areaPoint(hit->light, hit->position, hit->ng, hit->barycentric);
+                    ASSERT_EQ(z.pdf, y.pdf);
+                    ASSERT_NEAR(z.opacity, y.opacity, 2e-3f);
+                    ASSERT_EQ(z.opacity, lights.opacity(hit->light, hit->barycentric));
+                }
+                // Five standard deviations of as many draws, 6e-7 false alarms each; a mask's edge
+                // may fall between the two points.
+                const double slack = mode == Alpha::Mask ? 3 : 5 * std::sqrt(0.25 * asked);
+                EXPECT_NEAR(found, expected, slack);
+                EXPECT_GT(expected, 0.1 * asked);
+                EXPECT_LT(expected, 0.9 * asked);
+            }
+        }
+    }
+}
+
 TEST(AreaLights, SidesFollowTheWindingAndTheDeterminant) {
     // One triangle, counter-clockwise about +z, under every sign of scale.
     for (int signs = 0; signs < 8; ++signs) {

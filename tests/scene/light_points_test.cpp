@@ -102,6 +102,49 @@ TEST(LightSelection, ProportionalToPower) {
     EXPECT_GT(chiSquareSignificance(counts, pmf, kSamples), kSignificance);
 }
 
+/// Of emission that varies: power by its mean, however small the part that shines.
+TEST(LightSelection, PowerOfTexturesAndAlpha) {
+    // One bright texel among 64 x 64, between all of 36 evenly spread looks; a mask with as much.
+    Texture star;
+    star.width = star.height = 64;
+    star.rgba.assign(64 * 64 * 4, 0);
+    const auto light = [&](int x, int y) {
+        for (int c = 0; c < 4; ++c) star.rgba[std::size_t((y * 64 + x) * 4 + c)] = 255;
+    };
+    for (int y = 9; y < 12; ++y) {
+        for (int x = 14; x < 17; ++x) light(x, y);
+    }
+    EmissiveTriangle plain = emissive({0, 0, 0}, {2, 0, 0}, {0, 1, 0}, Rgb(3.0f));
+    EmissiveTriangle textured = plain;
+    textured.texture = &star;
+    lacuna::Material mask;
+    mask.alphaMode = lacuna::Material::Alpha::Mask;
+    mask.baseColorTexture.value = 0;
+    EmissiveTriangle masked = plain;
+    masked.alpha = TriangleAlpha{&mask, &star, plain.uvs, {1, 1, 1}};
+    lacuna::Material hidden;
+    hidden.alphaMode = lacuna::Material::Alpha::Mask;
+    hidden.baseAlpha = 0.4f;
+    EmissiveTriangle gone = plain;
+    gone.alpha = TriangleAlpha{&hidden, nullptr, {}, {1, 1, 1}};
+
+    const Lights lights({plain, textured, masked, gone}, {}, {}, nullptr, 1.0f);
+    EXPECT_EQ(lights.pmf(3), 0.0);
+    // 9 of 2048 texels of the triangle; what keeps it pickable is a thousandth.
+    const double share = 9.0 / 2048;
+    EXPECT_NEAR(lights.pmf(1) / lights.pmf(0), share + 1e-3, 0.3 * share);
+    EXPECT_NEAR(lights.pmf(2) / lights.pmf(0), share + 1e-3, 0.3 * share);
+
+    // A texel that no look falls on still gets light paths.
+    Texture spark;
+    spark.width = spark.height = 1024;
+    spark.rgba.assign(std::size_t(1024) * 1024 * 4, 0);
+    spark.rgba[(333 * 1024 + 237) * 4] = 255;
+    textured.texture = &spark;
+    EXPECT_GT(Lights({textured}, {}, {}, nullptr, 1.0f).pmf(0), 0.0);
+    EXPECT_GT(Lights({plain, textured}, {}, {}, nullptr, 1.0f).pmf(1), 1e-4);
+}
+
 TEST(LightSelection, NothingToPick) {
     EXPECT_TRUE(Lights({}, {}, {}, nullptr, 1.0f).empty());
     const Environment black(Image(4, 2), 1, 0, "black");

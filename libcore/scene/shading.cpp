@@ -1,0 +1,102 @@
+#include "libcore/scene/shading.h"
+
+#include <algorithm>
+
+#include "libcore/scene/texture.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Indices of all dielectric layers over a diffuse base that the materials may have anywhere.
+std::vector<float> layerIndices(std::span<const Material> materials) {
+    // A coloured texture makes any layer up to the factor's: some tables on the way, each for the
+    // layers up to it, so that the base gets at most F0 / 8 too little.
+    constexpr int kSteps = 8;
+    std::vector<float> indices;
+    for (const Material& m : materials) {
+        if (!mayHaveCoatedBase(m)) continue;
+        for (int i = m.specularColorTexture ? 1 : kSteps; i <= kSteps; ++i) {
+            indices.push_back(Bsdf::layerIor(m.ior, m.specularColor * (float(i) / kSteps)));
+        }
+    }
+    return indices;
+}
+
+}  // namespace
+
+Shading::Shading(const SceneDescription& description, std::span<const BakedMesh> meshes)
+    : description_(description),
+      tables_(std::make_unique<AlbedoTables>(layerIndices(description.materials))) {
+    std::vector<bool> vertexColors(description.materials.size());
+    for (const BakedMesh& m : meshes) {
+        if (!m.colors.empty()) vertexColors[m.material] = true;
+    }
+    for (std::size_t i = 0; i < description.materials.size(); ++i) {
+        prepared_.push_back(prepared(description.materials[i], vertexColors[i]));
+    }
+}
+
+Bsdf Shading::bsdfAt(const SurfacePoint& point) const {
+    const Prepared& common = prepared_[point.material];
+    if (common.bsdf && !common.colorVaries) return common.bsdf->at(point.ng, point.ns);
+    const Material& material = description_.materials[point.material];
+    if (common.bsdf) {
+        const Rgb color = baseColorAt(material, point.uv, point.uv1) * point.color;
+        if (maxComponent(color) > 0.0f) return common.bsdf->at(point.ng, point.ns, color);
+    }
+    Bsdf::Parameters p = parametersAt(material, point.uv, point.uv1);
+    p.baseColor *= point.color;
+    return Bsdf(p, point.ng, point.ns, *tables_);
+}
+
+Shading::Prepared Shading::prepared(const Material& m, bool vertexColors) const {
+    if (std::any_of(kBsdfTextures.begin() + 1, kBsdfTextures.end(),
+                    [&](TextureUse Material::*texture) { return bool(m.*texture); })) {
+        return {};
+    }
+    Prepared out;
+    out.colorVaries = m.baseColorTexture || vertexColors;
+    Bsdf::Parameters p = parametersAt(m, {}, {});
+    if (out.colorVaries) p.baseColor = Rgb(1.0f);
+    out.bsdf = Bsdf(p, {}, {}, *tables_);
+    return out;
+}
+
+Rgb Shading::baseColorAt(const Material& m, Vec2 uv, Vec2 uv1) const {
+    if (!m.baseColorTexture) return m.baseColor;
+    return m.baseColor * sampleTexture(description_.textures, m.baseColorTexture, uv, uv1).rgb;
+}
+
+Bsdf::Parameters Shading::parametersAt(const Material& m, Vec2 uv, Vec2 uv1) const {
+    Bsdf::Parameters p;
+    p.baseColor = baseColorAt(m, uv, uv1);
+    p.metallic = m.metallic;
+    p.roughness = m.roughness;
+    p.specular = m.specular;
+    p.specularColor = m.specularColor;
+    p.ior = m.ior;
+    p.transmission = m.transmission;
+    p.thin = m.thin;
+    p.clearcoat = m.clearcoat;
+    p.clearcoatRoughness = m.clearcoatRoughness;
+    p.without = m.without;
+    const auto sample = [&](const TextureUse& use) {
+        return sampleTexture(description_.textures, use, uv, uv1);
+    };
+    if (m.metallicRoughnessTexture) {
+        const Rgb t = sample(m.metallicRoughnessTexture).rgb;
+        p.roughness *= t.g;
+        p.metallic *= t.b;
+    }
+    if (m.transmissionTexture) p.transmission *= sample(m.transmissionTexture).rgb.r;
+    if (m.specularTexture) p.specular *= sample(m.specularTexture).alpha;
+    if (m.specularColorTexture) p.specularColor *= sample(m.specularColorTexture).rgb;
+    if (m.clearcoatTexture) p.clearcoat *= sample(m.clearcoatTexture).rgb.r;
+    if (m.clearcoatRoughnessTexture) {
+        p.clearcoatRoughness *= sample(m.clearcoatRoughnessTexture).rgb.g;
+    }
+    return p;
+}
+
+}  // namespace lacuna

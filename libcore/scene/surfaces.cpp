@@ -1,0 +1,178 @@
+#include "libcore/scene/surfaces.h"
+
+#include <bit>
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/base/rng.h"
+#include "libcore/scene/texture.h"
+#include "libcore/scene/triangle.h"
+
+namespace lacuna {
+
+/// How a normal map lies at a point: the directions, of any length, of the image's right and upper
+/// edge.
+struct Surfaces::MapAxes {
+    Vec3 right, up;
+
+    /// The directions in which the triangle's texture coordinates grow. glTF's bitangent points to
+    /// the image's upper edge, against v [glTF 2.0, 3.9.3].
+    static MapAxes byCoordinates(const std::array<Vec3, 3>& corners,
+                                 const std::array<Vec2, 3>& uvs) {
+        const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+        const Vec2 d1 = uvs[1] - uvs[0], d2 = uvs[2] - uvs[0];
+        // The determinant's sign is enough: lengths are normalised away.
+        const float side = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;
+        return {(e1 * d2.y - e2 * d1.y) * side, (e1 * d2.x - e2 * d1.x) * side};
+    }
+};
+
+namespace {
+
+Vec2 between(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& t, float u,
+             float v) {
+    if (uvs.empty()) return {};
+    return uvs[t[0]] * (1.0f - u - v) + uvs[t[1]] * u + uvs[t[2]] * v;
+}
+
+}  // namespace
+
+bool Surfaces::stops(const Hit& hit, Vec3 origin, Vec3 direction) const {
+    const BakedMesh& mesh = baked_.meshes[baked_.objects[hit.object].mesh];
+    const float alpha = alphaOf(description_, mesh, hit.primitive).opacity({hit.u, hit.v});
+    if (alpha <= 0.0f || alpha >= 1.0f) return alpha > 0.0f;
+    // A share of the rays, which they draw themselves: no state, and the same ray again meets the
+    // same surfaces. Every strategy of a path has the same chance at each of its edges and vertices
+    // but the lamp's own point, where light subpaths begin (LightPoint::opacity).
+    return hashToUniform(
+               {std::bit_cast<std::uint32_t>(origin.x), std::bit_cast<std::uint32_t>(origin.y),
+                std::bit_cast<std::uint32_t>(origin.z), std::bit_cast<std::uint32_t>(direction.x),
+                std::bit_cast<std::uint32_t>(direction.y),
+                std::bit_cast<std::uint32_t>(direction.z), hit.object, hit.primitive}) < alpha;
+}
+
+bool Surfaces::hasHoles(const SceneObject& object) const {
+    const BakedMesh& mesh = baked_.meshes[object.mesh];
+    return mayHaveHoles(description_.materials[mesh.material], description_.textures,
+                        mesh.hasVertexAlpha());
+}
+
+void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
+    const SceneObject& object = baked_.objects[hit.object];
+    const BakedMesh& mesh = baked_.meshes[object.mesh];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    const float w = 1.0f - hit.u - hit.v;
+    const std::array<Vec3, 3> p = baked_.corners(object, hit.primitive);
+    s.position = p[0] * w + p[1] * hit.u + p[2] * hit.v;
+    s.ng = object.instanced ? triangleNormal(p[0], p[1], p[2]) : mesh.faceNormals[hit.primitive];
+    s.barycentric = {hit.u, hit.v};
+    if (object.turned()) {
+        s.ng = -s.ng;
+        s.barycentric = {hit.v, hit.u};
+    }
+    s.ns = s.ng;
+    bool turned = false;
+    if (!mesh.normals.empty()) {
+        Vec3 n = mesh.normals[t[0]] * w + mesh.normals[t[1]] * hit.u + mesh.normals[t[2]] * hit.v;
+        if (object.instanced) n = object.normalTo(n);
+        n = normalize(n);
+        const float side = dot(n, s.ng);
+        // Normals that contradict the winding are turned; ones at a right angle say nothing.
+        turned = side < 0.0f;
+        if (std::fabs(side) > 1e-3f) s.ns = turned ? -n : n;
+    }
+    s.uv = between(mesh.uvs, t, hit.u, hit.v);
+    s.material = mesh.material;
+    s.light = object.firstLight != kNone ? object.firstLight + hit.primitive : kNone;
+    s.uv1 = {};
+    s.color = Rgb(1.0f);
+    if (!mesh.plain) decorate(hit, p, turned, s);
+    for (const TextureUse& use : mesh.farTextures) {
+        prefetchTexture(description_.textures[std::size_t(use.value)],
+                        use.at(use.secondSet ? s.uv1 : s.uv));
+    }
+}
+
+/// What a plain mesh has not. `turned`: the interpolated normal was.
+void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
+                        SurfacePoint& s) const {
+    const SceneObject& object = baked_.objects[hit.object];
+    const BakedMesh& mesh = baked_.meshes[object.mesh];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    const float w = 1.0f - hit.u - hit.v;
+    s.uv1 = between(mesh.uvs1, t, hit.u, hit.v);
+    if (!mesh.colors.empty()) {
+        const auto color = [&](std::uint32_t corner) {
+            const auto& c = mesh.colors[corner];
+            return Rgb{c[0], c[1], c[2]};
+        };
+        s.color = color(t[0]) * w + color(t[1]) * hit.u + color(t[2]) * hit.v;
+    }
+    const Material& material = description_.materials[mesh.material];
+    const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
+    if (material.normalTexture && !uvs.empty()) {
+        MapAxes axes = MapAxes::byCoordinates(corners, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+        if (!mesh.tangents.empty()) {
+            Vec3 right = mesh.tangentAt(t, hit.u, hit.v);
+            bool over = (mesh.tangents[t[0]][3] < 0.0f) != turned;
+            if (object.instanced) {
+                right = object.vector(right);
+                over = over != object.mirrored;
+            }
+            // Tangents that say nothing (zero or NaN) leave it to the coordinates.
+            const Vec3 up = cross(s.ns, right) * (over ? -1.0f : 1.0f);
+            if (lengthSquared(up) > 0.0f) axes = {right, up};
+        }
+        s.ns = bumped(s, material.normalTexture, material.normalScale, axes);
+    }
+}
+
+/// Shading normal by a normal map, whose axes are made perpendicular to the interpolated normal.
+Vec3 Surfaces::bumped(const SurfacePoint& point, const TextureUse& map, float scale,
+                      const MapAxes& axes) const {
+    const Vec3 tangent = normalize(axes.right - point.ns * dot(point.ns, axes.right));
+    Vec3 bitangent = cross(point.ns, tangent);
+    if (dot(bitangent, axes.up) < 0.0f) bitangent = -bitangent;
+    const Rgb texel = sampleTexture(description_.textures, map, point.uv, point.uv1).rgb;
+    const Vec3 n = tangent * ((2.0f * texel.r - 1.0f) * scale) +
+                   bitangent * ((2.0f * texel.g - 1.0f) * scale) +
+                   point.ns * (2.0f * texel.b - 1.0f);
+    const Vec3 unit = normalize(n);
+    // Normals that lead below the surface, and those of triangles without tangents (NaN), say
+    // nothing.
+    return dot(unit, point.ng) > 1e-3f ? unit : point.ns;
+}
+
+bool Surfaces::mostlyHoles(const TriangleAlpha& alpha) const {
+    // Points in the middle of an even division of the triangle into 64.
+    constexpr int kRows = 8;
+    int there = 0;
+    for (int i = 0; i < kRows; ++i) {
+        for (int j = 0; j < 2 * (kRows - i) - 1; ++j) {
+            const float third = j % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+            const float u = (float(i) + third) / kRows, v = (float(j / 2) + third) / kRows;
+            there += alpha.opacity({u, v}) >= 0.5f ? 1 : 0;
+        }
+    }
+    return 2 * there < kRows * kRows;
+}
+
+std::vector<std::array<Vec3, 3>> Surfaces::blocking(const ThreadPool& pool) const {
+    std::vector<std::vector<std::array<Vec3, 3>>> parts(baked_.objects.size());
+    pool.forEach(parts.size(), [&](std::size_t o) {
+        const SceneObject& object = baked_.objects[o];
+        const BakedMesh& mesh = baked_.meshes[object.mesh];
+        const bool holes = hasHoles(object);
+        parts[o].reserve(mesh.triangles.size());
+        for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+            if (holes && mostlyHoles(alphaOf(description_, mesh, k))) continue;
+            parts[o].push_back(baked_.corners(object, k));
+        }
+    });
+    std::vector<std::array<Vec3, 3>> all;
+    all.reserve(baked_.triangles);
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+}  // namespace lacuna

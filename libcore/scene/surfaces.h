@@ -1,0 +1,56 @@
+// What a ray meets: the point of a hit with everything a path vertex needs, and whether it is
+// there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "libcore/scene/baked.h"
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+/// Where a ray met a surface.
+struct SurfacePoint {
+    Vec3 position;
+    Vec3 ng;          ///< unit, by the winding (sign of the transform's determinant included)
+    Vec3 ns;          ///< unit, on ng's side
+    Vec2 uv, uv1;     ///< texture coordinates of either set
+    Rgb color{1.0f};  ///< the vertices', a factor on the base colour
+    Vec2 barycentric;
+    std::uint32_t material = 0;
+    std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
+};
+
+/// The scene's triangles. Both references must outlive it.
+class Surfaces {
+  public:
+    Surfaces(const SceneDescription& description, const BakedScene& baked)
+        : description_(description), baked_(baked) {}
+
+    /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
+    void pointAt(const Hit& hit, SurfacePoint& out) const;
+
+    /// Whether a ray (of which origin and direction may be in the object's own space) stops at the
+    /// hit: always, but where alpha lets some of them pass.
+    bool stops(const Hit& hit, Vec3 origin, Vec3 direction) const;
+    /// Whether rays may pass through some points of the object.
+    bool hasHoles(const SceneObject& object) const;
+
+    /// Scene::blockingTriangles.
+    std::vector<std::array<Vec3, 3>> blocking(const ThreadPool& pool) const;
+
+  private:
+    struct MapAxes;
+
+    void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
+                  SurfacePoint& out) const;
+    Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
+                const MapAxes& axes) const;
+    bool mostlyHoles(const TriangleAlpha& alpha) const;
+
+    const SceneDescription& description_;
+    const BakedScene& baked_;
+};
+
+}  // namespace lacuna
