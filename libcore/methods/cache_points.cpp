@@ -75,7 +75,7 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
     const std::size_t asked = std::min(size(), std::size_t(neighbours) + 1);
     perPoint_ = std::min(size(), std::size_t(neighbours));
     around_.resize(size() * perPoint_);
-    geometryLimit_.resize(size());
+    limit_.resize(size());
     forEachPoint(context.threads, size(), [&](std::uint32_t i) {
         std::vector<std::uint32_t> found(asked);
         nearest_.find(position(i), found);
@@ -92,7 +92,7 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
         // Where all neighbours coincide they say nothing; where all points do, finite is all that
         // can be asked.
         if (!(d2 > 0.0)) d2 = spacing2;
-        geometryLimit_[i] = d2 > 0.0 ? 1.0 / d2 : double(std::numeric_limits<float>::max());
+        limit_[i] = d2 > 0.0 ? 1.0 / d2 : double(std::numeric_limits<float>::max());
     });
 }
 
@@ -110,7 +110,7 @@ double CachePoints::trustedGeometry(std::uint32_t point, const PathVertex& light
                         isBlack(at.bsdf.evaluate(at.toPrevious, -edge.direction).f);
     const double here = behind ? 0.0 : double(edge.geometry);
     // Never zero for a path that carries something: it may have no other strategy.
-    return std::min(geometryLimit_[point], std::clamp(here, 1e-4 * geometry, geometry));
+    return limited(point, light, std::clamp(here, 1e-4 * geometry, geometry));
 }
 
 std::uint64_t CachePoints::bytes() const {

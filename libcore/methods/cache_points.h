@@ -47,10 +47,16 @@ class CachePoints {
         return std::span(around_).subspan(serving * perPoint_, perPoint_);
     }
 
-    /// Upper limit of G in everything that is kept at a point: a light vertex closer than the
+    /// Upper limit of 1 / d^2 in everything that is kept at a point: a light vertex closer than the
     /// point's neighbours are says little about the vertices that it serves, and may be infinitely
     /// close. Never a limit on what is carried.
-    double geometryLimit(std::uint32_t point) const { return geometryLimit_[point]; }
+    double inverseSquareLimit(std::uint32_t point) const { return limit_[point]; }
+    /// G, or `share` of that limit where G is larger. At infinity G is a cosine: there is no
+    /// distance to limit.
+    double limited(std::uint32_t point, const PathVertex& light, double geometry,
+                   double share = 1.0) const {
+        return light.infinite() ? geometry : std::min(geometry, share * limit_[point]);
+    }
     /// G between an eye vertex and a light vertex as weights may trust it: no larger than what the
     /// pmf at the point knows of it. Where the light vertex is near the eye vertex and not near
     /// the point, or behind the point's surface, which scatters nothing of it, it is picked rarely,
@@ -66,7 +72,7 @@ class CachePoints {
     std::vector<PathVertex> vertices_;   // whole eye subpaths
     std::vector<std::uint32_t> points_;  // index into vertices_
     std::vector<std::uint32_t> around_;  // perPoint_ each
-    std::vector<double> geometryLimit_;
+    std::vector<double> limit_;          // of 1 / d^2
     std::size_t perPoint_ = 0;
     NearestPoints nearest_;
 };

@@ -40,7 +40,7 @@ double ImportanceRecords::samplesOf(const Connection& c, std::uint32_t serving,
             continue;
         }
         const double g = points_.trustedGeometry(i, *c.light.vertex, c.geometry);
-        const double bounded = std::min(g, kBoundedShare * points_.geometryLimit(i));
+        const double bounded = points_.limited(i, *c.light.vertex, g, kBoundedShare);
         double ratio = 1.0 / q[kUniform];
         if (q[kFull] > 0.0) ratio = std::max(ratio, through * g / q[kFull]);
         if (q[kUnoccluded] > 0.0) ratio = std::max(ratio, through * g / q[kUnoccluded]);
@@ -115,15 +115,17 @@ void ImportanceRecords::observe(IterationContext& context) {
 void ImportanceRecords::weigh(std::uint32_t record, const PathSpace& space, RayTally& tally,
                               std::vector<double> (&weight)[kRows]) const {
     const Subpath eye = points_.eye(record);
-    const double limit = points_.geometryLimit(record);
     for (std::size_t i = 0; i < vertices_->size(); ++i) {
         weight[kUniform][i] = 1.0;
         const Subpath light = vertices_->prefix(i);
         const PathSpace::Arrival a = space.arrival(light, eye, true);
         const double flow = double(mean(a.flow));
         if (!(flow > 0.0)) continue;
-        weight[kBounded][i] = flow * std::min(a.geometry, kBoundedShare * limit);
-        const double full = double(mean(a.scattered)) * std::min(a.geometry, limit);
+        const auto g = [&](double share) {
+            return points_.limited(record, light.back(), a.geometry, share);
+        };
+        weight[kBounded][i] = flow * g(kBoundedShare);
+        const double full = double(mean(a.scattered)) * g(1.0);
         weight[kUnoccluded][i] = full;
         if (full > 0.0 && space.visible(light.back(), eye.back(), tally)) {
             weight[kFull][i] = full;

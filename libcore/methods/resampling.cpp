@@ -152,14 +152,14 @@ class Resampling final : public Method {
     void weigh(std::uint32_t c, const PathSpace& space, RayTally& tally,
                std::vector<WeightedVertex>& weights) const {
         const Subpath eye = points_.eye(c);
-        const double limit = points_.geometryLimit(c);
         const bool throughEye = options_.target == CacheTarget::FlowThrough;
         weights.clear();
         for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-            const PathSpace::Arrival a =
-                space.arrival(pool_->prefix(candidates_[i]), eye, throughEye);
+            const Subpath light = pool_->prefix(candidates_[i]);
+            const PathSpace::Arrival a = space.arrival(light, eye, throughEye);
             const Rgb value = throughEye ? a.scattered : a.flow;
-            const double weight = double(mean(value)) * std::min(a.geometry, limit);
+            const double weight =
+                double(mean(value)) * points_.limited(c, light.back(), a.geometry);
             if (weight > 0.0) weights.push_back({i, weight});
         }
         removeHidden(weights, options_.untested, [&](std::uint32_t i) {

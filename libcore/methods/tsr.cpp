@@ -216,7 +216,7 @@ class TwoStageResampling final : public Method {
     /// Both stages at cache point `c`.
     void offer(std::uint32_t c, const IterationContext& context, RayTally& tally, Scratch& s) {
         const Subpath eye = points_.eye(c);
-        const double limit = points_.geometryLimit(c);
+        const double limit = points_.inverseSquareLimit(c);
         const double perSubpath = 1.0 / double(options_.subpaths);
         tree_.cut(eye.back(), options_.clusters, s.heap, s.cut);
         Rng rng(context.seed, generation_, StreamKind::CacheDraw, c);
@@ -232,7 +232,8 @@ class TwoStageResampling final : public Method {
             const double own = double(mean(light.back().throughput));
             s.reserves.push_back(own / draw.pmf * falloff(light.back(), eye.back(), limit));
             const PathSpace::Arrival a = context.space.arrival(light, eye, false);
-            const double g = std::min(a.geometry, limit), flow = double(mean(a.flow));
+            const double g = points_.limited(c, light.back(), a.geometry);
+            const double flow = double(mean(a.flow));
             sums_[2 * c] += own / draw.pmf * g * perSubpath;
             s.flows.push_back(flow * g / draw.pmf);
             const double target =

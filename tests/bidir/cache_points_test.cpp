@@ -79,8 +79,8 @@ TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
             }
             std::sort(all.begin(), all.end());
             for (std::size_t j = 0; j < found.size(); ++j) EXPECT_NEAR(found[j], all[j], 1e-6);
-            EXPECT_GT(points.geometryLimit(i), 0.0);
-            EXPECT_TRUE(std::isfinite(points.geometryLimit(i)));
+            EXPECT_GT(points.inverseSquareLimit(i), 0.0);
+            EXPECT_TRUE(std::isfinite(points.inverseSquareLimit(i)));
         }
     }
     const CachePoints none;
@@ -148,6 +148,23 @@ TEST(CachePoints, weightsDoNotCountOnWhatIsBehindASurface) {
         EXPECT_DOUBLE_EQ(points.trustedGeometry(0, light, geometry),
                          transmission > 0.0f ? geometry : 1e-4 * geometry)
             << transmission;
+    }
+}
+
+/// 1 / d^2 is limited by the distance to the neighbours, a cosine by nothing.
+TEST(CachePoints, limitLengthsAndNoCosines) {
+    Space s;
+    const CachePoints points(s.context, 4.0, 3, 0);
+    PathVertex near, sun;
+    near.kind = VertexKind::LightSource;
+    sun.kind = VertexKind::Infinite;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const double limit = points.inverseSquareLimit(i);
+        EXPECT_EQ(points.limited(i, near, 2 * limit), limit);
+        EXPECT_EQ(points.limited(i, near, 0.5 * limit), 0.5 * limit);
+        EXPECT_EQ(points.limited(i, near, limit, 0.25), 0.25 * limit);
+        EXPECT_EQ(points.limited(i, sun, 2 * limit), 2 * limit);
+        EXPECT_EQ(points.limited(i, sun, limit, 0.25), limit);
     }
 }
 
