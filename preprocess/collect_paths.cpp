@@ -20,13 +20,13 @@ bool isHeldOut(std::uint32_t pixel) {
     return (pixel * 2654435761u >> 16) % 10 == 0;
 }
 
-/// A path of one worker's set and the sample that it came from.
+/// A path of one collector's set and the sample that it came from.
 struct Found {
     std::uint64_t sample;
-    std::size_t worker, index;
+    std::size_t collector, index;
 };
 
-struct Worker {
+struct Collector {
     TrainingPaths paths;
     std::vector<std::uint64_t> samples;  // by path
 };
@@ -76,12 +76,12 @@ CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::ui
     const auto inLightUnit = [unit](const Rgb& c) {
         return Rgb(float(double(c.r) / unit), float(double(c.g) / unit), float(double(c.b) / unit));
     };
-    std::vector<Worker> workers(std::size_t(pool.threads()));
-    integrator.setObserver([&](const PathEvent& event) {
-        Worker& w = workers[std::size_t(pool.workerIndex())];
-        w.paths.add(event.path, event.techniques, cells, mean(inLightUnit(event.contribution)),
+    std::vector<Collector> collectors(std::size_t(pool.threads()));
+    integrator.delivery().setObserver([&](const PathEvent& event) {
+        Collector& w = collectors[std::size_t(pool.workerIndex())];
+        w.paths.add(event.path, event.counts, cells, mean(inLightUnit(event.contribution)),
                     event.pixel);
-        if (w.paths.size() > w.samples.size()) w.samples.push_back(event.sample);
+        if (w.paths.size() > w.samples.size()) w.samples.push_back(event.sample.number);
     });
 
     CollectedPaths result;
@@ -97,9 +97,9 @@ CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::ui
 
         // In the order of samples, whatever the threads.
         std::vector<Found> found;
-        for (std::size_t w = 0; w < workers.size(); ++w) {
-            for (std::size_t i = 0; i < workers[w].samples.size(); ++i) {
-                found.push_back({workers[w].samples[i], w, i});
+        for (std::size_t w = 0; w < collectors.size(); ++w) {
+            for (std::size_t i = 0; i < collectors[w].samples.size(); ++i) {
+                found.push_back({collectors[w].samples[i], w, i});
             }
         }
         std::stable_sort(found.begin(), found.end(),
@@ -115,12 +115,12 @@ CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::ui
             due += share;
             if (due < 1.0) continue;
             due -= 1.0;
-            const TrainingPaths& from = workers[f.worker].paths;
+            const TrainingPaths& from = collectors[f.collector].paths;
             const bool out = isHeldOut(from.path(f.index).pixel);
             (out ? result.heldOut : result.train).append(from, f.index);
         }
         result.traced += found.size();
-        for (Worker& w : workers) w = {};
+        for (Collector& w : collectors) w = {};
     }
     result.iterations = iterations;
     for (Rgb& p : sum) p *= 1.0f / float(iterations);

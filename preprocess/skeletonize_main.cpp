@@ -10,6 +10,7 @@
 #include "preprocess/tool_stage.h"
 #include "render/interrupt.h"
 #include "render/progress.h"
+#include "render/table_options.h"
 
 namespace lacuna {
 namespace {
@@ -23,7 +24,7 @@ int skeletonizeTool(int argc, const char* const* argv) {
     BuildOptions options;
     std::string voxelPath, graphPath;
     addBuildOptions(app, options);
-    addVoxelOptions(app, options);
+    const TableOptions<VoxelSettings> voxels(app, voxelOptions());
     app.add_option("--voxels", voxelPath, "Voxels to start from (default: those in the cache)")
         ->type_name("FILE");
     app.add_option("--graph", graphPath, "Skeleton and balls for viewers, .glb")
@@ -34,7 +35,9 @@ int skeletonizeTool(int argc, const char* const* argv) {
         "1 failed while running, 2 usage, 3 scene or voxels cannot be used, 130 interrupted\n"
         "(nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
-    const VoxelizeSettings settings = checkedSettings(options);
+    const VoxelSettings settings = voxels.read();
+    if (!settings.domain.empty()) parseDomain(settings.domain);
+    checkFiles(options);
     if (!graphPath.empty()) const AtomicFile probe(graphPath);
 
     const ThreadPool pool(options.common.threads);
@@ -48,18 +51,18 @@ int skeletonizeTool(int argc, const char* const* argv) {
     total.run("all", [&] {
         phases.run("load", [&] { scene = loadScene(options.scene, pool); });
         const std::string hash = scene->description().contentHash;
-        CacheStamp stamp = voxelStamp(hash, settings.resolution, settings.domainText);
+        CacheStamp stamp = voxelStamp(hash, settings.resolution, settings.domain);
         if (voxelPath.empty()) {
             voxelPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
                                   stamp, "voxels.vdb");
         }
-        VoxelFile voxels;
+        VoxelFile voxelFile;
         phases.run("read", [&] {
             const std::string remedy = "run lacuna-voxelize " + options.scene;
-            pool.run([&] { voxels = readVoxelFile(voxelPath, hash, scene->centre(), remedy); });
+            pool.run([&] { voxelFile = readVoxelFile(voxelPath, hash, scene->centre(), remedy); });
         });
-        path = resultFile(options, voxels.stamp, "skeleton.vdb");
-        result = skeletonize(*scene, voxels, pool, interrupt.requested(), phases);
+        path = resultFile(options, voxelFile.stamp, "skeleton.vdb");
+        result = skeletonize(*scene, voxelFile, pool, interrupt.requested(), phases);
         phases.run("write", [&] {
             pool.run([&] { writeSkeletonFile(path, result.file, scene->centre()); });
             if (!graphPath.empty()) writeGraphGlb(graphPath, result, scene->centre());

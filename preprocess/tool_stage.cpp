@@ -22,22 +22,7 @@ void addBuildOptions(CLI::App& app, BuildOptions& options) {
     addCommonOptions(app, options.common);
 }
 
-void addVoxelOptions(CLI::App& app, BuildOptions& options) {
-    app.add_option("--resolution", options.resolution,
-                   "Voxels along the longest side, 8 to 1024 (default: 128)")
-        ->type_name("N");
-    app.add_option("--domain", options.domain,
-                   "Box to voxelize, the scene's coordinates (default: what the camera reaches)")
-        ->type_name("x0,y0,z0,x1,y1,z1");
-}
-
-VoxelizeSettings checkedSettings(const BuildOptions& options) {
-    if (options.resolution < kLowestResolution || options.resolution > kHighestResolution) {
-        throw UsageError(
-            "--resolution: expected an integer from " + std::to_string(kLowestResolution) + " to " +
-            std::to_string(kHighestResolution) + ", found " + std::to_string(options.resolution));
-    }
-    if (!options.domain.empty()) parseDomain(options.domain);
+void checkFiles(const BuildOptions& options) {
     const std::string& json = options.common.json;
     if (!json.empty() && (json == options.output || json == options.scene)) {
         throw UsageError("--json: expected a file of its own, found " + json);
@@ -46,7 +31,6 @@ VoxelizeSettings checkedSettings(const BuildOptions& options) {
         throw UsageError("-o: expected a file of its own, found the scene, " + options.scene);
     }
     if (!json.empty()) const AtomicFile probe(json);
-    return {int(options.resolution), options.domain};
 }
 
 std::unique_ptr<Scene> loadScene(const std::string& file, const ThreadPool& pool) {

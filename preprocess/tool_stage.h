@@ -13,16 +13,13 @@ namespace lacuna {
 struct BuildOptions {
     CommonOptions common;
     std::string scene, output;
-    std::int64_t resolution = 128;
-    std::string domain;
 };
 
 /// SCENE, -o and the common options. Both must outlive the parsing.
 void addBuildOptions(CLI::App& app, BuildOptions& options);
-/// --resolution and --domain.
-void addVoxelOptions(CLI::App& app, BuildOptions& options);
-/// Throws UsageError for a wrong value or if the JSON and the result are one file.
-VoxelizeSettings checkedSettings(const BuildOptions& options);
+/// Throws UsageError if the JSON and the result are one file; RunError where the JSON cannot be
+/// written.
+void checkFiles(const BuildOptions& options);
 
 /// Loads in the pool's threads. Throws InputError.
 std::unique_ptr<Scene> loadScene(const std::string& file, const ThreadPool& pool);

@@ -13,7 +13,9 @@ namespace lacuna {
 
 namespace {
 
-constexpr int kPicks = 3;  // N that Gamma is optimised for
+constexpr int kPicks = 3;                  // N that Gamma is optimised for
+constexpr float kDirectionWeight = 0.05f;  // k_d of the centroids' metric [Su22 eq 18]
+constexpr double kLightShare = 0.2;        // of the light subspaces, those that divide the lights
 constexpr std::size_t kTreeSamples = 400'000, kJudgedSamples = 100'000;
 constexpr std::size_t kSamplesPerTask = 4096;
 constexpr std::uint64_t kLightPathsPerTask = 8192;
@@ -214,7 +216,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
     };
     CollectedPaths paths;
     run("paths", [&] {
-        const auto cells = std::uint32_t(std::lround(settings.lightShare * settings.subspaces));
+        const auto cells = std::uint32_t(std::lround(kLightShare * settings.subspaces));
         s.cells = LightCells(scene.lights(), std::max(1u, cells));
         paths = collectPaths(scene, s.cells, settings.paths, settings.seed, pool, cancel);
         result.trainPaths = paths.train.size();
@@ -231,9 +233,8 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         // One subspace in all: the lights' cell is the subpaths' as well.
         const std::uint32_t first = settings.subspaces == 1 ? 0 : s.cells.count();
         const std::uint32_t rest = settings.subspaces > first ? settings.subspaces - first : 1;
-        const auto directionWeight = float(settings.directionWeight);
-        light.label(first, rest, sigma2, directionWeight, lightRng, pool);
-        eye.label(0, settings.subspaces, sigma2, directionWeight, eyeRng, pool);
+        light.label(first, rest, sigma2, kDirectionWeight, lightRng, pool);
+        eye.label(0, settings.subspaces, sigma2, kDirectionWeight, eyeRng, pool);
         s.lightCount = std::max(light.labelCount(), s.cells.count());
         s.eyeCount = eye.labelCount();
     });
@@ -250,7 +251,8 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         const GammaData heldOut = gammaData(paths.heldOut, s, kPicks, pool);
         const FullGamma full =
             fullGamma(data, {light.neighbours(s.lightCount), eye.neighbours(s.eyeCount)}, pool);
-        result.gamma = optimiseGamma(data, heldOut, full, settings.epochs, pool, cancel);
+        result.gamma =
+            optimiseGamma(data, heldOut, full, {settings.epochs, settings.borrow}, pool, cancel);
         s.gamma.assign(result.gamma.gamma.begin(), result.gamma.gamma.end());
         result.emptyEye = emptyShareOfEye(data);
     });

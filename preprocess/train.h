@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-struct TrainSettings : SubspaceSettings {
+struct TrainSettings : TrainingSettings {
     std::uint64_t seed = 1;
 
     CacheStamp stamp(const std::string& sceneHash) const { return subspaceStamp(sceneHash, *this); }

@@ -9,42 +9,10 @@
 #include "preprocess/train.h"
 #include "render/interrupt.h"
 #include "render/progress.h"
+#include "render/table_options.h"
 
 namespace lacuna {
 namespace {
-
-struct TrainOptions {
-    std::int64_t paths = 1'000'000, subspaces = 1000, lightPaths = 2'000'000, epochs = 20;
-    double directionWeight = 0.05, lightShare = 0.2;
-};
-
-std::uint64_t checked(const char* option, std::int64_t value, std::int64_t low, std::int64_t high) {
-    if (value < low || value > high) {
-        throw UsageError(std::string(option) + ": expected an integer from " + std::to_string(low) +
-                         " to " + std::to_string(high) + ", found " + std::to_string(value));
-    }
-    return std::uint64_t(value);
-}
-
-double checkedReal(const char* option, double value, int high) {
-    if (!(value >= 0.0 && value <= high)) {
-        throw UsageError(std::string(option) + ": expected a number from 0 to " +
-                         std::to_string(high) + ", found " + std::to_string(value));
-    }
-    return value;
-}
-
-TrainSettings settingsOf(const TrainOptions& o, std::uint64_t seed) {
-    TrainSettings s;
-    s.paths = checked("--paths", o.paths, 1, 100'000'000);
-    s.subspaces = std::uint32_t(checked("--subspaces", o.subspaces, 1, 4'000));
-    s.lightPaths = checked("--light-paths", o.lightPaths, 1, 1'000'000'000);
-    s.epochs = int(checked("--epochs", o.epochs, 0, 10'000));
-    s.directionWeight = checkedReal("--direction-weight", o.directionWeight, 1000);
-    s.lightShare = checkedReal("--light-share", o.lightShare, 1);
-    s.seed = seed;
-    return s;
-}
 
 nlohmann::json treeJson(const TreeReport& r) {
     return {{"held_out_accuracy", r.heldOutAccuracy},
@@ -94,31 +62,15 @@ void print(const std::string& path, const Trained& t, const Phases& phases, doub
 int trainTool(int argc, const char* const* argv) {
     CLI::App app("Trains the subspaces of a scene's light and eye subpaths", "lacuna-train");
     BuildOptions options;
-    TrainOptions o;
     addBuildOptions(app, options);
-    app.add_option("--paths", o.paths, "Full paths to train with (default: 1000000)")
-        ->type_name("N");
-    app.add_option("--subspaces", o.subspaces,
-                   "Subspaces of light and of eye subpaths (default: 1000)")
-        ->type_name("N");
-    app.add_option("--light-paths", o.lightPaths, "Light subpaths for Q (default: 2000000)")
-        ->type_name("N");
-    app.add_option("--epochs", o.epochs, "Passes over the paths for Gamma (default: 20)")
-        ->type_name("N");
-    app.add_option("--direction-weight", o.directionWeight,
-                   "What incident directions count for in the distance that subspaces divide paths "
-                   "by, against 1 for normals (default: 0.05)")
-        ->type_name("K");
-    app.add_option("--light-share", o.lightShare,
-                   "Share of the light subspaces that divide the lights themselves (default: 0.2)")
-        ->type_name("X");
+    const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
         "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt. Exit\n"
         "codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
         "interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
-    const TrainSettings settings = settingsOf(o, options.common.seed);
-    checkedSettings(options);
+    const TrainSettings settings{training.read(), options.common.seed};
+    checkFiles(options);
 
     const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
@@ -155,8 +107,6 @@ int trainTool(int argc, const char* const* argv) {
                                    {"train_loss_by_epoch", g.trainLoss},
                                    {"held_out_loss_by_epoch", g.heldOutLoss}}},
                                  {"subspaces", settings.subspaces},
-                                 {"direction_weight", settings.directionWeight},
-                                 {"light_share", settings.lightShare},
                                  {"light_subspaces", result.file.subspaces.lightCount},
                                  {"light_source_cells", result.file.subspaces.cells.count()},
                                  {"eye_subspaces", result.file.subspaces.eyeCount},

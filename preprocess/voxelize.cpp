@@ -39,8 +39,8 @@ void Phases::run(const std::string& name, const std::function<void()>& work) {
     seconds_[name] += std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
-                        const ThreadPool& pool, const std::atomic<bool>& cancel, Phases& phases) {
+Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const ThreadPool& pool,
+                        const std::atomic<bool>& cancel, Phases& phases) {
     std::vector<Triangle> triangles;
     Reach reach;
     phases.run("reach", [&] {
@@ -55,18 +55,18 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
 
     Voxelized result;
     result.file.stamp =
-        voxelStamp(scene.description().contentHash, settings.resolution, settings.domainText);
+        voxelStamp(scene.description().contentHash, settings.resolution, settings.domain);
     VoxelSpace& space = result.file.space;
     bool flat = false;  // no resolution leaves room between the surfaces
     phases.run("voxelize", [&] {
-        if (settings.domainText.empty()) {
+        if (settings.domain.empty()) {
             const VoxelBox domain = defaultDomain(reach, boundsOf(triangles));
             space.shape = latticeOver(domain, settings.resolution);
             // The surfaces take a layer on either side.
-            const VoxelIndex finest = latticeOver(domain, kHighestResolution).size;
+            const VoxelIndex finest = latticeOver(domain, VoxelSettings::kHighestResolution).size;
             flat = std::min({finest[0], finest[1], finest[2]}) < 3;
         } else {
-            VoxelBox domain = parseDomain(settings.domainText);
+            VoxelBox domain = parseDomain(settings.domain);
             domain.low -= scene.centre();
             domain.high -= scene.centre();
             space.shape = latticeExactlyOver(domain, settings.resolution);
@@ -81,7 +81,7 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
     phases.run("parts", [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
     if (result.parts.reached == 0) {
         throw UsageError(
-            !settings.domainText.empty()
+            !settings.domain.empty()
                 ? "--domain: expected a box that camera paths or lamps reach, found none of them "
                   "in it; leave it out or raise --resolution"
             : flat ? "--domain: expected the box of the space in front of the surfaces, because "

@@ -8,15 +8,9 @@
 
 #include "libcore/cache/voxel_file.h"
 #include "libcore/voxel/reach.h"
+#include "libcore/voxel/voxel_settings.h"
 
 namespace lacuna {
-
-struct VoxelizeSettings {
-    int resolution = 128;
-    std::string domainText;  ///< of --domain, file coordinates; empty: by the default rule
-};
-
-inline constexpr int kLowestResolution = 8, kHighestResolution = 1024;
 
 /// "x0,y0,z0,x1,y1,z1" with x0 < x1, .. Throws UsageError.
 VoxelBox parseDomain(const std::string& text);
@@ -43,7 +37,7 @@ struct Voxelized {
 
 /// Throws UsageError for a domain that holds nothing of the scene, InputError for a scene without
 /// geometry, Error 130 once `cancel` is set.
-Voxelized voxelizeScene(const Scene& scene, const VoxelizeSettings& settings,
-                        const ThreadPool& pool, const std::atomic<bool>& cancel, Phases& phases);
+Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const ThreadPool& pool,
+                        const std::atomic<bool>& cancel, Phases& phases);
 
 }  // namespace lacuna

@@ -7,6 +7,7 @@
 #include "preprocess/tool_stage.h"
 #include "render/interrupt.h"
 #include "render/progress.h"
+#include "render/table_options.h"
 
 namespace lacuna {
 namespace {
@@ -15,14 +16,16 @@ int voxelizeTool(int argc, const char* const* argv) {
     CLI::App app("Finds the empty space of a glTF scene", "lacuna-voxelize");
     BuildOptions options;
     addBuildOptions(app, options);
-    addVoxelOptions(app, options);
+    const TableOptions<VoxelSettings> voxels(app, voxelOptions());
     app.footer(
         "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the "
         "scene's\n"
         "coordinates. Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be\n"
         "used, 130 interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
-    const VoxelizeSettings settings = checkedSettings(options);
+    const VoxelSettings settings = voxels.read();
+    if (!settings.domain.empty()) parseDomain(settings.domain);
+    checkFiles(options);
 
     const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
@@ -35,7 +38,7 @@ int voxelizeTool(int argc, const char* const* argv) {
     total.run("all", [&] {
         phases.run("load", [&] { scene = loadScene(options.scene, pool); });
         const CacheStamp stamp =
-            voxelStamp(scene->description().contentHash, settings.resolution, settings.domainText);
+            voxelStamp(scene->description().contentHash, settings.resolution, settings.domain);
         path = resultFile(options, stamp, "voxels.vdb");
         result = voxelizeScene(*scene, settings, pool, interrupt.requested(), phases);
         phases.run("write",

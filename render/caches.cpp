@@ -43,9 +43,9 @@ struct Loading {
 };
 
 void loadSkeleton(const Loading& l, Caches& caches) {
-    const VoxelizeSettings voxelSettings{int(l.settings.integer("voxels.resolution")), {}};
+    const VoxelSettings voxelSettings = voxelOptions().read(l.settings, "voxels.");
     const std::string& hash = l.hash();
-    const CacheStamp stamp = voxelStamp(hash, voxelSettings.resolution, {});
+    const CacheStamp stamp = voxelStamp(hash, voxelSettings.resolution, voxelSettings.domain);
     const std::string path = cacheFile(l.directory(), stamp, "skeleton.vdb");
     const std::string resolution = " --resolution " + std::to_string(voxelSettings.resolution);
     const std::string remedy = "add --prepare, or run lacuna-voxelize" + resolution + " " +
@@ -80,12 +80,7 @@ void loadSkeleton(const Loading& l, Caches& caches) {
 
 void loadSubspaces(const Loading& l, Caches& caches) {
     TrainSettings t;  // with the default seed, whatever the picture's: the result is one
-    t.paths = l.settings.integer("train.paths");
-    t.subspaces = std::uint32_t(l.settings.integer("train.subspaces"));
-    t.lightPaths = l.settings.integer("train.light_paths");
-    t.epochs = int(l.settings.integer("train.epochs"));
-    t.directionWeight = l.settings.real("train.direction_weight");
-    t.lightShare = l.settings.real("train.light_share");
+    static_cast<TrainingSettings&>(t) = trainingOptions().read(l.settings, "train.");
     const std::string path = cacheFile(l.directory(), t.stamp(l.hash()), "subspaces");
     const std::string remedy =
         "add --prepare, or run lacuna-train " + trainOptions(t) + " " + l.options.scene;
@@ -107,15 +102,17 @@ void loadSubspaces(const Loading& l, Caches& caches) {
 }  // namespace
 
 void Caches::giveTo(Method& method) const {
-    if (skeleton) method.useSkeleton(skeleton);
-    if (subspaces) method.useSubspaces(subspaces);
+    AssetSet assets;
+    if (skeleton) assets.put(skeleton);
+    if (subspaces) assets.put(subspaces);
+    method.use(assets);
 }
 
 Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                   const Scene& scene, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress) {
     Caches caches;
-    if (!row.needsCaches()) {
+    if (row.needs.empty()) {
         if (options.prepare) {
             progress.remark("--prepare: " + row.name + " needs no caches: nothing to build");
         }
@@ -125,8 +122,10 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
     Phases total;
     const Loading loading{options, settings, scene, pool, cancel, progress, phases};
     total.run("all", [&] {
-        if (row.needsSkeleton) loadSkeleton(loading, caches);
-        if (row.needsSubspaces) loadSubspaces(loading, caches);
+        for (const AssetNeed& need : row.needs) {
+            if (need.name == "skeleton") loadSkeleton(loading, caches);
+            if (need.name == "subspaces") loadSubspaces(loading, caches);
+        }
     });
     caches.phaseSeconds = phases.seconds();
     caches.seconds = total.seconds().at("all");

@@ -24,7 +24,7 @@ std::vector<EffectSwitch> takeEffectSwitches(std::vector<std::string>& assignmen
 struct SwitchTargets {
     SceneDescription& scene;
     double& lensRadius;
-    TechniqueSet* techniques;  ///< null: there is no method
+    Techniques* techniques;  ///< null: there is no method
 };
 
 /// Changes the scene so that an effect is not there any more, or so that its code runs though

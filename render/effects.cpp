@@ -64,7 +64,7 @@ class Table {
 };
 
 void addTechniques(Table& table, const MethodRow& method, bool hittable, bool anyLight) {
-    const TechniqueSet& t = method.techniques;
+    const Techniques& t = method.techniques;
     table.add("hits", t.hits && hittable,
               !t.hits    ? method.name + " has no technique s = 0"
               : hittable ? "an eye path can run into a light"

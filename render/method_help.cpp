@@ -1,32 +1,9 @@
 #include "render/method_help.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace lacuna {
 namespace {
-
-std::string numberText(double value) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-}
-
-std::string rangeText(const Parameter& p) {
-    switch (p.kind) {
-        case Parameter::Kind::Switch:
-            return "on, off";
-        case Parameter::Kind::Choice: {
-            std::string text;
-            for (const std::string& c : p.choices) text += (text.empty() ? "" : ", ") + c;
-            return text;
-        }
-        case Parameter::Kind::Integer:
-        case Parameter::Kind::Real:
-            break;
-    }
-    return (p.kind == Parameter::Kind::Integer ? "integer, " : "number, ") + numberText(p.low) +
-           " to " + numberText(p.high);
-}
 
 std::string padded(std::string text, std::size_t width) {
     text.resize(std::max(text.size(), width), ' ');
@@ -34,19 +11,6 @@ std::string padded(std::string text, std::size_t width) {
 }
 
 }  // namespace
-
-std::string valueText(const Parameter& parameter, double value) {
-    switch (parameter.kind) {
-        case Parameter::Kind::Switch:
-            return value != 0.0 ? "on" : "off";
-        case Parameter::Kind::Choice:
-            return parameter.choices.at(std::size_t(value));
-        case Parameter::Kind::Integer:
-        case Parameter::Kind::Real:
-            break;
-    }
-    return numberText(value);
-}
 
 std::string listMethods() {
     std::size_t width = 0;
@@ -62,20 +26,19 @@ std::string listMethods() {
 std::string methodHelp(const MethodRow& row) {
     std::string text = row.name + ": " + row.summary + "\nreference: " + row.reference +
                        " (REFERENCES.md)\ntechniques:";
-    const TechniqueSet& t = row.techniques;
+    const Techniques& t = row.techniques;
     if (t.hits) text += "\n  s = 0          eye paths that run into a light";
     if (t.connects) text += "\n  s >= 1, t >= 2  eye vertices connected with light vertices";
     if (t.splats) text += "\n  t = 1          light paths seen by the lens";
     if (row.biased) text += "\nbiased: an experiment of a paper, not for pictures";
     text += "\nparameters (--set NAME=VALUE):\n";
-    if (row.parameters.empty()) text += "  none\n";
+    if (row.options.empty()) text += "  none\n";
     std::size_t width = 0;
-    for (const Parameter& p : row.parameters) width = std::max(width, p.name.size());
-    for (const Parameter& p : row.parameters) {
-        const std::string standard =
-            p.defaultText.empty() ? valueText(p, p.defaultValue) : p.defaultText;
-        text += "  " + padded(p.name, width + 2) + p.help + "\n" + std::string(width + 4, ' ') +
-                rangeText(p) + "; default " + standard + "\n";
+    for (const Option& o : row.options) width = std::max(width, o.name.size());
+    for (const Option& o : row.options) {
+        text += "  " + padded(o.name, width + 2) + (o.unit.empty() ? "" : o.unit + " ") + o.help +
+                "\n" + std::string(width + 4, ' ') + o.range() + "; default " +
+                (o.standardText.empty() ? o.standard : o.standardText) + "\n";
     }
     return text;
 }

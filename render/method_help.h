@@ -11,7 +11,5 @@ namespace lacuna {
 std::string listMethods();
 /// One method: what it is, which techniques it has, its parameters with ranges and defaults.
 std::string methodHelp(const MethodRow& row);
-/// A parameter's value as --set takes it: "on", "uniform", "200", "0.004".
-std::string valueText(const Parameter& parameter, double value);
 
 }  // namespace lacuna

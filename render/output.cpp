@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/atomic_file.h"
-#include "render/method_help.h"
 
 namespace lacuna {
 namespace {
@@ -75,18 +74,19 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
 
 json parametersJson(const MethodRow& row, const Settings& settings) {
     json object = json::object();
-    for (const Parameter& p : row.parameters) {
-        const double value = settings.real(p.name);
-        switch (p.kind) {
-            case Parameter::Kind::Integer:
-                object[p.name] = std::int64_t(value);
+    for (const Option& o : row.options) {
+        const std::string& value = settings.at(o.name);
+        switch (o.kind) {
+            case Option::Kind::Integer:
+                object[o.name] = std::int64_t(*parseNumber(value));
                 break;
-            case Parameter::Kind::Real:
-                object[p.name] = value;
+            case Option::Kind::Real:
+                object[o.name] = *parseNumber(value);
                 break;
-            case Parameter::Kind::Switch:
-            case Parameter::Kind::Choice:
-                object[p.name] = valueText(p, value);
+            case Option::Kind::Switch:
+            case Option::Kind::Choice:
+            case Option::Kind::Text:
+                object[o.name] = value;
                 break;
         }
     }

@@ -16,8 +16,9 @@ namespace {
 
 int printEffects(const RenderOptions& options) {
     // Here the method is optional, but not arbitrary.
-    const MethodRow* row = options.method.empty() ? nullptr : &findMethod(options.method);
-    if (row) resolve(*row, options.assignments);
+    const MethodRow* row =
+        options.method.empty() ? nullptr : &findMethod(options.method, "--method");
+    if (row) resolve(*row, options.assignments, "--set ");
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
     const ThreadPool pool(options.common.threads);
     SceneDescription scene;
@@ -25,7 +26,7 @@ int printEffects(const RenderOptions& options) {
     double radius = lensRadius(options, scene);
     std::vector<std::string> warnings;
     std::vector<Effect> effects = effectsWithin(options.tolerance, scene, radius, row, warnings);
-    TechniqueSet techniques = row ? row->techniques : TechniqueSet{};
+    Techniques techniques = row ? row->techniques : Techniques{};
     for (std::string& text : forceEffects(options.effectSwitches,
                                           {scene, radius, row ? &techniques : nullptr}, effects)) {
         warnings.push_back(std::move(text));
@@ -52,14 +53,14 @@ int render(int argc, const char* const* argv) {
         return 0;
     }
     if (!options.helpMethod.empty()) {
-        std::fputs(methodHelp(findMethod(options.helpMethod)).c_str(), stdout);
+        std::fputs(methodHelp(findMethod(options.helpMethod, "--help-method")).c_str(), stdout);
         return 0;
     }
     checkOptions(options);
     if (options.effects) return printEffects(options);
 
-    const MethodRow& row = findMethod(options.method);
-    const Settings settings = resolve(row, options.assignments);
+    const MethodRow& row = findMethod(options.method, "--method");
+    const Settings settings = resolve(row, options.assignments, "--set ");
     const ThreadPool pool(options.common.threads);
     if (options.replay) return replay(options, row, settings, pool);
 

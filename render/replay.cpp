@@ -50,13 +50,13 @@ class Printer {
     void contribution(const PathEvent& e) {
         const int k = e.path.edges, s = k + 1 - e.t;
         double sum = 0.0;
-        for (int t = 1; t <= k + 1; ++t) sum += misWeight(e.path, e.techniques, t);
+        for (int t = 1; t <= k + 1; ++t) sum += misWeight(e.path, e.counts, t);
         std::printf(
             "contribution %d: s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products %.9g, "
             "sum over strategies %.9g)",
             ++contributions_, s, e.t, double(e.contribution.r), double(e.contribution.g),
-            double(e.contribution.b), e.weight,
-            misWeightByProducts(walker_, e.path, e.techniques, e.t), sum);
+            double(e.contribution.b), e.weight, misWeightByProducts(walker_, e.path, e.counts, e.t),
+            sum);
         if (e.proposal) {
             std::printf(", selector weight %.9g, label %u", e.proposal->weight, e.proposal->label);
         }
@@ -99,7 +99,7 @@ class Printer {
             nameOf(v.kind), v.infinite() ? "towards" : "at", p.x, p.y, p.z,
             e.path.delta[n] ? "delta" : "smooth", double(e.path.lightPdfA[n]),
             double(e.path.eyePdfA[n]),
-            i <= e.path.edges ? effectiveCount(e.path, e.techniques, e.path.edges + 1 - i) : 0.0);
+            i <= e.path.edges ? effectiveCount(e.path, e.counts, e.path.edges + 1 - i) : 0.0);
     }
 
     const Walker& walker_;

@@ -85,17 +85,17 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
         *stage_.scene, *stage_.camera, stage_.techniques, *method_, stage_.settings, pool_);
     if (options_.techniques) {
         techniques_.emplace(film_.width(), film_.height(), stage_.settings.limits.maxDepth);
-        integrator_->setTechniqueFilm(&*techniques_);
+        integrator_->delivery().setTechniqueFilm(&*techniques_);
     }
     if (options_.verify) {
         verifier_ = std::make_unique<WeightVerifier>(*stage_.scene, *stage_.camera,
                                                      stage_.settings.limits, pool_);
     }
-    if (options_.techniques && !row.parts.empty()) {
-        parts_.emplace(row.parts, film_.width(), film_.height());
+    if (options_.techniques && !row.proposalLabels.empty()) {
+        parts_.emplace(row.proposalLabels, film_.width(), film_.height());
     }
     if (verifier_ || parts_) {
-        integrator_->setObserver([this](const PathEvent& event) {
+        integrator_->delivery().setObserver([this](const PathEvent& event) {
             if (verifier_) verifier_->check(event);
             if (parts_) parts_->add(event);
         });

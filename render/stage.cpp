@@ -143,9 +143,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     if (options.rouletteDepth) limits.rouletteDepth = int(*options.rouletteDepth);
     stage.settings.seed = options.common.seed;
     stage.settings.crop = chooseCrop(options, film);
-    if (settings.values().contains("light_paths")) {
-        stage.settings.lightPaths = settings.integer("light_paths");
-    }
+    stage.settings.lightPaths = lightPathsOf(settings);
 
     progress.phase("building");
     const Clock::time_point building = Clock::now();

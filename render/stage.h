@@ -17,7 +17,7 @@ namespace lacuna {
 
 struct Stage {
     std::vector<Effect> effects;
-    TechniqueSet techniques;  ///< the method's, as far as effects were not forced
+    Techniques techniques;  ///< the method's, as far as effects were not forced
     std::unique_ptr<Scene> scene;
     std::unique_ptr<Camera> camera;
     RenderSettings settings;  ///< limits, seed, crop (the whole film where none was asked for)

@@ -10,7 +10,7 @@ namespace lacuna {
 /// Alias table [Vose91] over n outcomes, for tables that are too large for the processor's caches
 /// or drawn from too often; otherwise DiscreteDistribution, which realises its pmf exactly. Here
 /// the reported pmf is the nominal one: sums are in double, what is stored is float, so that the
-/// realised probability is off by less than 1e-6 of it (numerics.md 21).
+/// realised probability is off by less than 1e-6 of it.
 class AliasTable {
   public:
     AliasTable() = default;

@@ -1,4 +1,4 @@
-// A table to pick one of n outcomes with given weights (numerics.md 18-20).
+// A table to pick one of n outcomes with given weights.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Errors that end a tool: each carries the exit code that interface.md fixes for its kind.
+// Errors that end a tool: each carries the exit code of its kind.
 #pragma once
 
 #include <stdexcept>

@@ -112,7 +112,8 @@ struct Rgb {
     friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// Mean of the channels: the positive LINEAR functional that steers every selection (methods.md 1).
+/// Mean of the channels, which steers every selection: positive wherever any channel is, and
+/// linear, so that sums may be carried along a path.
 constexpr float mean(const Rgb& c) {
     return (c.r + c.g + c.b) * (1.0f / 3.0f);
 }

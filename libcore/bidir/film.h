@@ -29,7 +29,7 @@ struct Splat {
 };
 
 /// Adds the lists of splats in order: chunk by chunk, each in its own order, so that sums are the
-/// same to the last bit for any number of threads (numerics.md 26). Returns how many were left out
+/// same to the last bit for any number of threads. Returns how many were left out
 /// because their pixel's sum would not have been finite.
 std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
                         const ThreadPool& pool);

@@ -1,6 +1,6 @@
 // Vertices of eye and light subpaths, and how densities change measure between them.
 //
-// A full path x_0 .. x_k starts on a light and ends on the lens (methods.md 1). A subpath is stored
+// A full path x_0 .. x_k starts on a light and ends on the lens. A subpath is stored
 // from its own end: y_0 on the light, z_0 on the lens.
 #pragma once
 
@@ -24,17 +24,21 @@ enum class VertexKind : std::uint8_t {
     Infinite,     ///< y_0 of a light at infinity, or where an eye path left the scene
 };
 
-/// One vertex, as its own subpath's walk left it. Never written after the walk.
+/// What a method's density knows a vertex by, in one role (ConnectionDensity::labelWalk).
+using Label = std::uint32_t;
+
+/// One vertex, as its own subpath's walk left it. Never written after the walk and its labels.
 struct PathVertex {
     // Not defaulted: PathVertex() would zero all bytes before it sets the members, which took a
     // quarter of the time that a walk spends on a vertex.
     PathVertex() {}
 
-    Vec3 position;    ///< Infinite: unit direction from the scene towards the light
-    Vec3 ng;          ///< zero where there is no surface (lens, point lights, infinity)
-    Vec3 toPrevious;  ///< unit, towards the own subpath's previous vertex
-    Bsdf bsdf;        ///< Surface only
-    /// Throughput that arrives AT the vertex, before its BSDF: `beta` of methods.md for light
+    Vec3 position;        ///< Infinite: unit direction from the scene towards the light
+    Vec3 ng;              ///< zero where there is no surface (lens, point lights, infinity)
+    Vec3 toPrevious;      ///< unit, towards the own subpath's previous vertex
+    Label asEye = kNone;  ///< label as the end of an eye subpath; kNone: nothing, or not looked up
+    Bsdf bsdf;            ///< Surface only
+    /// Throughput that arrives AT the vertex, before its BSDF: `beta` of theory.md for light
     /// subpaths, importance over density for eye subpaths. Roulette included.
     Rgb throughput;
     Rgb scatter;            ///< f of the scatter that was sampled here (light: emission profile)
@@ -44,9 +48,7 @@ struct PathVertex {
     float toPreviousFactor = 0;   ///< |cos at the previous| / d^2: solid angle here to its measure
     std::uint32_t light = kNone;  ///< light of this point, if it emits
     Vec2 lightUv;                 ///< barycentric on it
-    /// What the method's density keeps for this vertex (ConnectionDensity::tagOf), so that it is
-    /// looked up once and not once per path; kNone: nothing, or not looked up.
-    std::uint32_t tag = kNone;
+    Label asLight = kNone;        ///< label as the end of a light subpath, likewise
     /// Of the surface that the vertex lies on, whose body may absorb (absorption.h); y_0 has it
     /// only where something in the scene absorbs.
     std::uint32_t material = kNone;
@@ -59,6 +61,13 @@ struct PathVertex {
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
+static_assert(sizeof(PathVertex) == 200);  // pools hold millions of them
+
+/// Asks the cache for a vertex that will be looked at soon.
+inline void prefetch(const PathVertex& vertex) {
+    const char* bytes = reinterpret_cast<const char*>(&vertex);
+    for (std::size_t i = 0; i < sizeof(PathVertex); i += 64) __builtin_prefetch(bytes + i);
+}
 
 /// y_0 .. y_{s-1} or z_0 .. z_{t-1}; the last vertex is the one that is connected.
 using Subpath = std::span<const PathVertex>;

@@ -1,26 +1,47 @@
-// The path space of a scene, as methods see it (method.h).
+// The space that paths live in, as far as methods look at it while they prepare: scenes
+// (scene_paths.h), and finite spaces that tests sum up completely.
 #pragma once
 
-#include "libcore/bidir/connect.h"
-#include "libcore/bidir/method.h"
-#include "libcore/bidir/walk.h"
+#include <cstdint>
+#include <vector>
+
+#include "libcore/base/rng.h"
+#include "libcore/bidir/path.h"
+#include "libcore/bidir/statistics.h"
 
 namespace lacuna {
 
-class ScenePaths final : public PathSpace {
+class ThreadPool;
+
+class PathSpace {
   public:
-    /// The walker must outlive it.
-    explicit ScenePaths(const Walker& walker) : walker_(walker) {}
+    virtual ~PathSpace() = default;
 
-    void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const override;
-    Arrival arrival(Subpath light, Subpath eye, bool throughEye) const override;
-    bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const override {
-        return connected(walker_.scene(), light, eye, RayKind::Cache, tally);
-    }
-    float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const override;
+    /// Replaces `out` by an eye subpath through a uniform point of the whole film.
+    virtual void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const = 0;
 
-  private:
-    const Walker& walker_;
+    /// What arrives where a light subpath meets an eye subpath's last vertex; visibility, and what
+    /// coloured glass absorbs between the two, left out.
+    struct Arrival {
+        Rgb flow;             ///< beta rho at the light's end
+        Rgb scattered;        ///< flow times rho at the eye's end, where asked for
+        double geometry = 0;  ///< G
+    };
+    /// Zero where what comes from behind the eye's last vertex would not be scattered there.
+    virtual Arrival arrival(Subpath light, Subpath eye, bool throughEye) const = 0;
+    virtual bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const = 0;
+    /// Distance along a unit direction from a point in empty space to the first surface; infinite
+    /// where there is none.
+    virtual float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const = 0;
+};
+
+/// What a method may use before and after an iteration's eye paths, and must account for.
+struct IterationContext {
+    const PathSpace& space;
+    const ThreadPool& threads;
+    std::uint64_t seed;
+    std::uint64_t filmPixels;  ///< of the whole film, whatever the crop
+    IterationStatistics& statistics;
 };
 
 }  // namespace lacuna

@@ -22,10 +22,10 @@ double logOf(double density) {
 /// the path came from.
 class Products {
   public:
-    Products(const Walker& walker, const FullPath& path, const Techniques& techniques, int made)
+    Products(const Walker& walker, const FullPath& path, const TechniqueCounts& counts, int made)
         : walker_(walker),
           path_(path),
-          techniques_(techniques),
+          counts_(counts),
           k_(path.edges),
           split_(path.edges + 1 - made),
           lights_(walker.scene().lights()),
@@ -35,7 +35,7 @@ class Products {
         for (int i = 1; i < k_; ++i) setScatter(i);
         setLens();
         eyePdfA_[0] *= double(source_.opacity);  // eye walks find a lamp with alpha that often
-        if (techniques_.connections && !techniques_.connections->constants()) setThroughputs();
+        if (counts_.connections && !counts_.connections->constants()) setThroughputs();
     }
 
     double weight(int t) const {
@@ -124,12 +124,11 @@ class Products {
     /// enough.
     double lightRoulette(int i) const {
         const int at = i - 1;
-        return at >= 1 && at >= techniques_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
+        return at >= 1 && at >= counts_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
     }
     double eyeRoulette(int i) const {
         const int at = i + 1;
-        return at <= k_ - 1 && k_ - at >= techniques_.rouletteDepth ? survival_[std::size_t(at)]
-                                                                    : 1.0;
+        return at <= k_ - 1 && k_ - at >= counts_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
     }
 
     /// beta at every x_i. What a punctual light sends out is taken from the path (it is no
@@ -151,22 +150,22 @@ class Products {
     /// n_t r_t, from events and vertices.
     double count(int t) const {
         const int s = k_ + 1 - t;
-        if (s == 0) return techniques_.hit && isHittable(source_.kind) ? 1.0 : 0.0;
+        if (s == 0) return counts_.hit && isHittable(source_.kind) ? 1.0 : 0.0;
         const auto smooth = [&](int i) { return !isDelta(event_[std::size_t(i)]); };
         if (s >= 2 && !smooth(s - 1)) return 0.0;
         if (t >= 2 && !smooth(s)) return 0.0;
         if (t == 1) {
             // A punctual light seen directly has no size in the picture.
-            return k_ == 1 && !isHittable(source_.kind) ? 0.0 : techniques_.splats;
+            return k_ == 1 && !isHittable(source_.kind) ? 0.0 : counts_.splats;
         }
-        if (!techniques_.connections) return 0.0;
-        if (const auto c = techniques_.connections->constants()) {
+        if (!counts_.connections) return 0.0;
+        if (const auto c = counts_.connections->constants()) {
             return s == 1 ? c->direct : c->indirect;
         }
         const auto v = std::size_t(s);
         int order = 1;
         for (int i = s + 1; i < k_; ++i) order += smooth(i);
-        return techniques_.connections->effectiveSamples(
+        return counts_.connections->effectiveSamples(
             {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
              .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
              .beta = beta_[v - 1],
@@ -192,7 +191,7 @@ class Products {
 
     const Walker& walker_;
     const FullPath& path_;
-    const Techniques& techniques_;
+    const TechniqueCounts& counts_;
     const int k_;
     const int split_;  // x_0 .. x_{split-1} were made by the light's walk
     const Lights& lights_;
@@ -208,9 +207,9 @@ class Products {
 
 }  // namespace
 
-double misWeightByProducts(const Walker& walker, const FullPath& path, const Techniques& techniques,
-                           int t) {
-    return Products(walker, path, techniques, t).weight(t);
+double misWeightByProducts(const Walker& walker, const FullPath& path,
+                           const TechniqueCounts& counts, int t) {
+    return Products(walker, path, counts, t).weight(t);
 }
 
 WeightVerifier::WeightVerifier(const Scene& scene, const Camera& camera, WalkLimits limits,
@@ -222,20 +221,20 @@ WeightVerifier::WeightVerifier(const Scene& scene, const Camera& camera, WalkLim
 
 bool WeightVerifier::Worst::worseThan(const Worst& other) const {
     if (difference != other.difference) return difference > other.difference;
-    return std::tie(iteration, light, sample) <
-           std::tie(other.iteration, other.light, other.sample);
+    const Sample &a = sample, &b = other.sample;
+    return std::tie(a.iteration, a.ofLight, a.number) < std::tie(b.iteration, b.ofLight, b.number);
 }
 
 void WeightVerifier::check(const PathEvent& event) {
     Slot& slot = slots_[std::size_t(pool_.workerIndex())];
     ++slot.paths;
-    const double again = misWeightByProducts(walker_, event.path, event.techniques, event.t);
+    const double again = misWeightByProducts(walker_, event.path, event.counts, event.t);
     double difference = std::fabs(again - event.weight);
     if (std::isnan(difference)) {
         ++slot.notNumbers;
         difference = 1.0;
     }
-    const Worst worst{difference, event.iteration, event.t == 1, event.sample};
+    const Worst worst{difference, event.sample};
     if (worst.worseThan(slot.worst)) slot.worst = worst;
 }
 
@@ -249,12 +248,7 @@ WeightVerifier::Result WeightVerifier::result() const {
     }
     if (result.paths == 0) return result;
     result.maxDifference = worst.difference;
-    const auto width = std::uint64_t(filmWidth_);
-    result.replay = worst.light ? "light:" : std::to_string(worst.sample % width);
-    result.replay += worst.light ? "" : ",";
-    result.replay += std::to_string(worst.light ? worst.sample : worst.sample / width);
-    result.replay += ',';
-    result.replay += std::to_string(worst.iteration);
+    result.replay = worst.sample.address(filmWidth_);
     return result;
 }
 

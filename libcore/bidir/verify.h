@@ -3,8 +3,8 @@
 // misWeight (mis.h) sweeps ratios of densities that the walks stored. Nothing here reads a stored
 // density: positions, normals, stored unit directions inside a subpath, events and materials give
 // every p(y), p(z), every roulette probability and every light throughput anew, and each strategy's
-// product is formed as a whole. What both agree on, no bookkeeping error can have touched
-// (numerics.md 1).
+// product is formed as a whole. What both agree on, no bookkeeping error can have touched: a wrong
+// but consistent ratio still sums to one, and fails here.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace lacuna {
 /// Weight of strategy t on this path, t being the strategy that made it (its connection's ends are
 /// where events are smooth and where the edge has no stored direction). May be NaN only where a
 /// density is.
-double misWeightByProducts(const Walker& walker, const FullPath& path, const Techniques& techniques,
-                           int t);
+double misWeightByProducts(const Walker& walker, const FullPath& path,
+                           const TechniqueCounts& counts, int t);
 
 /// Compares the weight of every path it is shown; called from many threads at once.
 class WeightVerifier {
@@ -41,9 +41,7 @@ class WeightVerifier {
   private:
     struct Worst {
         double difference = -1.0;
-        std::uint32_t iteration = 0;
-        bool light = false;
-        std::uint64_t sample = 0;
+        Sample sample;
 
         /// Largest difference, first sample where two are equal.
         bool worseThan(const Worst& other) const;

@@ -3,49 +3,29 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <utility>
-#include <vector>
 
 #include "libcore/base/error.h"
 
 namespace lacuna {
-
-namespace {
-/// The fewest digits that tell the number from all others.
-std::string shortest(double value) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-}
-
-std::vector<std::pair<std::string, std::string>> namesAndValues(const SubspaceSettings& s) {
-    return {{"paths", std::to_string(s.paths)},
-            {"subspaces", std::to_string(s.subspaces)},
-            {"light_paths", std::to_string(s.lightPaths)},
-            {"epochs", std::to_string(s.epochs)},
-            {"direction_weight", shortest(s.directionWeight)},
-            {"light_share", shortest(s.lightShare)}};
-}
-}  // namespace
 
 CacheStamp voxelStamp(const std::string& sceneHash, int resolution, const std::string& domain) {
     return {sceneHash, "resolution=" + std::to_string(resolution) +
                            " domain=" + (domain.empty() ? "auto" : domain)};
 }
 
-CacheStamp subspaceStamp(const std::string& sceneHash, const SubspaceSettings& settings) {
+CacheStamp subspaceStamp(const std::string& sceneHash, const TrainingSettings& settings) {
     CacheStamp stamp{sceneHash, {}};
-    for (const auto& [name, value] : namesAndValues(settings)) {
+    for (const auto& [name, value] : trainingOptions().values(settings)) {
         stamp.settings += (stamp.settings.empty() ? "" : " ") + name + "=" + value;
     }
     return stamp;
 }
 
-std::string trainOptions(const SubspaceSettings& settings) {
+std::string trainOptions(const TrainingSettings& settings) {
     std::string text;
-    for (auto [name, value] : namesAndValues(settings)) {
+    for (auto [name, value] : trainingOptions().values(settings)) {
         std::replace(name.begin(), name.end(), '_', '-');
         text += (text.empty() ? "--" : " --") + name + " " + value;
     }

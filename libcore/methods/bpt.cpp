@@ -4,15 +4,20 @@
 // vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way
 // for a fresh light point per eye vertex: the same density, so r = 1 as well, without the
 // correlation of all direct light along an eye path.
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
 
 namespace lacuna {
 
 namespace {
 
+struct Options {
+    bool nextEvent = true;
+};
+
 class Bidirectional final : public Method {
   public:
-    explicit Bidirectional(bool nextEvent) : nextEvent_(nextEvent) {}
+    explicit Bidirectional(const Options& options) : nextEvent_(options.nextEvent) {}
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (nextEvent_) proposeFreshLight(context, rng, sink);
@@ -29,17 +34,16 @@ class Bidirectional final : public Method {
 
 }  // namespace
 
-MethodRow bidirectionalRow() {
-    MethodRow row;
-    row.name = "bpt";
-    row.reference = "Veach97";
-    row.summary = "bidirectional path tracing: every eye vertex with the pixel's own light subpath";
-    row.techniques = {.hits = true, .connects = true, .splats = true, .ownLightPath = true};
-    row.parameters = {lightPathsParameter(), nextEventParameter(true)};
-    row.create = [](const Settings& s) {
-        return std::make_unique<Bidirectional>(s.on("next_event"));
-    };
-    return row;
+MethodRow bptRow() {
+    OptionTable<Options> table;
+    addNextEvent(table, &Options::nextEvent);
+    return methodRow(
+        {.name = "bpt",
+         .reference = "Veach97",
+         .summary =
+             "bidirectional path tracing: every eye vertex with the pixel's own light subpath",
+         .techniques = {.hits = true, .connects = true, .splats = true, .ownLightPath = true}},
+        table, [](const Options& o) { return std::make_unique<Bidirectional>(o); });
 }
 
 }  // namespace lacuna

@@ -7,22 +7,29 @@
 //   pick      N y per s (the paper: one), divided by M N Pbar(y)
 //   lengths   N for every s; or for s > 2 a share of N on average (LengthPicks), and divided by
 //             that
-//   MIS       credit:  r is one constant, 1 <= r <= M
+//   MIS       credit:  r is one constant, M [Noel15, the authors' code]
 //             aware:   r of the records, then withEyeShare
 //   s = 1     from the pool, or from next event; t = 1 is never resampled
-#include "libcore/methods/importance_records.h"
-#include "libcore/methods/length_pmfs.h"
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/importance_records.h"
+#include "libcore/resampling/length_pmfs.h"
 
 namespace lacuna {
 
 namespace {
 
+enum class Weights { Credit, Aware };
+
 struct Options {
     ImportanceRecords::Options records;
-    double credit, eyeShare;
-    bool nextEvent, everyLength;
-    Picks picks;  ///< N
+    PickOptions picks = {.connections = 1, .first = 8};
+    Weights weights = Weights::Aware;
+    Lengths lengths = Lengths::Share;
+    double eyeShare = 0.25;
+    bool nextEvent = false;
+
+    bool aware() const { return weights == Weights::Aware; }
+    double credit() const { return double(records.subpaths); }
 };
 
 /// n r of a connection; frozen for an iteration.
@@ -33,19 +40,17 @@ class RecordDensity final : public ConnectionDensity {
         : options_(options), picks_(picks), records_(records) {}
 
     std::optional<Constants> constants() const override {
-        if (options_.records.aware || !options_.everyLength) return std::nullopt;
-        return Constants{options_.nextEvent ? 1.0 : options_.credit, options_.credit};
+        if (options_.aware() || options_.lengths != Lengths::Every) return std::nullopt;
+        return Constants{options_.nextEvent ? 1.0 : options_.credit(), options_.credit()};
     }
-    bool tagsVertices() const override { return options_.records.aware; }
-    std::uint32_t tagOf(const PathVertex& vertex) const override {
-        return records_.nearest(vertex);
-    }
+    bool keepsLabels() const override { return options_.aware(); }
+    void labelWalk(std::span<PathVertex> walk) const override { records_.labelAsEye(walk); }
 
     double effectiveSamples(const Connection& c) const override {
         if (options_.nextEvent && c.light.count == 1) return 1.0;
         const double chance = picks_.chance(c.light.count, c.order);
-        if (!options_.records.aware) return chance * options_.credit;
-        const double r = records_.samplesOf(c, records_.serving(*c.eye.vertex),
+        if (!options_.aware()) return chance * options_.credit();
+        const double r = records_.samplesOf(c, records_.serving(*c.eye.vertex, c.eye.label),
                                             picks_.repeats(c.light.count, c.order));
         return chance * withEyeShare(r, c.order, options_.eyeShare);
     }
@@ -60,7 +65,7 @@ class ImportanceCaching final : public Method {
   public:
     explicit ImportanceCaching(const Options& options)
         : options_(options),
-          picks_(options.everyLength, options.picks),
+          picks_(options.lengths, options.picks.picks()),
           records_(options.records),
           density_(options_, picks_, records_) {}
 
@@ -76,7 +81,7 @@ class ImportanceCaching final : public Method {
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
         if (options_.nextEvent) proposeFreshLight(context, rng, sink);
-        const std::uint32_t serving = records_.serving(context.vertex);
+        const std::uint32_t serving = records_.serving(context.vertex, context.vertex.asEye);
         const auto m = double(options_.records.subpaths);
         picks_.forEachPick(vertices_, context.order(), rng, [&](int s, double u, double n) {
             const ImportanceRecords::Pick pick = records_.pick(serving, s, u, rng);
@@ -99,58 +104,39 @@ class ImportanceCaching final : public Method {
 
 }  // namespace
 
-MethodRow importanceCachingRow() {
-    using Kind = Parameter::Kind;
-    MethodRow row;
-    row.name = "icbpt";
-    row.reference = "Georgiev12";
-    row.summary = "light vertices resampled at importance records on surfaces";
-    row.techniques = {.hits = true, .connects = true, .splats = true};
-    row.parts = {"full", "unoccluded", "bounded", "uniform", "fallback"};
-    row.parameters = {lightPathsParameter(),
-                      {"candidates", Kind::Integer, 1024, 1, 1e6, "light subpaths in the pool, N"},
-                      connectionsParameter(1),
-                      firstConnectionsParameter(8),
-                      {"record_density", Kind::Real, 0.001, 0, 16,
-                       "eye subpaths that leave importance records, per pixel"},
-                      {"records", Kind::Integer, 3, 1, 16, "records that serve an eye vertex"},
-                      {"weights",
-                       Kind::Choice,
-                       1,
-                       0,
-                       1,
-                       "what the weights believe: credit samples per connection, or the resampling",
-                       {"credit", "aware"}},
-                      {"q_records", Kind::Integer, 3, 1, 16,
-                       "records of the iteration before that tell a record its sums, N_q"},
-                      {"credit",
-                       Kind::Real,
-                       0,
-                       0,
-                       1e6,
-                       "samples that a connection counts as; 0: all candidates",
-                       {},
-                       "candidates"},
-                      lengthsParameter(),
-                      eyeShareParameter(0.25),
-                      nextEventParameter(false),
-                      presetParameter()};
-    row.paper = {{"eye_share", 0}, {"first_connections", 0}, {"lengths", 0}, {"weights", 0}};
-    row.create = [](const Settings& s) {
-        Options o;
-        o.records.subpaths = s.integer("candidates");
-        o.records.density = s.real("record_density");
-        o.records.records = int(s.integer("records"));
-        o.records.earlier = int(s.integer("q_records"));
-        o.records.aware = s.integer("weights") == 1;
-        o.credit = s.real("credit") > 0.0 ? s.real("credit") : double(o.records.subpaths);
-        o.eyeShare = s.real("eye_share");
-        o.nextEvent = s.on("next_event");
-        o.everyLength = s.integer("lengths") == 0;
-        o.picks = picksOf(s);
-        return std::make_unique<ImportanceCaching>(o);
+MethodRow icbptRow() {
+    const auto records = [](auto field) {
+        return [field](auto& o) -> auto& {
+            return o.records.*field;
+        };
     };
-    return row;
+    using Records = ImportanceRecords::Options;
+    OptionTable<Options> table;
+    table.integer("candidates", records(&Records::subpaths), 1, 1e6, "light subpaths",
+                  "in the pool, M");
+    table.include("", &Options::picks, pickOptions(Options{}.picks));
+    table.real("record_density", records(&Records::density), 0, 16, "eye subpaths per pixel",
+               "that leave importance records");
+    table.integer("records", records(&Records::records), 1, 16, "records",
+                  "that serve an eye vertex");
+    table.choice<Weights>("weights", &Options::weights,
+                          {{"credit", Weights::Credit}, {"aware", Weights::Aware}},
+                          "what the weights believe: M samples per connection (the paper), or the "
+                          "resampling");
+    addLengths(table, &Options::lengths);
+    addEyeShare(table, &Options::eyeShare);
+    addNextEvent(table, &Options::nextEvent);
+    return methodRow(
+        {.name = "icbpt",
+         .reference = "Georgiev12",
+         .summary = "light vertices resampled at importance records on surfaces",
+         .techniques = {.hits = true, .connects = true, .splats = true},
+         .proposalLabels = {"full", "unoccluded", "bounded", "uniform", "fallback"},
+         .paper = {"eye_share=0", "first_connections=0", "lengths=every", "weights=credit"}},
+        table, [](Options o) {
+            o.records.aware = o.aware();
+            return std::make_unique<ImportanceCaching>(o);
+        });
 }
 
 }  // namespace lacuna

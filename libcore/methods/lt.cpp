@@ -2,7 +2,8 @@
 //
 // Exact for every path whose last scatter before the lens is smooth; what the lens sees through
 // mirrors or smooth glass stays black, because no splat can make such a path.
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
 
 namespace lacuna {
 
@@ -19,15 +20,14 @@ class LightTracing final : public Method {
 
 }  // namespace
 
-MethodRow lightTracingRow() {
-    MethodRow row;
-    row.name = "lt";
-    row.reference = "Dutre93";
-    row.summary = "light tracing: light paths splatted to the lens (nothing seen through mirrors)";
-    row.techniques = {.splats = true};
-    row.parameters = {lightPathsParameter()};
-    row.create = [](const Settings&) { return std::make_unique<LightTracing>(); };
-    return row;
+MethodRow ltRow() {
+    return methodRow(
+        {.name = "lt",
+         .reference = "Dutre93",
+         .summary =
+             "light tracing: light paths splatted to the lens (nothing seen through mirrors)",
+         .techniques = {.splats = true}},
+        OptionTable<NoOptions>(), [](NoOptions) { return std::make_unique<LightTracing>(); });
 }
 
 }  // namespace lacuna

@@ -1,23 +1,30 @@
-// Light vertex cache bidirectional path tracing [Davidovic14], as methods.md 2 states it.
+// Light vertex cache bidirectional path tracing [Davidovic14].
 //
 //   pool      Y, all connectable vertices of M light subpaths, new in every iteration
 //   pick      N per eye vertex, uniform over Y:  contribution |Y| / (M N) h(y), |Y| realised now
 //   MIS       n r = N M / Vbar, Vbar the expected number of stored vertices of M subpaths, frozen:
 //             from a warm-up that is thrown away, never from the pool that it weighs
 //   s = 1     from the pool (y_0 is stored), or from next event: then y_0 is in neither Y nor Vbar
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
 
 namespace lacuna {
 
 namespace {
 
+struct Options {
+    std::uint64_t subpaths = 100'000;  ///< M
+    PickOptions picks = {.connections = 3};
+    bool nextEvent = false;
+};
+
 class LightVertexCache final : public Method {
   public:
-    LightVertexCache(std::uint64_t subpaths, const Picks& picks, bool nextEvent)
-        : subpaths_(subpaths),
-          picks_(picks),
-          nextEvent_(nextEvent),
-          density_(picks, nextEvent, 1.0) {}
+    explicit LightVertexCache(const Options& options)
+        : subpaths_(options.subpaths),
+          picks_(options.picks.picks()),
+          nextEvent_(options.nextEvent),
+          density_(picks_, nextEvent_, 1.0) {}
 
     int warmupIterations() const override { return 1; }
     PoolRequest pool() const override { return {subpaths_}; }
@@ -67,23 +74,17 @@ class LightVertexCache final : public Method {
 
 }  // namespace
 
-MethodRow lvcRow() {
-    MethodRow row;
-    row.name = "lvcbpt";
-    row.reference = "Davidovic14";
-    row.summary = "light vertex cache: eye vertices with random vertices of many light subpaths";
-    row.techniques = {.hits = true, .connects = true, .splats = true};
-    row.parameters = {
-        lightPathsParameter(),
-        {"candidates", Parameter::Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
-        connectionsParameter(3),
-        firstConnectionsParameter(0),
-        nextEventParameter(false)};
-    row.create = [](const Settings& s) {
-        return std::make_unique<LightVertexCache>(s.integer("candidates"), picksOf(s),
-                                                  s.on("next_event"));
-    };
-    return row;
+MethodRow lvcbptRow() {
+    OptionTable<Options> table;
+    table.integer("candidates", &Options::subpaths, 1, 1e8, "light subpaths", "in the pool, M");
+    table.include("", &Options::picks, pickOptions(Options{}.picks));
+    addNextEvent(table, &Options::nextEvent);
+    return methodRow(
+        {.name = "lvcbpt",
+         .reference = "Davidovic14",
+         .summary = "light vertex cache: eye vertices with random vertices of many light subpaths",
+         .techniques = {.hits = true, .connects = true, .splats = true}},
+        table, [](const Options& o) { return std::make_unique<LightVertexCache>(o); });
 }
 
 }  // namespace lacuna

@@ -3,7 +3,8 @@
 // Every eye vertex z_{t-1} proposes one fresh light point y_0 (s = 1); eye paths that run into a
 // light count as well (s = 0). MIS sees n = 1 sample of both: the density of a fresh y_0 is that of
 // the light table, which is also p(y_0), so r = 1.
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
 
 namespace lacuna {
 
@@ -22,14 +23,14 @@ class PathTracing final : public Method {
 
 }  // namespace
 
-MethodRow pathTracingRow() {
-    MethodRow row;
-    row.name = "pt";
-    row.reference = "Veach97";
-    row.summary = "path tracing: next event estimation and hits, combined by the balance heuristic";
-    row.techniques = {.hits = true, .connects = true};
-    row.create = [](const Settings&) { return std::make_unique<PathTracing>(); };
-    return row;
+MethodRow ptRow() {
+    return methodRow(
+        {.name = "pt",
+         .reference = "Veach97",
+         .summary =
+             "path tracing: next event estimation and hits, combined by the balance heuristic",
+         .techniques = {.hits = true, .connects = true}},
+        OptionTable<NoOptions>(), [](NoOptions) { return std::make_unique<PathTracing>(); });
 }
 
 }  // namespace lacuna

@@ -34,8 +34,10 @@
 
 #include "libcore/base/alias_table.h"
 #include "libcore/base/parallel.h"
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
 #include "libcore/subspace/subspaces.h"
+#include "libcore/subspace/training_settings.h"
 
 namespace lacuna {
 
@@ -44,36 +46,20 @@ namespace {
 constexpr std::size_t kEntriesPerTask = 4096;
 constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
+enum class Weights { Ris, Paper };
+
 struct Options {
-    std::uint64_t subpaths;  ///< M
-    Picks picks;
-    bool resamplingAware;  ///< the weights: ris, or the paper's
-    std::uint64_t reuse;   ///< M_0, 0: none
-    bool queue;            ///< keep M_0 vertices, not whole iterations: biased
+    std::uint64_t subpaths = 100'000;  ///< M
+    PickOptions picks = {.connections = 3, .first = 12, .deep = 1};
+    Weights weights = Weights::Ris;
+    std::uint64_t reuse = 0;  ///< M_0, 0: none
+    bool queue = false;       ///< keep M_0 vertices, not whole iterations: biased
 };
 
-/// Both subspaces of a vertex in one tag: that of its own walk's role, and that of the other role,
-/// for which the next vertex of its walk is the predecessor.
-class Labels {
+/// Subspaces made ready to draw from and to label with.
+class SubspaceTables {
   public:
-    static constexpr std::uint32_t kUnknown = 0xffff;
-
-    Labels(std::uint32_t own, std::uint32_t other) : tag_(own | other << 16) {}
-    explicit Labels(std::uint32_t tag) : tag_(tag) {}
-
-    std::uint32_t tag() const { return tag_; }
-    std::uint32_t own() const { return tag_ & kUnknown; }
-    std::uint32_t other() const { return tag_ >> 16; }
-
-  private:
-    std::uint32_t tag_;
-};
-static_assert(kNone == (Labels::kUnknown | Labels::kUnknown << 16));
-
-/// Subspaces made ready to draw from.
-class Classes {
-  public:
-    Classes(std::shared_ptr<const Subspaces> subspaces, const Options& options)
+    SubspaceTables(std::shared_ptr<const Subspaces> subspaces, const Options& options)
         : subspaces_(std::move(subspaces)), q_(subspaces_->q), windows_(lightCount(), 1) {
         for (std::size_t i = 0; options.reuse > 0 && i < subspaces_->population.size(); ++i) {
             const double each = subspaces_->population[i] * double(options.subpaths);
@@ -97,16 +83,13 @@ class Classes {
     }
 
     std::uint32_t lightCount() const { return subspaces_->lightCount; }
-    /// The subspace of a light vertex, and that of an eye vertex.
-    std::uint32_t lightOf(const ConnectionEnd& y) const {
-        const std::uint32_t known = knownOf(y, EdgeMaker::LightWalk);
-        return known != Labels::kUnknown ? known
-                                         : subspaces_->lightSubspace(*y.vertex, y.predecessor);
+    /// The subspace of a light vertex, and that of an eye vertex: its label in that role, where it
+    /// is known.
+    std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor, Label label) const {
+        return label != kNone ? label : subspaces_->lightSubspace(y, predecessor);
     }
-    std::uint32_t eyeOf(const ConnectionEnd& z) const {
-        const std::uint32_t known = knownOf(z, EdgeMaker::EyeWalk);
-        return known != Labels::kUnknown ? known
-                                         : subspaces_->eyeSubspace(*z.vertex, *z.predecessor);
+    std::uint32_t eyeOf(const PathVertex& z, const PathVertex& predecessor, Label label) const {
+        return label != kNone ? label : subspaces_->eyeSubspace(z, predecessor);
     }
     /// To draw light subspaces from.
     const AliasTable& column(std::uint32_t eye) const { return columns_[eye]; }
@@ -115,14 +98,17 @@ class Classes {
         const std::uint32_t high = believedGamma_[std::size_t(eye) * lightCount() + light];
         return double(std::bit_cast<float>(high << 16));
     }
-    void tagWalk(std::span<PathVertex> walk) const {
+    void labelWalk(std::span<PathVertex> walk) const {
+        if (!walk.empty() && walk[0].kind != VertexKind::Lens) {
+            walk[0].asLight = subspaces_->lightSubspace(walk[0], nullptr);
+        }
         for (std::size_t first = 1; first < walk.size(); first += kTogether) {
-            tagTogether(walk, first, std::min(walk.size(), first + kTogether));
+            labelTogether(walk, first, std::min(walk.size(), first + kTogether));
         }
     }
-    void tagAcross(std::span<OpenConnection> connections) const {
+    void labelEnds(std::span<OpenConnection> connections) const {
         for (std::size_t first = 0; first < connections.size(); first += kTogether) {
-            tagAcrossTogether(
+            labelEndsTogether(
                 connections.subspan(first, std::min(kTogether, connections.size() - first)));
         }
     }
@@ -135,53 +121,55 @@ class Classes {
   private:
     static constexpr std::size_t kTogether = 8;  // vertices or connections: two descents each
 
-    /// As it was tagged in this role.
-    static std::uint32_t knownOf(const ConnectionEnd& end, EdgeMaker own) {
-        if (end.maker == EdgeMaker::Connection) return Labels(end.tagAcross).own();
-        const Labels labels(end.vertex->tag);
-        return end.maker == own ? labels.own() : labels.other();
-    }
+    /// Look-ups that are taken in turn, and where their labels go.
+    class Searches {
+      public:
+        void add(const DecisionTree& tree, const SubpathEnd& end, Label& label) {
+            descents_[count_] = {tree, end};
+            labels_[count_++] = &label;
+        }
+        void finish() {
+            const auto descents = std::span(descents_).first(count_);
+            lacuna::finish(descents);
+            for (std::size_t i = 0; i < count_; ++i) *labels_[i] = descents[i].label();
+        }
+
+      private:
+        std::array<DecisionTree::Descent, 2 * kTogether> descents_;
+        std::array<Label*, 2 * kTogether> labels_;
+        std::size_t count_ = 0;
+    };
 
     /// Both labels of the vertices [begin, end) of a walk. The last one's in the other role waits
     /// for the vertex that it is connected with.
-    void tagTogether(std::span<PathVertex> walk, std::size_t begin, std::size_t end) const {
+    void labelTogether(std::span<PathVertex> walk, std::size_t begin, std::size_t end) const {
         const bool eye = walk.front().kind == VertexKind::Lens;
         const DecisionTree& own = eye ? subspaces_->eyeTree : subspaces_->lightTree;
         const DecisionTree& other = eye ? subspaces_->lightTree : subspaces_->eyeTree;
-        std::array<PathVertex*, kTogether> vertices;
-        std::array<DecisionTree::Descent, 2 * kTogether> descents;
-        std::size_t count = 0;
+        Searches searches;
         for (std::size_t i = begin; i < end; ++i) {
             PathVertex& v = walk[i];
-            if (v.kind != VertexKind::Surface || v.tag != kNone || !v.connectable()) continue;
-            descents[2 * count] = {own, subpathEnd(v, walk[i - 1])};
-            descents[2 * count + 1] = i + 1 < walk.size()
-                                          ? DecisionTree::Descent(other, subpathEnd(v, walk[i + 1]))
-                                          : DecisionTree::Descent(Labels::kUnknown);
-            vertices[count++] = &v;
+            if (v.kind != VertexKind::Surface || !v.connectable()) continue;
+            searches.add(own, subpathEnd(v, walk[i - 1]), eye ? v.asEye : v.asLight);
+            if (i + 1 == walk.size()) continue;
+            searches.add(other, subpathEnd(v, walk[i + 1]), eye ? v.asLight : v.asEye);
         }
-        finish(std::span(descents).first(2 * count));
-        for (std::size_t n = 0; n < count; ++n) {
-            vertices[n]->tag = Labels(descents[2 * n].label(), descents[2 * n + 1].label()).tag();
-        }
+        searches.finish();
     }
 
     /// Ends that no strategy has in their other role are left out: y_0, and what the lens sees.
-    void tagAcrossTogether(std::span<OpenConnection> connections) const {
-        std::array<DecisionTree::Descent, 2 * kTogether> descents;
-        std::size_t count = 0;
-        for (const auto& [light, eye, edge, across] : connections) {
-            const PathVertex &y = light.back(), &z = eye.back();
-            if (light.size() > 1) descents[count++] = {subspaces_->eyeTree, subpathEnd(y, z)};
-            if (eye.size() > 2) descents[count++] = {subspaces_->lightTree, subpathEnd(z, y)};
+    void labelEndsTogether(std::span<OpenConnection> connections) const {
+        Searches searches;
+        for (OpenConnection& c : connections) {
+            const PathVertex &y = c.light.back(), &z = c.eye.back();
+            if (c.light.size() > 1) {
+                searches.add(subspaces_->eyeTree, subpathEnd(y, z), c.lightAsEye);
+            }
+            if (c.eye.size() > 2) {
+                searches.add(subspaces_->lightTree, subpathEnd(z, y), c.eyeAsLight);
+            }
         }
-        finish(std::span(descents).first(count));
-        count = 0;
-        const auto next = [&] { return Labels(descents[count++].label(), Labels::kUnknown).tag(); };
-        for (auto& [light, eye, edge, across] : connections) {
-            if (light.size() > 1) across.light = next();
-            if (eye.size() > 2) across.eye = next();
-        }
+        searches.finish();
     }
 
     /// The upper half of a float, rounded to nearest; never zero for what is not.
@@ -202,46 +190,55 @@ class Classes {
 
 class SubspaceDensity final : public ConnectionDensity {
   public:
-    SubspaceDensity(const Options& options, const Classes& classes)
-        : options_(options), classes_(classes) {}
+    SubspaceDensity(const Options& options, const SubspaceTables& tables)
+        : subpaths_(double(options.subpaths)),
+          picks_(options.picks.picks()),
+          weights_(options.weights),
+          tables_(tables) {}
 
-    bool tagsVertices() const override { return true; }
-    void tagWalk(std::span<PathVertex> walk) const override { classes_.tagWalk(walk); }
-
-    void tagAcross(std::span<OpenConnection> connections) const override {
-        classes_.tagAcross(connections);
+    bool keepsLabels() const override { return true; }
+    void labelWalk(std::span<PathVertex> walk) const override { tables_.labelWalk(walk); }
+    void labelEnds(std::span<OpenConnection> connections) const override {
+        tables_.labelEnds(connections);
     }
 
     double effectiveSamples(const Connection& c) const override {
         const auto beta = double(mean(c.beta));
         if (!(beta > 0.0)) return 0.0;  // never picked in stage 2
-        const std::uint32_t i = classes_.lightOf(c.light);
-        const double gamma = classes_.gamma(i, classes_.eyeOf(c.eye));
+        const std::uint32_t i =
+            tables_.lightOf(*c.light.vertex, c.light.predecessor, c.light.label);
+        const std::uint32_t j = tables_.eyeOf(*c.eye.vertex, *c.eye.predecessor, c.eye.label);
+        const double gamma = tables_.gamma(i, j);
         if (!(gamma > 0.0)) return 0.0;
-        const double q = classes_.q(i), n = options_.picks.at(c.order);
-        const double m = double(options_.subpaths) * classes_.window(i);
-        if (!options_.resamplingAware) return n * gamma * beta / (q > 0.0 ? q : classes_.unseen());
+        const double q = tables_.q(i), n = picks_.at(c.order);
+        const double m = subpaths_ * tables_.window(i);
+        if (weights_ == Weights::Paper) return n * gamma * beta / (q > 0.0 ? q : tables_.unseen());
         // Both fractions of r brought to one: divisions cost as much as all the rest.
         return m * n * gamma * beta / (beta + (m - 1.0) * q + (n - 1.0) * gamma * beta);
     }
 
   private:
-    const Options& options_;
-    const Classes& classes_;
+    double subpaths_;
+    Picks picks_;
+    Weights weights_;
+    const SubspaceTables& tables_;
 };
 
 class SubspaceConnections final : public Method {
   public:
     explicit SubspaceConnections(const Options& options)
         : options_(options),
-          classes_(std::make_shared<const Subspaces>(), options_),
-          density_(options_, classes_) {}
+          picks_(options.picks.picks()),
+          tables_(std::make_shared<const Subspaces>(), options),
+          density_(options, tables_) {}
 
-    void useSubspaces(std::shared_ptr<const Subspaces> subspaces) override {
-        classes_ = Classes(std::move(subspaces), options_);
-        kept_.assign(classes_.lightCount(), {});
+    void use(const AssetSet& assets) override {
+        const auto subspaces = assets.get<Subspaces>();
+        if (!subspaces) return;
+        tables_ = SubspaceTables(subspaces, options_);
+        kept_.assign(tables_.lightCount(), {});
     }
-    int warmupIterations() const override { return classes_.measured() ? 0 : 1; }
+    int warmupIterations() const override { return tables_.measured() ? 0 : 1; }
     PoolRequest pool() const override { return {options_.subpaths}; }
 
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
@@ -255,11 +252,10 @@ class SubspaceConnections final : public Method {
                  ++n) {
                 const Subpath y = pool.prefix(entries[n]);
                 const PathVertex* predecessor = y.size() > 1 ? &y[y.size() - 2] : nullptr;
-                labels[n] = classes_.lightOf(
-                    {&y.back(), predecessor, int(y.size()), {}, EdgeMaker::LightWalk});
+                labels[n] = tables_.lightOf(y.back(), predecessor, y.back().asLight);
             }
         });
-        const std::uint32_t count = classes_.lightCount();
+        const std::uint32_t count = tables_.lightCount();
         cells_.resize(count);
         ++iterations_;
         for (Cell& cell : cells_) cell.members.clear();
@@ -292,8 +288,8 @@ class SubspaceConnections final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        const AliasTable& column = classes_.column(classes_.eyeOf(
-            {&context.vertex, &context.predecessor(), context.t(), {}, EdgeMaker::EyeWalk}));
+        const PathVertex& z = context.vertex;
+        const AliasTable& column = tables_.column(tables_.eyeOf(z, context.predecessor(), z.asEye));
         // Every look into memory waits for the one before it, so the picks go side by side.
         struct Pick {
             double u, subspacePmf, pmf;
@@ -301,8 +297,7 @@ class SubspaceConnections final : public Method {
             const Subpath* light;
         };
         std::array<Pick, Picks::kMost> storage;  // not initialised: few of them are used
-        const auto picks =
-            std::span(storage).first(std::size_t(options_.picks.at(context.order())));
+        const auto picks = std::span(storage).first(std::size_t(picks_.at(context.order())));
         for (Pick& p : picks) {
             p.u = rng.uniformDouble();
             column.prefetch(p.u);
@@ -322,7 +317,7 @@ class SubspaceConnections final : public Method {
             p.light = &p.cell->members[within.index];
             __builtin_prefetch(p.light);
         }
-        const double nm = double(options_.picks.at(context.order())) * double(options_.subpaths);
+        const double nm = double(picks_.at(context.order())) * double(options_.subpaths);
         for (const Pick& p : picks) {
             if (!p.light) continue;
             prefetch(p.light->back());
@@ -333,7 +328,7 @@ class SubspaceConnections final : public Method {
     bool learns() const override { return options_.reuse > 0; }
 
     void observe(const LightPool&, IterationContext& context) override {
-        if (classes_.measured()) {
+        if (tables_.measured()) {
             if (options_.reuse > 0) keep(context.threads);
             return;
         }
@@ -341,7 +336,7 @@ class SubspaceConnections final : public Method {
         for (const Cell& cell : cells_) {
             q.push_back(cell.within.total() / double(options_.subpaths));
         }
-        classes_.setQ(std::move(q), options_.subpaths);
+        tables_.setQ(std::move(q), options_.subpaths);
     }
 
   private:
@@ -362,7 +357,7 @@ class SubspaceConnections final : public Method {
     /// Copies what the coming iterations use again. Iterations without a vertex count as well.
     void keep(const ThreadPool& threads) {
         threads.forEach(kept_.size(), [&](std::size_t i) {
-            const std::uint32_t window = classes_.window(std::uint32_t(i));
+            const std::uint32_t window = tables_.window(std::uint32_t(i));
             const auto members = std::span<const Subpath>(cells_[i].members);
             if (options_.queue) {
                 const Kept all = copyOf(members);  // some of them lie in what it replaces
@@ -388,70 +383,56 @@ class SubspaceConnections final : public Method {
     }
 
     Options options_;
-    Classes classes_;
+    Picks picks_;
+    SubspaceTables tables_;
     SubspaceDensity density_;
     std::uint64_t iterations_ = 0;                                           // j, with the warm-up
     std::vector<Cell> cells_;                                                // by light subspace
     std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
 };
 
-}  // namespace
-
-namespace {
-MethodRow rowOf(bool queue) {
-    using Kind = Parameter::Kind;
-    MethodRow row;
-    row.name = queue ? "spcbpt-fifo" : "spcbpt";
-    row.reference = "Su22";
-    row.summary = queue ? "spcbpt with the paper's queues of light vertices across iterations"
-                        : "light vertices resampled in two stages, by trained subspaces of light "
-                          "subpaths";
-    row.biased = queue;
-    row.techniques = {.hits = true, .connects = true, .splats = true};
-    row.needsSubspaces = true;
-    row.parameters = {
-        lightPathsParameter(),
-        {"candidates", Kind::Integer, 1e5, 1, 1e8, "light subpaths in the pool, M"},
-        connectionsParameter(3),
-        firstConnectionsParameter(12),
-        {"deep_connections", Kind::Integer, 1, 0, Picks::kMost,
-         "picks per eye vertex after the first two; 0: as many as there"},
-        {"weights",
-         Kind::Choice,
-         0,
-         0,
-         1,
-         "density that the weights see: resampling-aware, or the target alone (the paper)",
-         {"ris", "paper"}},
-        queue ? Parameter{"reuse", Kind::Integer, 200, 1, 1e6, "vertices kept per subspace, M_0"}
-              : Parameter{"reuse", Kind::Integer, 0, 0, 1e6,
-                          "vertices kept per subspace across iterations, M_0; 0: none"},
-        {"train.paths", Kind::Integer, 1e6, 1, 1e8, "full paths to train with"},
-        {"train.subspaces", Kind::Integer, 1000, 1, 4000, "subspaces of light and of eye subpaths"},
-        {"train.light_paths", Kind::Integer, 2e6, 1, 1e9, "light subpaths for Q"},
-        {"train.epochs", Kind::Integer, 20, 0, 10000, "passes over the paths to optimise Gamma"},
-        {"train.direction_weight", Kind::Real, 0.05, 0, 1000,
-         "weight of incident directions in the distance that subspaces divide paths by, k_d"},
-        {"train.light_share", Kind::Real, 0.2, 0, 1,
-         "share of the light subspaces that divide the lights themselves"},
-        presetParameter()};
-    row.paper = {{"first_connections", 0}, {"deep_connections", 0}, {"weights", 1}, {"reuse", 200}};
-    row.create = [queue](const Settings& s) {
-        Picks picks = picksOf(s);
-        if (const auto deep = int(s.integer("deep_connections")); deep > 0) picks.later = deep;
-        return std::make_unique<SubspaceConnections>(Options{
-            s.integer("candidates"), picks, s.integer("weights") == 0, s.integer("reuse"), queue});
-    };
-    return row;
-}
-}  // namespace
-
-MethodRow subspaceRow() {
-    return rowOf(false);
+/// All but `reuse`, which the two rows have in different ranges.
+OptionTable<Options> subspaceOptions(const Options& defaults) {
+    OptionTable<Options> table(defaults);
+    table.integer("candidates", &Options::subpaths, 1, 1e8, "light subpaths", "in the pool, M");
+    table.include("", &Options::picks, pickOptions(defaults.picks, true));
+    table.choice<Weights>(
+        "weights", &Options::weights, {{"ris", Weights::Ris}, {"paper", Weights::Paper}},
+        "density that the weights see: resampling-aware, or the target alone (the paper)");
+    return table;
 }
 
-MethodRow subspaceQueueRow() {
-    return rowOf(true);
+MethodRow subspaceRow(const std::string& name, const std::string& summary, bool biased,
+                      const OptionTable<Options>& table) {
+    return methodRow(
+        {.name = name,
+         .reference = "Su22",
+         .summary = summary,
+         .techniques = {.hits = true, .connects = true, .splats = true},
+         .needs = {{"subspaces", "train.", trainingOptions().options()}},
+         .biased = biased,
+         .paper = {"first_connections=0", "deep_connections=0", "weights=paper", "reuse=200"}},
+        table, [](const Options& o) { return std::make_unique<SubspaceConnections>(o); });
+}
+
+}  // namespace
+
+MethodRow spcbptRow() {
+    OptionTable<Options> table = subspaceOptions({});
+    table.integer("reuse", &Options::reuse, 0, 1e6, "light vertices",
+                  "kept per subspace across iterations, M_0; 0: none");
+    return subspaceRow("spcbpt",
+                       "light vertices resampled in two stages, by trained subspaces of light "
+                       "subpaths",
+                       false, table);
+}
+
+MethodRow spcbptFifoRow() {
+    OptionTable<Options> table = subspaceOptions({.reuse = 200, .queue = true});
+    table.integer("reuse", &Options::reuse, 1, 1e6, "light vertices", "kept per subspace, M_0");
+    return subspaceRow("spcbpt-fifo",
+                       "spcbpt with the paper's queues of light vertices across iterations", true,
+                       table);
 }
 
 }  // namespace lacuna

@@ -203,7 +203,8 @@ class Penalty {
 }  // namespace
 
 GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, const FullGamma& full,
-                          int epochs, const ThreadPool& pool, const std::atomic<bool>& cancel) {
+                          const GammaSettings& settings, const ThreadPool& pool,
+                          const std::atomic<bool>& cancel) {
     const std::uint32_t rows = train.lightCount;
     GammaResult result;
     SubspaceMatrix q = full.q, derivative, next, nextDerivative;
@@ -212,7 +213,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
     result.fullHeldOutLoss = gammaLoss(heldOut, result.gamma, pool);
     double least = result.fullHeldOutLoss;
     for (const double virtualPaths : kVirtualPaths) {
-        if (heldOut.paths() == 0) break;
+        if (heldOut.paths() == 0 || !settings.borrow) break;
         SubspaceMatrix drawn = drawnTo(priorOf(full, virtualPaths), full, virtualPaths);
         SubspaceMatrix e = mixedGamma(drawn, rows);
         const double loss = gammaLoss(heldOut, e, pool);
@@ -228,7 +229,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
                           result.gamma, derivative);
     double loss = result.trainLoss[0] + penalty.addTo(derivative, result.gamma);
 
-    for (int epoch = 1; epoch <= epochs; ++epoch) {
+    for (int epoch = 1; epoch <= settings.epochs; ++epoch) {
         if (cancel) throw Error(130, "interrupted: nothing was written");
         next.resize(q.size());
         for (std::size_t n = 0; n < q.size(); ++n) {

@@ -117,10 +117,17 @@ struct GammaResult {
     std::size_t kept = 0;  ///< the epoch that `gamma` is of: that of the lowest held-out loss
 };
 
+struct GammaSettings {
+    int epochs = 20;
+    bool borrow = true;  ///< off: kappa = 0, every column stands for itself
+};
+
 /// Up to `epochs` passes over all of `train`, fewer once three of them bettered nothing. Held-out
 /// losses choose kappa and among the iterates; where there are no held-out paths, kappa is 0 and
-/// training losses choose. Throws Error 130 once `cancel` is set.
+/// training losses choose. Without borrowing and epochs the result is Gamma^full with its uniform
+/// part [Su22 eq 13]. Throws Error 130 once `cancel` is set.
 GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, const FullGamma& full,
-                          int epochs, const ThreadPool& pool, const std::atomic<bool>& cancel);
+                          const GammaSettings& settings, const ThreadPool& pool,
+                          const std::atomic<bool>& cancel);
 
 }  // namespace lacuna

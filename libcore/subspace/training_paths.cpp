@@ -16,11 +16,11 @@ constexpr std::size_t kPathsPerTask = 8192;
 
 }  // namespace
 
-void TrainingPaths::add(FullPath& path, const Techniques& techniques, const LightCells& cells,
+void TrainingPaths::add(FullPath& path, const TechniqueCounts& counts, const LightCells& cells,
                         float contribution, std::uint32_t pixel) {
     const int k = path.edges;
     if (!(contribution > 0.0f) || !std::isfinite(contribution) || k < 2) return;
-    path.fillLightThroughputs(techniques.rouletteDepth);
+    path.fillLightThroughputs(counts.rouletteDepth);
     const std::uint64_t first = vertices_.size();
     bool any = false;
     for (int i = 0; i <= k; ++i) {
@@ -28,7 +28,7 @@ void TrainingPaths::add(FullPath& path, const Techniques& techniques, const Ligh
         Vertex v{x.position, x.ng, 0.0f};
         const int t = k - i;  // s = i + 1
         if (t >= 2) {
-            const double w = misWeight(path, techniques, t);
+            const double w = misWeight(path, counts, t);
             const auto strength = float(w * double(mean(path.beta[std::size_t(i)])));
             if (strength > 0.0f && std::isfinite(strength)) {
                 v.strength = strength;
@@ -42,7 +42,7 @@ void TrainingPaths::add(FullPath& path, const Techniques& techniques, const Ligh
         return;
     }
     const PathVertex& source = *path.vertex[0];
-    const double fixed = misWeight(path, techniques, 1) + misWeight(path, techniques, k + 1);
+    const double fixed = misWeight(path, counts, 1) + misWeight(path, counts, k + 1);
     paths_.push_back({first, pixel, cells.cellOf(source), contribution, float(fixed),
                       std::uint16_t(k), source.infinite()});
 }

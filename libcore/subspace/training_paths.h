@@ -36,7 +36,7 @@ class TrainingPaths {
 
     /// Adds a path that bidirectional path tracing made, with its weighted contribution (mean of
     /// the channels). Paths that no connection makes are left out. Fills path.beta.
-    void add(FullPath& path, const Techniques& techniques, const LightCells& cells,
+    void add(FullPath& path, const TechniqueCounts& counts, const LightCells& cells,
              float contribution, std::uint32_t pixel);
     /// Adds path `index` of another set.
     void append(const TrainingPaths& other, std::size_t index);

@@ -59,7 +59,7 @@ void renderRun(const Results& results, const PlannedRun& run, const RunDirectory
                const std::atomic<bool>& cancel) {
     std::vector<std::string> arguments = run.arguments;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    if (findMethod(results.study.methods[run.method].method).needsCaches()) {
+    if (!findMethod(results.study.methods[run.method].method).needs.empty()) {
         arguments.insert(arguments.end(), {"--prepare", "--cache", directory.cache()});
     }
     directory.render(renderer, results.study.scenes[run.scene].file, arguments, cancel);

@@ -217,7 +217,8 @@ void requireRenderable(const Study& study, const StudyScene& scene, const StudyM
         arguments.insert(arguments.end(), {"--set", assignment});
     }
     try {
-        resolve(findMethod(method.method), parseRenderArguments(arguments).assignments);
+        resolve(findMethod(method.method, "--method"), parseRenderArguments(arguments).assignments,
+                "--set ");
     } catch (const UsageError& e) {
         throw UsageError(study.file + ": method '" + method.name + "': " + e.what());
     }

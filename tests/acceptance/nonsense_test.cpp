@@ -11,6 +11,7 @@
 #include "libcore/subspace/subspaces.h"
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/fixtures/test_rows.h"
 #include "tests/stability.h"
 
 namespace lacuna::test {
@@ -74,10 +75,10 @@ std::shared_ptr<const Skeleton> randomSkeleton(std::uint64_t seed) {
     return skeleton;
 }
 
-/// Renders with three caches each that `give` makes by their seed.
+/// Renders with three caches each that `equip` gives by their seed.
 void expectTheSameMean(const MethodRow& row, std::initializer_list<const char*> weights,
                        std::vector<std::string> settings,
-                       const std::function<void(Method&, std::uint64_t)>& give) {
+                       const std::function<void(Method&, std::uint64_t)>& equip) {
     const auto scene = diffuseBox().builder.build();
     Shot shot;
     shot.width = shot.height = 12;
@@ -92,7 +93,7 @@ void expectTheSameMean(const MethodRow& row, std::initializer_list<const char*> 
         settings.back() = form;
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             const auto method = row.create(resolve(row, settings));
-            give(*method, seed);
+            equip(*method, seed);
             expectSame(Render(*scene, row, shot, *method).run(), reference, form);
         }
     }
@@ -100,14 +101,14 @@ void expectTheSameMean(const MethodRow& row, std::initializer_list<const char*> 
 
 TEST(SubspacesOfNonsense, leaveTheMeanAsItIs) {
     expectTheSameMean(rowNamed("spcbpt"), {"weights=ris", "weights=paper"}, {"candidates=144"},
-                      [](Method& m, std::uint64_t seed) { m.useSubspaces(randomSubspaces(seed)); });
+                      [](Method& m, std::uint64_t seed) { give(m, randomSubspaces(seed)); });
     stabilityCase("nonsense-subspaces", worstDeviation(), kOfAllowed);
 }
 
 TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
     expectTheSameMean(rowNamed("skelbpt"), {"weights=aware", "weights=credit"},
                       {"candidates=144", "node_acceptance=0"},
-                      [](Method& m, std::uint64_t seed) { m.useSkeleton(randomSkeleton(seed)); });
+                      [](Method& m, std::uint64_t seed) { give(m, randomSkeleton(seed)); });
     stabilityCase("nonsense-skeletons", worstDeviation(), kOfAllowed);
 }
 
@@ -128,7 +129,7 @@ TEST(SubspacesOfNonsense, valuesOfAnyRangeLeaveTheMeanAsItIs) {
         for (double& n : subspaces->population) n = std::pow(10.0, 30 * rng.uniformDouble() - 15);
         const std::vector<std::string> settings = {"candidates=144", weights};
         const auto method = row.create(resolve(row, settings));
-        method->useSubspaces(subspaces);
+        give<Subspaces>(*method, subspaces);
         expectSame(Render(*scene, row, shot, *method).run(), reference, weights,
                    Judge::BlocksAndMean);
     }
@@ -153,7 +154,7 @@ class SubspaceReuse : public testing::Test {
             const std::vector<std::string> settings = {"candidates=8", reuse};
             const auto method = row.create(resolve(row, settings));
             EXPECT_TRUE(method->learns());
-            method->useSubspaces(subspaces);
+            give<Subspaces>(*method, subspaces);
             Shot shot = shot_;
             shot.seed = 100 + seed;
             Render last(*scene_, row, shot, *method);

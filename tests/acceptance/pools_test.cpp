@@ -53,9 +53,9 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
     // cache point, is worth more eye paths, and no more cache points.
     shot.width = shot.height = 96;
     shot.candidates = 10000;
-    for (const Parameter& p : row.parameters) {
-        if (p.name != "cache_density" && p.name != "record_density") continue;
-        shot.settings.push_back(p.name + "=" + std::to_string(0.25 * p.defaultValue));
+    for (const Option& p : row.options) {
+        if (p.name != "cache_density") continue;
+        shot.settings.push_back(p.name + "=" + numberText(0.25 * parseNumber(p.standard).value()));
     }
     const Picture large = renderUntilKnown(*scene, row, shot, kLargeError, 1000);
     shot.settings.clear();

@@ -19,7 +19,7 @@ PixelRect cropOf(const Shot& shot) {
 
 Settings settingsOf(const MethodRow& row, const Shot& shot) {
     std::vector<std::string> assignments = shot.settings;
-    for (const Parameter& p : row.parameters) {
+    for (const Option& p : row.options) {
         if (p.name == "candidates") {
             const int pool = shot.candidates ? shot.candidates : shot.width * shot.height;
             assignments.push_back("candidates=" + std::to_string(pool));
@@ -149,12 +149,11 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     r.limits = {shot_.maxDepth, shot_.rouletteDepth};
     r.seed = shot_.seed;
     r.crop = cropOf(shot_);
-    const auto l = settings_.values().find("light_paths");
-    if (l != settings_.values().end()) r.lightPaths = std::uint64_t(l->second);
+    r.lightPaths = lightPathsOf(settings_);
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
-    integrator_->setTechniqueFilm(shot_.techniques);
-    integrator_->setObserver(shot_.observer);
+    integrator_->delivery().setTechniqueFilm(shot_.techniques);
+    integrator_->delivery().setObserver(shot_.observer);
     pixels_.resize(std::size_t(r.crop.width()) * std::size_t(r.crop.height()));
 }
 

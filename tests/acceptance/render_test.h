@@ -15,7 +15,7 @@
 
 #include "libcore/bidir/integrator.h"
 #include "libcore/methods/registry.h"
-#include "tests/bidir/test_rows.h"
+#include "tests/fixtures/test_rows.h"
 #include "tests/material/statistics.h"
 #include "tests/scene/scene_builder.h"
 

@@ -12,7 +12,7 @@ const std::atomic<bool> never{false};
 
 std::shared_ptr<const Skeleton> skeletonOf(const Scene& scene, const ThreadPool& pool) {
     Phases phases;
-    VoxelizeSettings settings;
+    VoxelSettings settings;
     settings.resolution = 24;
     const Voxelized voxels = voxelizeScene(scene, settings, pool, never, phases);
     Skeletonized made = skeletonize(scene, voxels.file, pool, never, phases);
@@ -34,8 +34,12 @@ std::shared_ptr<const Subspaces> subspacesOf(const Scene& scene, const ThreadPoo
 
 void giveCaches(Method& method, const MethodRow& row, const Scene& scene, const ThreadPool& pool) {
     try {
-        if (row.needsSkeleton) method.useSkeleton(skeletonOf(scene, pool));
-        if (row.needsSubspaces) method.useSubspaces(subspacesOf(scene, pool));
+        AssetSet assets;
+        for (const AssetNeed& need : row.needs) {
+            if (need.name == "skeleton") assets.put(skeletonOf(scene, pool));
+            if (need.name == "subspaces") assets.put(subspacesOf(scene, pool));
+        }
+        method.use(assets);
     } catch (const InputError&) {  // no surface
     } catch (const UsageError&) {  // nothing but solid voxels, as where all there is is a floor
     }

@@ -29,7 +29,7 @@ Shot weightShot() {
 }
 
 /// Whether strategy t could have drawn every vertex: all densities of its two walks are positive.
-bool drawable(const FullPath& path, const Techniques& techniques, int t) {
+bool drawable(const FullPath& path, const TechniqueCounts& techniques, int t) {
     const int s = path.edges + 1 - t;
     for (int i = 0; i <= path.edges; ++i) {
         const double pdf = i < s
@@ -72,17 +72,17 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
         FullPath& path = event.path;
         double sum = 0;
         for (int t = 1; t <= path.edges + 1; ++t) {
-            if (!drawable(path, event.techniques, t)) continue;
-            if (!(effectiveCount(path, event.techniques, t) > 0)) continue;
-            const double w = misWeight(path, event.techniques, t);
+            if (!drawable(path, event.counts, t)) continue;
+            if (!(effectiveCount(path, event.counts, t) > 0)) continue;
+            const double w = misWeight(path, event.counts, t);
             sum += w;
             if (t == event.t) ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
         }
         worstSum = std::max(worstSum, std::fabs(sum - 1));
-        const double again = misWeightByProducts(*walker, path, event.techniques, event.t);
+        const double again = misWeightByProducts(*walker, path, event.counts, event.t);
         double difference = std::fabs(again - event.weight);
         // Throughputs are kept in floats: one rounding per edge.
-        if (row.techniques.connects && !event.techniques.constants) {
+        if (row.techniques.connects && !event.counts.constants) {
             difference -= path.edges * 0x1p-23;
         }
         if (!(difference <= worstProduct)) {
@@ -96,8 +96,8 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
             worstPath = "shortest edge " + std::to_string(shortest) + ", " +
                         std::to_string(path.edges) + " edges, t = " + std::to_string(event.t) +
                         ", weight " + std::to_string(event.weight) + ", sample " +
-                        std::to_string(event.sample) + " of iteration " +
-                        std::to_string(event.iteration);
+                        std::to_string(event.sample.number) + " of iteration " +
+                        std::to_string(event.sample.iteration);
         }
     };
     Render render(*scene, row, shot);
@@ -157,7 +157,7 @@ struct PathKeeper {
     std::vector<std::unique_ptr<KeptPath>> kept;
 
     void keep(const PathEvent& event) {
-        if (kept.size() >= 2000 || event.sample % 5 != 0) return;
+        if (kept.size() >= 2000 || event.sample.number % 5 != 0) return;
         auto k = std::make_unique<KeptPath>();
         k->path = event.path;
         k->t = event.t;
@@ -179,9 +179,9 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     Frozen frozen(*method);
     PathKeeper keeper;
     Shot shot = weightShot();
-    const Techniques* now = nullptr;
+    const TechniqueCounts* now = nullptr;
     shot.observer = [&](const PathEvent& event) {
-        now = &event.techniques;
+        now = &event.counts;
         keeper.keep(event);
     };
     Render first(*scene, row, shot, frozen);
@@ -193,7 +193,7 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     shot.seed = 77;
     double worst = 0;
     std::size_t judged = 0;
-    const auto judge = [&](const Techniques& techniques) {
+    const auto judge = [&](const TechniqueCounts& techniques) {
         for (const auto& k : keeper.kept) {
             worst = std::max(worst, std::fabs(misWeight(k->path, techniques, k->t) - k->weight));
             ++judged;
@@ -204,7 +204,7 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     shot.observer = [&](const PathEvent& event) {
         if (event.t == 1 || done) return;  // the pool is complete once the eye's pass has begun
         done = true;
-        judge(event.techniques);
+        judge(event.counts);
     };
     Render second(*scene, row, shot, frozen);
     second.iterate(0);
@@ -230,7 +230,7 @@ TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
         if (keeping) return keeper.keep(event);
         if (++judged % 500 != 1) return;  // the same for all events of an iteration
         for (const auto& k : keeper.kept) {
-            const double now = misWeight(k->path, event.techniques, k->t);
+            const double now = misWeight(k->path, event.counts, k->t);
             worst = std::max(worst, std::fabs(now - k->weight));
         }
     };

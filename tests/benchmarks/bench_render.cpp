@@ -63,10 +63,10 @@ class Bench {
     }
     std::vector<RecordedRay> record() {
         std::uint64_t traced = 0;
-        integrator_.setRecording(true);
+        integrator_.delivery().setRecording(true);
         iterate(traced);
-        std::vector<RecordedRay> rays = integrator_.takeRecording();
-        integrator_.setRecording(false);
+        std::vector<RecordedRay> rays = integrator_.delivery().takeRecording();
+        integrator_.delivery().setRecording(false);
         return rays;
     }
 

@@ -112,22 +112,21 @@ TEST_F(SubspaceFiles, foreignOnesAreRefused) {
 
 /// Every setting is part of the name, and of the command that makes the cache anew.
 TEST(SubspaceSettings, settingsTellFilesApart) {
-    const SubspaceSettings base;
-    std::vector<SubspaceSettings> others(6, base);
+    const TrainingSettings base;
+    std::vector<TrainingSettings> others(5, base);
     others[0].paths = 7;
     others[1].subspaces = 7;
     others[2].lightPaths = 7;
     others[3].epochs = 7;
-    others[4].directionWeight = 0.07;
-    others[5].lightShare = 0.07;
+    others[4].borrow = false;
     std::set<std::string> names{cacheFile("d", subspaceStamp("a", base), "x")};
-    for (const SubspaceSettings& s : others) {
+    for (const TrainingSettings& s : others) {
         EXPECT_TRUE(names.insert(cacheFile("d", subspaceStamp("a", s), "x")).second);
         EXPECT_NE(trainOptions(s), trainOptions(base));
     }
     EXPECT_EQ(trainOptions(base),
               "--paths 1000000 --subspaces 1000 --light-paths 2000000 --epochs 20 "
-              "--direction-weight 0.05 --light-share 0.2");
+              "--borrow on");
 }
 
 /// A good checksum over numbers that do not fit together.

@@ -85,7 +85,7 @@ TEST(EffectSwitches, OffIsGoneAndSaid) {
     for (const std::string& name : names) {
         SceneDescription scene = everything();
         double lens = 0.1;
-        TechniqueSet techniques = row.techniques;
+        Techniques techniques = row.techniques;
         auto effects = effectsOf(scene, lens, &row);
         const std::vector<EffectSwitch> off = {{name, false}};
         const auto warnings = forceEffects(off, {scene, lens, &techniques}, effects);

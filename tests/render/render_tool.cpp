@@ -110,13 +110,15 @@ std::string RenderTool::quick(const std::string& method, const std::string& more
 std::string cheap(const std::string& method) {
     std::string text;
     const MethodRow& row = findMethod(method);
-    for (const Parameter& p : row.parameters) {
+    for (const Option& p : row.options) {
         if (p.name == "candidates") text += " --set candidates=100";
     }
-    if (row.needsSkeleton || row.needsSubspaces) text += " --prepare --cache @cache";
-    if (row.needsSkeleton) text += " --set voxels.resolution=32";
-    if (row.needsSubspaces) {
-        text += " --set train.paths=2000 --set train.subspaces=20 --set train.light_paths=2000";
+    if (!row.needs.empty()) text += " --prepare --cache @cache";
+    for (const AssetNeed& need : row.needs) {
+        if (need.name == "skeleton") text += " --set voxels.resolution=32";
+        if (need.name == "subspaces") {
+            text += " --set train.paths=2000 --set train.subspaces=20 --set train.light_paths=2000";
+        }
     }
     return text;
 }

@@ -31,12 +31,16 @@ class RenderThreads : public RenderTool, public ::testing::WithParamInterface<st
 
 /// What a method needs to build its caches on our scenes.
 std::string preparing(const std::string& method) {
-    const MethodRow& row = findMethod(method);
-    if (row.needsSubspaces) {
-        return " --prepare --cache @cache --set train.paths=5000 --set train.subspaces=50 --set "
-               "train.light_paths=5000 --set candidates=5000";
+    std::string text;
+    for (const AssetNeed& need : findMethod(method).needs) {
+        text = " --prepare --cache @cache" + text;
+        if (need.name == "subspaces") {
+            text +=
+                " --set train.paths=5000 --set train.subspaces=50 --set "
+                "train.light_paths=5000 --set candidates=5000";
+        }
     }
-    return row.needsSkeleton ? " --prepare --cache @cache" : "";
+    return text;
 }
 
 class RenderThreadsSlow : public RenderThreads {};

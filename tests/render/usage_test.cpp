@@ -37,7 +37,7 @@ TEST_F(RenderUsage, MethodsAreListedWithTheirParameters) {
         EXPECT_EQ(help.exitCode, 0);
         EXPECT_NE(help.out.find(row.summary), std::string::npos) << row.name;
         EXPECT_EQ(help.out.find("\nbiased") != std::string::npos, row.biased) << row.name;
-        for (const Parameter& p : row.parameters) {
+        for (const Option& p : row.options) {
             EXPECT_NE(help.out.find("  " + p.name + " "), std::string::npos) << p.name;
             EXPECT_NE(help.out.find(p.help), std::string::npos) << p.name;
         }
@@ -55,7 +55,7 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure("@none.glb -o @out.jpg --method pt", 2, ".jpg");
     expectFailure(start + "--nonsense", 2, "--nonsense");
     expectFailure(start + "--set candidates=3", 2, "candidates");
-    expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates", 2, "key=value");
+    expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates", 2, "name=value");
     expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates=0", 2, "found '0'");
     expectFailure("@none.glb -o @out.exr --method lvcbpt --set candidates=1.5", 2, "integer");
     expectFailure("@none.glb -o @out.exr --method lvcbpt --set next_event=yes", 2, "on or off");

@@ -75,7 +75,7 @@ TEST_F(RenderVerify, ReadsNoStoredDensity) {
     std::mutex mutex;
     int paths = 0, noticed = 0;
     double worst = 0.0;
-    integrator.setObserver([&](const PathEvent& e) {
+    integrator.delivery().setObserver([&](const PathEvent& e) {
         const std::lock_guard lock(mutex);
         FullPath spoilt = e.path;
         std::vector<PathVertex> vertices;
@@ -91,9 +91,9 @@ TEST_F(RenderVerify, ReadsNoStoredDensity) {
             spoilt.survival[n] *= 0.5f;
             spoilt.scatter[n] *= 2.0f;
         }
-        const double again = misWeightByProducts(walker, spoilt, e.techniques, e.t);
+        const double again = misWeightByProducts(walker, spoilt, e.counts, e.t);
         worst = std::max(worst, std::fabs(again - e.weight));
-        noticed += std::fabs(misWeight(spoilt, e.techniques, e.t) - e.weight) > 1e-4;
+        noticed += std::fabs(misWeight(spoilt, e.counts, e.t) - e.weight) > 1e-4;
         ++paths;
     });
     const std::atomic<bool> never{false};
@@ -117,10 +117,10 @@ TEST_F(RenderVerify, AWrongWeightIsReportedWithItsReplay) {
     BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
     WeightVerifier verifier(scene, camera, settings.limits, pool);
     EXPECT_EQ(verifier.result().paths, 0u);
-    integrator.setObserver([&](const PathEvent& e) {
+    integrator.delivery().setObserver([&](const PathEvent& e) {
         PathEvent wrong = e;
-        if (e.sample == 5 * 16 + 9) wrong.weight += 0.25;
-        if (e.sample == 6 * 16 + 2) wrong.weight = std::nan("");
+        if (e.sample.number == 5 * 16 + 9) wrong.weight += 0.25;
+        if (e.sample.number == 6 * 16 + 2) wrong.weight = std::nan("");
         verifier.check(wrong);
     });
     const std::atomic<bool> never{false};

@@ -65,11 +65,13 @@ void expectColumns(const SubspaceMatrix& m, std::uint32_t rows, double least) {
 
 TEST(Gamma, columnsSumToOneAndHoldTheUniformShare) {
     const GammaData train = randomData(2000, 6, 2), heldOut = randomData(500, 6, 3);
-    const GammaResult r = optimiseGamma(train, heldOut, fullGamma(train), 10, threads(), kNever);
+    const GammaResult r =
+        optimiseGamma(train, heldOut, fullGamma(train), {.epochs = 10}, threads(), kNever);
     expectColumns(fullGamma(train).q, train.lightCount, 1e-7);
     expectColumns(r.gamma, train.lightCount, 0.999 * kUniformShare / train.lightCount);
     // A column of which nothing is known is uniform.
-    const GammaResult alone = optimiseGamma(train, {}, fullGamma(train), 10, threads(), kNever);
+    const GammaResult alone =
+        optimiseGamma(train, {}, fullGamma(train), {.epochs = 10}, threads(), kNever);
     EXPECT_EQ(alone.virtualPaths, 0.0);
     for (std::size_t i = r.gamma.size() - train.lightCount; i < r.gamma.size(); ++i) {
         EXPECT_NEAR(alone.gamma[i], 1.0 / train.lightCount, 1e-12);
@@ -82,12 +84,13 @@ TEST(Gamma, stepsNeverRaiseTheLossAndTheKeptOneIsNoWorseThanTheStart) {
         const GammaData train = randomData(60, 6, 10 + seed),
                         heldOut = randomData(60, 6, 50 + seed);
         const FullGamma full = fullGamma(train);
-        const GammaResult alone = optimiseGamma(train, {}, full, 30, threads(), kNever);
+        const GammaResult alone = optimiseGamma(train, {}, full, {.epochs = 30}, threads(), kNever);
         for (std::size_t n = 1; n < alone.trainLoss.size(); ++n) {
             EXPECT_LE(alone.trainLoss[n], alone.trainLoss[n - 1] * (1 + 1e-12)) << seed;
         }
         EXPECT_EQ(alone.trainLoss[0], alone.fullTrainLoss) << seed;
-        const GammaResult r = optimiseGamma(train, heldOut, full, 30, threads(), kNever);
+        const GammaResult r =
+            optimiseGamma(train, heldOut, full, {.epochs = 30}, threads(), kNever);
         EXPECT_LE(r.heldOutLoss[r.kept], r.fullHeldOutLoss) << seed;
         EXPECT_NEAR(gammaLoss(heldOut, r.gamma, threads()), r.heldOutLoss[r.kept], 1e-12) << seed;
     }
@@ -107,8 +110,9 @@ TEST(Gamma, twoStartsReachOneLoss) {
         }
         for (std::size_t i = begin; i < begin + data.lightCount; ++i) odd[i] /= sum;
     }
-    const GammaResult a = optimiseGamma(data, {}, fullGamma(data), 3000, threads(), kNever);
-    const GammaResult b = optimiseGamma(data, {}, other, 3000, threads(), kNever);
+    const GammaResult a =
+        optimiseGamma(data, {}, fullGamma(data), {.epochs = 3000}, threads(), kNever);
+    const GammaResult b = optimiseGamma(data, {}, other, {.epochs = 3000}, threads(), kNever);
     EXPECT_LT(a.trainLoss.back(), 0.99 * a.trainLoss.front());
     EXPECT_NEAR(a.trainLoss.back() / b.trainLoss.back(), 1.0, 1e-3);
     EXPECT_EQ(a.kept, a.trainLoss.size() - 1);
@@ -153,7 +157,7 @@ TEST(Gamma, columnsBorrowFromTheirNeighbours) {
     const GammaData train = smoothData(6000, n, 6), heldOut = smoothData(6000, n, 7),
                     many = smoothData(2'000'000, n, 8);
     const auto heldOutLoss = [&](const GammaData& data, const FullGamma& full) {
-        const GammaResult r = optimiseGamma(data, heldOut, full, 20, threads(), kNever);
+        const GammaResult r = optimiseGamma(data, heldOut, full, {.epochs = 20}, threads(), kNever);
         expectColumns(r.gamma, n, 0.999 * kUniformShare / n);
         return r.heldOutLoss[r.kept];
     };
@@ -203,13 +207,15 @@ TEST(Gamma, degenerateDataIsHandled) {
     GammaData none;
     none.lightCount = 3;
     none.eyeCount = 2;
-    const GammaResult empty = optimiseGamma(none, none, fullGamma(none), 5, threads(), kNever);
+    const GammaResult empty =
+        optimiseGamma(none, none, fullGamma(none), {.epochs = 5}, threads(), kNever);
     for (const double g : empty.gamma) EXPECT_NEAR(g, 1.0 / 3.0, 1e-15);
     // One path, one subspace.
     GammaData one;
     one.entries.push_back({0, 0, 2.0f});
     one.endPath(3.0f, 0.0f);
-    const GammaResult single = optimiseGamma(one, none, fullGamma(one), 5, threads(), kNever);
+    const GammaResult single =
+        optimiseGamma(one, none, fullGamma(one), {.epochs = 5}, threads(), kNever);
     ASSERT_EQ(single.gamma.size(), 1u);
     EXPECT_NEAR(single.gamma[0], 1.0, 1e-12);
     EXPECT_NEAR(single.trainLoss.back(), 9.0 / 2.0, 1e-6);

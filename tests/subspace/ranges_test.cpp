@@ -127,7 +127,7 @@ TEST(Ranges, gammaOverThirtyDecades) {
         const FullGamma full = fullGamma(parts[0]);
         for (const bool heldOut : {false, true}) {
             const GammaResult r = optimiseGamma(parts[0], heldOut ? parts[1] : GammaData{}, full,
-                                                20, threads, kNever);
+                                                {.epochs = 20}, threads, kNever);
             for (const double loss : r.trainLoss) EXPECT_TRUE(std::isfinite(loss)) << seed;
             for (std::size_t n = 1; n < r.trainLoss.size() && !heldOut; ++n) {
                 EXPECT_LE(r.trainLoss[n], r.trainLoss[n - 1] * (1 + 1e-12)) << seed;

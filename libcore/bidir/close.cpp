@@ -1,0 +1,192 @@
+#include "libcore/bidir/close.h"
+
+#include <algorithm>
+
+#include "libcore/bidir/absorption.h"
+
+namespace lacuna {
+
+namespace {
+
+/// x_0 .. x_{s-1} from the light subpath, as its walk left them.
+void fillLightPart(FullPath& path, Subpath light) {
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const PathVertex& y = light[i];
+        path.vertex[i] = &y;
+        path.lightPdfA[i] = y.pdfA;
+        path.eyePdfA[i] = y.pdfReverseA;
+        path.survival[i] = y.survival;
+        path.delta[i] = isDelta(y.event);
+        path.scatter[i] = y.scatter;
+        path.asLight[i] = y.asLight;
+        path.asEye[i] = y.asEye;
+    }
+}
+
+/// x_k .. x_{k-t+1} from the eye subpath.
+void fillEyePart(FullPath& path, Subpath eye) {
+    for (std::size_t j = 0; j < eye.size(); ++j) {
+        const PathVertex& z = eye[j];
+        const std::size_t i = std::size_t(path.edges) - j;
+        path.vertex[i] = &z;
+        path.lightPdfA[i] = z.pdfReverseA;
+        path.eyePdfA[i] = z.pdfA;
+        path.survival[i] = z.survival;
+        path.delta[i] = isDelta(z.event);
+        path.scatter[i] = z.scatter;
+        path.asLight[i] = z.asLight;
+        path.asEye[i] = z.asEye;
+    }
+}
+
+/// Whether `v` certainly scatters nothing towards `other`: what many connections fail at, found out
+/// before roots and divisions. Directions so grazing that rounding could turn this over scatter
+/// nothing either (kMinCosine).
+bool liesBehind(const PathVertex& v, const PathVertex& other) {
+    return v.kind == VertexKind::Surface && !v.bsdf.transmits() &&
+           leadsBehind(v, other.infinite() ? other.position : other.position - v.position);
+}
+
+/// Whether `v` is on a light that sends nothing along `direction`.
+bool isDark(const Lights& lights, const PathVertex& v, const Vec3& direction) {
+    return v.index == 0 && !(emissionOf(lights, v, direction).profile > 0.0f);
+}
+
+/// The path's size and who made its edges, but for a connection's one.
+void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices) {
+    path.edges = int(lightVertices + eyeVertices) - 1;
+    path.lightEdges = std::max(0, int(lightVertices) - 1);
+    path.eyeEdges = int(eyeVertices) - 1;
+}
+
+/// Where the path begins; called last, once both walks' densities are there.
+void setSource(FullPath& path, const Scene& scene, const Rgb& beta, float opacity) {
+    const LightKind kind = scene.lights().kind(path.vertex[0]->light);
+    path.absorption = scene.absorption();
+    path.sourceBeta = beta;
+    path.hittable = isHittable(kind);
+    path.splattable = path.hittable;
+    path.survival[0] = 1.0f;
+    path.delta[0] = false;
+    path.eyePdfA[0] *= opacity;  // the others pass a lamp that is not all there
+}
+/// From y_0, whose beta is known.
+void setSource(FullPath& path, const Scene& scene, const PathVertex& y0) {
+    setSource(path, scene, y0.throughput, scene.lights().opacity(y0.light, y0.lightUv));
+}
+
+}  // namespace
+
+std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
+    const PathVertex& z = eye.back();
+    if (z.light == kNone || z.index == 0) return std::nullopt;
+    const Lights& lights = walker.scene().lights();
+    const LightPoint point = lightPointOf(lights, z);
+    const Lights::Emission emission = lights.emission(point, z.toPrevious);
+    const Closed closed{z.throughput * point.exitance * emission.profile, int(eye.size()), {}};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    setEdges(path, 0, eye.size());
+    fillEyePart(path, eye);
+    path.scatter[0] = Rgb(emission.profile);
+    path.asLight[0] = kNone;  // as y_0 it has no predecessor, whatever the walk met behind it
+    path.lightPdfA[0] = point.pdf;
+    if (path.edges > 1) path.lightPdfA[1] = emission.pdfW * z.toPreviousFactor;
+    setSource(path, walker.scene(), point.throughput(), point.opacity);
+    return closed;
+}
+
+std::optional<LensEdge> lensEdge(const Walker& walker, const PathVertex& y, const PathVertex& z0,
+                                 const PixelRect& crop, RayTally& tally) {
+    const Lights& lights = walker.scene().lights();
+    // A punctual light in the picture itself has no size: no strategy makes that path, so that all
+    // methods agree (and no pixel holds a spike that grows with the resolution).
+    if (y.index == 0 && !isHittable(lights.kind(y.light))) return std::nullopt;
+    const Edge edge = edgeBetween(z0, y);
+    if (!(edge.geometry > 0.0f)) return std::nullopt;
+    const auto projection = walker.camera().project(z0.position, edge.direction);
+    if (!projection || !crop.contains(int(projection->raster.x), int(projection->raster.y)) ||
+        liesBehind(y, z0) || isDark(lights, y, -edge.direction) ||
+        !connected(walker.scene(), y, z0, RayKind::Splat, tally)) {
+        return std::nullopt;
+    }
+    return LensEdge{edge, *projection};
+}
+
+std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
+                                 const LensEdge& open, FullPath& path) {
+    const auto& [edge, projection] = open;
+    const PathVertex& y = light.back();
+    const EndValue end = lightEnd(walker.scene().lights(), y, -edge.direction);
+    const Rgb through = transmittance(walker.scene().absorption(), z0, edge.direction, y);
+    const Closed closed{y.throughput * end.f * through * (edge.geometry * projection.pdfW), 1,
+                        projection.raster};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    setEdges(path, light.size(), 1);
+    const int k = path.edges;
+    fillLightPart(path, light);
+    path.vertex[k] = &z0;
+    path.lightPdfA[k] = 0.0f;
+    path.eyePdfA[k] = 1.0f;
+    path.survival[k] = 1.0f;
+    path.delta[k] = path.delta[k - 1] = false;
+    path.scatter[k - 1] = end.f;
+    path.asEye[k - 1] = kNone;  // its walk knows it by another predecessor than the lens
+    path.eyePdfA[k - 1] = projection.pdfW * edge.toSecond;
+    if (k >= 2) path.eyePdfA[k - 2] = end.pdfWToPrevious * y.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
+    return closed;
+}
+
+std::optional<Edge> connectingEdge(const Walker& walker, const PathVertex& y, const PathVertex& z,
+                                   RayTally& tally) {
+    if (liesBehind(y, z) || liesBehind(z, y)) return std::nullopt;
+    const Edge edge = edgeBetween(y, z);
+    if (!(edge.geometry > 0.0f) || isDark(walker.scene().lights(), y, edge.direction) ||
+        !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
+        return std::nullopt;
+    }
+    return edge;
+}
+
+std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
+                                      FullPath& path) {
+    const auto& [light, eye, edge, lightAsEye, eyeAsLight] = open;
+    const PathVertex& y = light.back();
+    const PathVertex& z = eye.back();
+    const Lights& lights = walker.scene().lights();
+    const EndValue atLight = lightEnd(lights, y, edge.direction);
+    const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
+    const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
+    const Closed closed{z.throughput * atEye.f * atLight.f * through * y.throughput * edge.geometry,
+                        int(eye.size()),
+                        {}};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    const int s = int(light.size());
+    setEdges(path, light.size(), eye.size());
+    fillLightPart(path, light);
+    fillEyePart(path, eye);
+    path.delta[s - 1] = path.delta[s] = false;
+    path.scatter[s - 1] = atLight.f;
+    path.scatter[s] = atEye.f;
+    path.asEye[s - 1] = lightAsEye;
+    path.asLight[s] = eyeAsLight;
+    path.lightPdfA[s] = atLight.pdfWToOther * edge.toSecond;
+    path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
+    if (s >= 2) path.eyePdfA[s - 2] = atLight.pdfWToPrevious * y.toPreviousFactor;
+    if (s + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
+    return closed;
+}
+
+bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
+               RayTally& tally) {
+    if (light.infinite()) {
+        return scene.visibleToInfinity(eye.position, eye.ng, light.position, kind, tally);
+    }
+    return scene.visible(eye.position, eye.ng, light.position, light.ng, kind, tally);
+}
+
+}  // namespace lacuna

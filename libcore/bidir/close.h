@@ -1,0 +1,70 @@
+// Full paths from subpaths: the three ways in which a strategy closes a path (hit, splat, connect),
+// each giving the contribution without its weight, and the FullPath that the weight is made from.
+// In the order of what it costs to find out that a path carries nothing: cosines and the light's
+// own profile; visibility, because where light has to find its way most connections are blocked;
+// BSDFs, which are seldom zero; the FullPath only where there is something to weigh.
+#pragma once
+
+#include <optional>
+
+#include "libcore/bidir/density.h"
+#include "libcore/bidir/film.h"
+#include "libcore/bidir/full_path.h"
+#include "libcore/bidir/walk.h"
+
+namespace lacuna {
+
+/// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight and
+/// without the selector's weight.
+struct Closed {
+    Rgb contribution;
+    int t = 0;
+    Vec2 raster;  ///< splats: where the lens sees it
+};
+
+/// What leaves a connection's end towards the other: its BSDF, or the emission profile of y_0.
+struct EndValue {
+    Rgb f;
+    float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
+    float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
+};
+/// That of a light subpath's last vertex; `toEye` is unit.
+inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye) {
+    if (y.index == 0) {
+        const Lights::Emission e = emissionOf(lights, y, toEye);
+        return {Rgb(e.profile), e.pdfW, 0.0f};
+    }
+    const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
+    return {e.f, e.pdfWToEye, e.pdfWToLight};
+}
+
+/// s = 0: the eye path's last vertex lies on a light. Empty where it emits nothing this way. Fills
+/// `path`.
+std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path);
+
+/// t = 1: the edge from the lens vertex `z0` to a light subpath's last vertex, which must be
+/// connectable, and where on the film it is seen. Empty where a splat within `crop` carries
+/// nothing, whatever the BSDF.
+struct LensEdge {
+    Edge edge;
+    Camera::Projection projection;
+};
+std::optional<LensEdge> lensEdge(const Walker& walker, const PathVertex& light,
+                                 const PathVertex& z0, const PixelRect& crop, RayTally& tally);
+/// Over that edge. Empty where the BSDF lets nothing through. Fills `path`.
+std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
+                                 const LensEdge& open, FullPath& path);
+
+/// s >= 1, t >= 2. The edge between two subpaths' last vertices, from the light's to the eye's;
+/// both must be connectable. Empty where a connection carries nothing, whatever the BSDFs.
+std::optional<Edge> connectingEdge(const Walker& walker, const PathVertex& light,
+                                   const PathVertex& eye, RayTally& tally);
+/// Over that edge. Empty where the BSDFs let nothing through. Fills `path`.
+std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
+                                      FullPath& path);
+
+/// Whether the two vertices see each other.
+bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
+               RayTally& tally);
+
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+#include "libcore/bidir/delivery.h"
+
+namespace lacuna {
+
+namespace {
+constexpr std::size_t kReplaysKept = IterationStatistics::kReplaysKept;
+}
+
+std::string Sample::address(int filmWidth) const {
+    const auto width = std::uint64_t(filmWidth);
+    const std::string place =
+        ofLight ? "light:" + std::to_string(number)
+                : std::to_string(number % width) + "," + std::to_string(number / width);
+    return place + "," + std::to_string(iteration);
+}
+
+PathObserver Delivery::setObserver(PathObserver observer) {
+    return std::exchange(observer_, std::move(observer));
+}
+
+Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts) const {
+    const Lights& lights = setup_.scene.lights();
+    const double weight = misWeight(c.path, counts, c.closed.t);
+    const Rgb scaled = c.closed.contribution * float(c.scale);
+    const Rgb value = lights.inFileUnits(scaled * float(weight));
+    if (observer_) {
+        observer_({c.path, c.closed.t, weight, value, c.pixel, c.proposal, counts, c.sample});
+    }
+    return {value, techniqueFilm_ ? lights.inFileUnits(scaled) : Rgb{}};
+}
+
+void Delivery::countInvalid(const Sample& sample, TaskResult& result) const {
+    ++result.invalidSamples;
+    if (result.invalidReplays.size() < kReplaysKept) {
+        result.invalidReplays.push_back(sample.address(setup_.camera.film().width));
+    }
+}
+
+void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
+                          TaskResult& result) const {
+    const Weighed w = weigh(c, counts);
+    // Values that are finite may add up to more than a float holds.
+    const Rgb sum = pixel + w.value;
+    if (!isFinite(sum)) return countInvalid(c.sample, result);
+    pixel = sum;
+    if (techniqueFilm_) {
+        techniqueFilm_->add(c.path.edges + 1 - c.closed.t, c.closed.t, c.pixel, w.value,
+                            w.unweighted);
+    }
+}
+
+void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
+                        TaskResult& result) const {
+    const Weighed w = weigh(c, counts);
+    if (!isFinite(w.value)) return countInvalid(c.sample, result);
+    result.splats.push_back({c.pixel, w.value});
+    result.splatPaths.push_back(c.sample.number);
+    if (techniqueFilm_) {
+        result.techniqueSplats.push_back({c.path.edges, {c.pixel, w.value}, w.unweighted});
+    }
+}
+
+void Delivery::collect(std::span<TaskResult> results, IterationStatistics& statistics) {
+    for (TaskResult& result : results) {
+        statistics.add(result.tally);
+        statistics.invalidSamples += result.invalidSamples;
+        for (std::string& replay : result.invalidReplays) {
+            if (statistics.invalidReplays.size() < kReplaysKept) {
+                statistics.invalidReplays.push_back(std::move(replay));
+            }
+        }
+        for (const TechniqueSplat& t : result.techniqueSplats) {
+            techniqueFilm_->add(t.s, 1, t.weighted.pixel, t.weighted.value, t.unweighted);
+        }
+        recorded_.insert(recorded_.end(), result.rays.begin(), result.rays.end());
+    }
+}
+
+void Delivery::addSplats(std::span<TaskResult> results, const Iteration& iteration) const {
+    std::vector<std::vector<Splat>> splats;
+    for (TaskResult& result : results) splats.push_back(std::move(result.splats));
+    const std::uint64_t leftOut = lacuna::addSplats(splats, iteration.pixels, setup_.threads);
+    IterationStatistics& statistics = iteration.statistics;
+    statistics.invalidSamples += leftOut;
+    // Those to name are part of a sum that is too large: they do not fit on top of what there is.
+    for (std::size_t r = 0; leftOut > 0 && r < results.size(); ++r) {
+        for (std::size_t i = 0; i < splats[r].size(); ++i) {
+            if (statistics.invalidReplays.size() == kReplaysKept) return;
+            if (isFinite(iteration.pixels[splats[r][i].pixel] + splats[r][i].value)) continue;
+            const Sample sample{iteration.number, true, results[r].splatPaths[i]};
+            statistics.invalidReplays.push_back(sample.address(setup_.camera.film().width));
+        }
+    }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+// From a closed path to the film: its weight, what observers see, and the pixel or the list of
+// splats that it is added to.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libcore/bidir/close.h"
+#include "libcore/bidir/render_setup.h"
+#include "libcore/bidir/task.h"
+
+namespace lacuna {
+
+/// Which of a render's samples a path comes from.
+struct Sample {
+    std::uint32_t iteration = 0;
+    bool ofLight = false;      ///< a light subpath (t = 1), else an eye path
+    std::uint64_t number = 0;  ///< of the light subpath; of the pixel, row-major in the full film
+
+    /// "x,y,iteration" or "light:NUMBER,iteration": what --replay takes.
+    std::string address(int filmWidth) const;
+};
+
+/// One weighted path, as observers see it: tests, --verify, --replay.
+struct PathEvent {
+    FullPath& path;
+    int t;
+    double weight;             ///< MIS
+    Rgb contribution;          ///< as it enters the pixel: weights, 1/L, the lights' unit included
+    std::uint32_t pixel;       ///< row-major in the crop
+    const Proposal* proposal;  ///< connections only
+    const TechniqueCounts& counts;
+    Sample sample;
+};
+/// Called from many threads at once; for values that are not finite too.
+using PathObserver = std::function<void(const PathEvent&)>;
+
+/// A closed path on its way to a pixel.
+struct Contribution {
+    const Closed& closed;
+    FullPath& path;
+    Sample sample;
+    std::uint32_t pixel;  ///< row-major in the crop
+    double scale = 1.0;   ///< the proposal's weight; 1/L
+    const Proposal* proposal = nullptr;
+};
+
+class Delivery {
+  public:
+    explicit Delivery(const RenderSetup& setup) : setup_(setup) {}
+
+    /// Per-technique layers to fill as well, or null.
+    void setTechniqueFilm(TechniqueFilm* film) { techniqueFilm_ = film; }
+    /// Returns the one before.
+    PathObserver setObserver(PathObserver observer);
+    /// Records every ray of the following tasks in the order in which a task traces them.
+    void setRecording(bool on) { recording_ = on; }
+    std::vector<RecordedRay> takeRecording() { return std::exchange(recorded_, {}); }
+
+    /// Adds an eye path's contribution to its pixel, which no other task adds to.
+    void toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
+                    TaskResult& result) const;
+    /// Appends a light subpath's contribution to the task's splats.
+    void toSplats(const Contribution& c, const TechniqueCounts& counts, TaskResult& result) const;
+
+    /// A task's result before the task begins.
+    void begin(TaskResult& result) const {
+        if (recording_) result.tally.recording = &result.rays;
+    }
+    /// What the tasks counted and recorded.
+    void collect(std::span<TaskResult> results, IterationStatistics& statistics);
+    /// Adds the tasks' splats to the iteration's picture.
+    void addSplats(std::span<TaskResult> results, const Iteration& iteration) const;
+    void countIteration() const {
+        if (techniqueFilm_) techniqueFilm_->countIteration();
+    }
+
+  private:
+    /// The contribution with and without its weight, in the file's units; observed.
+    struct Weighed {
+        Rgb value, unweighted;
+    };
+    Weighed weigh(const Contribution& c, const TechniqueCounts& counts) const;
+    void countInvalid(const Sample& sample, TaskResult& result) const;
+
+    const RenderSetup& setup_;
+    TechniqueFilm* techniqueFilm_ = nullptr;
+    PathObserver observer_;
+    bool recording_ = false;
+    std::vector<RecordedRay> recorded_;
+};
+
+}  // namespace lacuna

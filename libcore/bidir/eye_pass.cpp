@@ -1,0 +1,138 @@
+#include "libcore/bidir/eye_pass.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lacuna {
+
+namespace {
+constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
+}
+
+bool EyePass::run(const Iteration& iteration) const {
+    const PixelRect& crop = setup_.settings.crop;
+    const int tilesX = (crop.width() + kTile - 1) / kTile;
+    const int tilesY = (crop.height() + kTile - 1) / kTile;
+    const int rowsPerBatch = std::max(1, kPathsPerBatch / (kTile * kTile * tilesX));
+    for (int row = 0; row < tilesY; row += rowsPerBatch) {
+        const int rows = std::min(rowsPerBatch, tilesY - row);
+        std::vector<TaskResult> results(std::size_t(rows) * std::size_t(tilesX));
+        setup_.threads.forEach(results.size(), [&](std::size_t task) {
+            if (iteration.cancel) return;
+            delivery_.begin(results[task]);
+            Worker& worker = workers_.own();
+            const int x0 = crop.x0 + int(task % std::size_t(tilesX)) * kTile;
+            const int y0 = crop.y0 + (row + int(task / std::size_t(tilesX))) * kTile;
+            const auto count = std::size_t(std::min(kTile, crop.x1 - x0));
+            for (int y = y0; y < std::min(y0 + kTile, crop.y1); ++y) {
+                pixelRow(iteration, x0, y, iteration.pixels.subspan(setup_.cropIndex(x0, y), count),
+                         worker, results[task]);
+            }
+        });
+        if (iteration.cancel) return false;
+        delivery_.collect(results, iteration.statistics);
+        delivery_.addSplats(results, iteration);
+    }
+    return true;
+}
+
+void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb> pixels,
+                       Worker& worker, TaskResult& result) const {
+    const std::uint32_t filmIndex = setup_.filmIndex(x0, y);
+    // One thing after the other for all pixels, and not all things for one pixel: the processor's
+    // first cache holds the code of one of them.
+    if (setup_.techniques.ownLightPath) {
+        std::array<std::uint64_t, kTile> numbers;
+        std::iota(numbers.begin(), numbers.end(), std::uint64_t(filmIndex));
+        const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
+        lightPass_.trace(std::span(numbers).first(pixels.size()), iteration,
+                         {StreamKind::LightPath, 0, splats}, worker, result);
+    }
+    worker.rngs.clear();
+    worker.walks.clear();
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+        Rng& rng = worker.rngs.emplace_back(setup_.settings.seed, iteration.number,
+                                            StreamKind::EyePath, filmIndex + i);
+        const float jitterX = rng.uniform(), jitterY = rng.uniform();
+        worker.walks.push_back(setup_.walker.startEye(
+            {float(x0 + int(i)) + jitterX, float(y) + jitterY}, rng, worker.eye[i]));
+    }
+    setup_.walker.finish(worker.walks, result.tally);
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) iteration.counts.labelWalk(worker.eye[i]);
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+        const Subpath own = setup_.techniques.ownLightPath ? worker.light[i] : Subpath{};
+        close({worker.eye[i],
+               own,
+               {iteration.number, false, filmIndex + i},
+               setup_.cropIndex(x0 + int(i), y),
+               pixels[i]},
+              iteration, worker, result);
+    }
+}
+
+void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                    TaskResult& result) const {
+    select(paths, iteration, worker, result);
+    open(paths, iteration, worker, result);
+    const auto deliver = [&](const Closed& closed, const Proposal* proposal) {
+        const double scale = proposal ? proposal->weight : 1.0;
+        delivery_.toOwnPixel({closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal},
+                             iteration.counts, paths.value, result);
+    };
+    std::size_t next = 0;
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        const Subpath eye = paths.eye.first(t);
+        if (setup_.techniques.hits && eye.back().light != kNone) {
+            const auto closed = closeHit(setup_.walker, eye, worker.fullPath);
+            if (closed) deliver(*closed, nullptr);
+        }
+        for (; next < worker.open.size() && worker.open[next].eye.size() == t; ++next) {
+            const auto closed = closeConnection(setup_.walker, worker.open[next], worker.fullPath);
+            if (closed) deliver(*closed, worker.openedBy[next]);
+        }
+    }
+}
+
+/// For all vertices of the path before the first one is connected: light vertices lie anywhere in
+/// memory, and those that were picked are on their way from there meanwhile.
+void EyePass::select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                     TaskResult& result) const {
+    worker.proposals.clear();
+    worker.proposalEnds.assign(paths.eye.size() + 1, 0);
+    if (!setup_.techniques.connects) return;
+    const auto filmIndex = std::uint32_t(paths.sample.number);
+    Rng rng(setup_.settings.seed, iteration.number, StreamKind::Connection, filmIndex);
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        const PathVertex& z = paths.eye[t - 1];
+        if (!z.infinite() && z.connectable() && int(t) <= setup_.settings.limits.maxDepth) {
+            method_.select({z, paths.eye.first(t), paths.ownLight, filmIndex, iteration.number,
+                            setup_.walker, setup_.space, result.tally},
+                           rng, worker.proposals);
+        }
+        worker.proposalEnds[t] = worker.proposals.proposals().size();
+    }
+}
+
+/// Likewise before the first one is weighed: the rest of the light subpaths, and labels.
+void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                   TaskResult& result) const {
+    worker.open.clear();
+    worker.openedBy.clear();
+    const std::span<const Proposal> proposals = worker.proposals.proposals();
+    std::size_t next = 0;
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        for (; next < worker.proposalEnds[t]; ++next) {
+            const Subpath light = proposals[next].light;
+            if (int(light.size() + t) - 1 > setup_.settings.limits.maxDepth) continue;
+            const auto edge =
+                connectingEdge(setup_.walker, light.back(), paths.eye[t - 1], result.tally);
+            if (!edge) continue;
+            for (const PathVertex& v : light.first(light.size() - 1)) prefetch(v);
+            worker.open.push_back({light, paths.eye.first(t), *edge});
+            worker.openedBy.push_back(&proposals[next]);
+        }
+    }
+    iteration.counts.labelEnds(worker.open);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,48 @@
+// The eye subpaths of an iteration, one per pixel: hits, picks, connections.
+#pragma once
+
+#include "libcore/bidir/light_pass.h"
+
+namespace lacuna {
+
+class EyePass {
+  public:
+    /// All must outlive it.
+    EyePass(const RenderSetup& setup, const Method& method, const LightPass& lightPass,
+            Delivery& delivery, const Workers& workers)
+        : setup_(setup),
+          method_(method),
+          lightPass_(lightPass),
+          delivery_(delivery),
+          workers_(workers) {}
+
+    /// All pixels of the crop. False if cancelled.
+    bool run(const Iteration& iteration) const;
+    /// Pixels x0, x0 + 1, .. of row y, at most kTile of them, into `pixels`.
+    void pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb> pixels, Worker& worker,
+                  TaskResult& result) const;
+
+  private:
+    /// A pixel's subpaths, where they belong, and where their light goes.
+    struct PixelPaths {
+        Subpath eye, ownLight;
+        Sample sample;
+        std::uint32_t pixel;  ///< row-major in the crop
+        Rgb& value;
+    };
+
+    void close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+               TaskResult& result) const;
+    void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                TaskResult& result) const;
+    void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+              TaskResult& result) const;
+
+    const RenderSetup& setup_;
+    const Method& method_;
+    const LightPass& lightPass_;
+    Delivery& delivery_;
+    const Workers& workers_;
+};
+
+}  // namespace lacuna

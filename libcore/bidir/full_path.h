@@ -1,0 +1,81 @@
+// A full path x_0 (light) .. x_k (lens), with the densities of both walks: what weights read.
+//
+// Delta events keep their generalised densities; strategies that would connect through one do not
+// exist.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+
+#include "libcore/bidir/path.h"
+
+namespace lacuna {
+
+/// Longest path in edges that can be asked for.
+inline constexpr int kMaxEdges = 254;
+
+/// All arrays by vertex, x_0 first; valid up to `edges`. Filled while a path is closed (close.h).
+struct FullPath {
+    template <class T>
+    using PerVertex = std::array<T, std::size_t(kMaxEdges) + 1>;
+
+    int edges = 0;
+    PerVertex<const PathVertex*> vertex;
+    PerVertex<float> lightPdfA;       ///< pL(x_i | x_{i-1}, x_{i-2}), no roulette
+    PerVertex<float> eyePdfA;         ///< pE(x_i | x_{i+1}, x_{i+2}), no roulette
+    PerVertex<float> survival;        ///< 1 at both ends
+    PerVertex<bool> delta;            ///< of the event at x_i on THIS path; not at ends
+    PerVertex<Rgb> scatter;           ///< f at x_i (x_0: emission profile)
+    PerVertex<Label> asLight;         ///< label of x_i as the end of a light subpath
+    PerVertex<Label> asEye;           ///< and of an eye subpath; kNone: not known
+    Rgb sourceBeta;                   ///< exitance over density at x_0
+    bool hittable = false;            ///< an eye walk can run into this light
+    bool splattable = true;           ///< k = 1 under a punctual light is not splatted
+    std::span<const Rgb> absorption;  ///< of the scene, by material (absorption.h)
+    /// How many of the first (last) edges the light's (the eye's) walk made.
+    int lightEdges = 0, eyeEdges = 0;
+
+    /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
+    bool exists(int t) const {
+        const int s = edges + 1 - t;
+        if (s == 0) return hittable;
+        if (edges == 1 && t == 1 && !splattable) return false;
+        // The connection's two ends scatter smoothly, as the light's point and the lens always do.
+        return !delta[std::size_t(s - 1)] && !delta[std::size_t(s)];
+    }
+    /// Connection::order where the eye's end is x_i.
+    int orderOf(int i) const {
+        return 1 + int(std::count(delta.begin() + i + 1, delta.begin() + edges, false));
+    }
+    /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
+    double lightRoulette(int i, int rouletteDepth) const {
+        return ifPlayed(i - 1 >= rouletteDepth, survival[std::size_t(std::max(0, i - 1))]);
+    }
+    double eyeRoulette(int i, int rouletteDepth) const {
+        return ifPlayed(edges - i - 1 >= rouletteDepth,
+                        survival[std::size_t(std::min(i + 1, edges))]);
+    }
+    /// G of the edge x_i, x_{i+1}. A walk's edge has the direction that the walk drew, which its
+    /// densities are made of: the positions at its ends know it to 1e-7 of the scene's size only,
+    /// and over a short or grazing edge the cosines of the two differ by percents.
+    double geometryOf(int i) const;
+    /// Unit, from x_i to x_{i+1}; a walk's edge has the direction that the walk drew.
+    Vec3 directionOf(int i) const;
+
+    /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
+    PerVertex<Rgb> beta;
+    PerVertex<double> geometry;  ///< geometryOf; filled likewise
+    void fillLightThroughputs(int rouletteDepth);
+
+  private:
+    /// The survival, or one. By bits: a branch would be taken the wrong way half of the time.
+    static double ifPlayed(bool played, float survival) {
+        const std::uint32_t mask = played ? ~0u : 0u;
+        return double(std::bit_cast<float>((std::bit_cast<std::uint32_t>(survival) & mask) |
+                                           (std::bit_cast<std::uint32_t>(1.0f) & ~mask)));
+    }
+};
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+#include "libcore/bidir/light_pass.h"
+
+#include <algorithm>
+
+namespace lacuna {
+
+namespace {
+constexpr std::uint64_t kPathsPerTask = 1024;
+constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
+}  // namespace
+
+bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const {
+    pool.reset(purpose.pooled);
+    const std::uint64_t total = std::max(purpose.pooled, purpose.splats);
+    for (std::uint64_t begin = 0; begin < total; begin += kPathsPerBatch) {
+        const std::uint64_t end = std::min(total, begin + kPathsPerBatch);
+        std::vector<TaskResult> results((end - begin + kPathsPerTask - 1) / kPathsPerTask);
+        setup_.threads.forEach(results.size(), [&](std::size_t task) {
+            if (iteration.cancel) return;
+            delivery_.begin(results[task]);
+            Worker& worker = workers_.own();
+            const std::uint64_t first = begin + task * kPathsPerTask;
+            const std::uint64_t last = std::min(end, first + kPathsPerTask);
+            std::vector<std::uint64_t> together;
+            for (std::uint64_t i = first; i < last; ++i) {
+                if (!tracedByItsPixel(i)) together.push_back(i);
+                if (together.size() < kTile && i + 1 < last) continue;
+                trace(together, iteration, purpose, worker, results[task]);
+                together.clear();
+            }
+        });
+        if (iteration.cancel) return false;
+
+        for (const TaskResult& r : results) pool.add(r.pooled, setup_.settings.limits.maxDepth);
+        delivery_.collect(results, iteration.statistics);
+        delivery_.addSplats(results, iteration);
+    }
+    return true;
+}
+
+/// Where pixels trace light subpaths of their own, those of the crop are left to the eye pass.
+bool LightPass::tracedByItsPixel(std::uint64_t number) const {
+    if (!setup_.techniques.ownLightPath || number >= setup_.filmPixels()) return false;
+    const auto width = std::uint64_t(setup_.camera.film().width);
+    return setup_.settings.crop.contains(int(number % width), int(number / width));
+}
+
+void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& iteration,
+                      const Purpose& purpose, Worker& worker, TaskResult& result) const {
+    worker.rngs.clear();
+    worker.walks.clear();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        Rng& rng = worker.rngs.emplace_back(setup_.settings.seed, iteration.number, purpose.stream,
+                                            numbers[i]);
+        const auto walk = setup_.walker.startLight(rng, worker.light[i]);
+        if (walk) worker.walks.push_back(*walk);
+    }
+    setup_.walker.finish(worker.walks, result.tally);
+
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        std::vector<PathVertex>& path = worker.light[i];
+        const bool pooled = numbers[i] < purpose.pooled;
+        const bool kept = pooled || setup_.techniques.ownLightPath;
+        if (kept) iteration.counts.labelWalk(path);
+        if (pooled) result.pooled.insert(result.pooled.end(), path.begin(), path.end());
+        if (numbers[i] < purpose.splats) {
+            splat(path, kept, numbers[i], worker.rngs[i], iteration, worker, result);
+        }
+    }
+}
+
+void LightPass::splat(std::span<PathVertex> path, bool labelled, std::uint64_t number, Rng& rng,
+                      const Iteration& iteration, Worker& worker, TaskResult& result) const {
+    const Walker& walker = setup_.walker;
+    const PathVertex z0 = walker.sampleLens(rng);
+    for (std::size_t s = 1; s <= path.size(); ++s) {
+        const Subpath light = path.first(s);
+        if (!light.back().connectable()) continue;
+        const auto open = lensEdge(walker, light.back(), z0, setup_.settings.crop, result.tally);
+        if (!open) continue;
+        if (!labelled) iteration.counts.labelWalk(path);  // here: most paths are never seen
+        labelled = true;
+        const auto closed = closeSplat(walker, light, z0, *open, worker.fullPath);
+        if (!closed) continue;
+        const std::uint32_t pixel = setup_.cropIndex(int(closed->raster.x), int(closed->raster.y));
+        delivery_.toSplats({*closed,
+                            worker.fullPath,
+                            {iteration.number, true, number},
+                            pixel,
+                            1.0 / double(setup_.lightPaths)},
+                           iteration.counts, result);
+    }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,71 @@
+// What stays the same from the first iteration of a render to the last, and what belongs to one.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "libcore/base/parallel.h"
+#include "libcore/bidir/film.h"
+#include "libcore/bidir/method.h"
+#include "libcore/bidir/mis.h"
+#include "libcore/bidir/scene_paths.h"
+#include "libcore/bidir/walk.h"
+
+namespace lacuna {
+
+struct RenderSettings {
+    WalkLimits limits;
+    std::uint64_t seed = 1;
+    PixelRect crop;                ///< inside the camera's film
+    std::uint64_t lightPaths = 0;  ///< L; 0: one per pixel of the full film
+};
+
+/// Shared by the passes; all references outlive the render.
+struct RenderSetup {
+    RenderSetup(const Scene& scene_, const Camera& camera_, Techniques techniques_,
+                const RenderSettings& settings_, const ThreadPool& threads_)
+        : scene(scene_),
+          camera(camera_),
+          techniques(techniques_),
+          settings(settings_),
+          threads(threads_),
+          walker(scene_, camera_, settings_.limits),
+          lightPaths(settings_.lightPaths ? settings_.lightPaths : filmPixels()) {}
+
+    RenderSetup(const RenderSetup&) = delete;
+    RenderSetup& operator=(const RenderSetup&) = delete;
+
+    std::uint64_t filmPixels() const {
+        return std::uint64_t(camera.film().width) * std::uint64_t(camera.film().height);
+    }
+    /// Row-major.
+    std::uint32_t filmIndex(int x, int y) const {
+        return std::uint32_t(y) * std::uint32_t(camera.film().width) + std::uint32_t(x);
+    }
+    std::uint32_t cropIndex(int x, int y) const {
+        const PixelRect& crop = settings.crop;
+        return std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) +
+               std::uint32_t(x - crop.x0);
+    }
+
+    const Scene& scene;
+    const Camera& camera;
+    const Techniques techniques;
+    const RenderSettings settings;
+    const ThreadPool& threads;
+    const Walker walker;
+    const ScenePaths space{walker};
+    const std::uint64_t lightPaths;  ///< L
+};
+
+/// An iteration under way.
+struct Iteration {
+    std::uint32_t number;
+    TechniqueCounts counts;  ///< frozen for it
+    std::span<Rgb> pixels;   ///< of the crop: what it adds up; none in a warm-up
+    IterationStatistics& statistics;
+    const std::atomic<bool>& cancel;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,103 @@
+// Cache points: vertices of eye subpaths of their own, which add nothing to the image, at which
+// light vertices are weighed for all eye vertices nearby [Popov15], [Nabata20a 5].
+//
+// A new set is traced for every iteration, before its light paths, so a set is frozen data for the
+// weights. An eye vertex is served by the N_c points nearest to the point that is nearest to it:
+// one query per vertex, and what belongs together lies together.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "libcore/base/nearest.h"
+#include "libcore/bidir/method.h"
+
+namespace lacuna {
+
+class CachePoints {
+  public:
+    /// No points: everything is served by nobody.
+    CachePoints() = default;
+    /// Vertices of `density` x (pixels of the film) eye subpaths, at least one path.
+    /// `neighbours`: N_c. `generation` addresses the random numbers.
+    CachePoints(IterationContext& context, double density, int neighbours,
+                std::uint32_t generation);
+
+    std::size_t size() const { return points_.size(); }
+    bool empty() const { return points_.empty(); }
+    /// The point as the end of an eye subpath: its predecessor and itself.
+    Subpath eye(std::uint32_t point) const { return {vertices_.data() + points_[point] - 1, 2}; }
+    Vec3 position(std::uint32_t point) const { return vertices_[points_[point]].position; }
+
+    /// The point that serves an eye vertex, which is also the vertex's label; kNone where there are
+    /// no points. `label`: the vertex's, where it is known.
+    std::uint32_t serving(const PathVertex& eye, Label label) const {
+        return label != kNone ? label : nearest(eye.position);
+    }
+    /// Labels a walk's vertices as eye vertices, whichever walk it is.
+    void labelAsEye(std::span<PathVertex> walk) const;
+    /// min(N_c, size()) points, the serving one first; none for kNone.
+    std::span<const std::uint32_t> around(std::uint32_t serving) const {
+        if (serving == kNone) return {};
+        return std::span(around_).subspan(serving * perPoint_, perPoint_);
+    }
+
+    /// Upper limit of 1 / d^2 in everything that is kept at a point: a light vertex closer than the
+    /// point's neighbours are says little about the vertices that it serves, and may be infinitely
+    /// close. Never a limit on what is carried.
+    double inverseSquareLimit(std::uint32_t point) const { return limit_[point]; }
+    /// G, or `share` of that limit where G is larger. At infinity G is a cosine: there is no
+    /// distance to limit.
+    double limited(std::uint32_t point, const PathVertex& light, double geometry,
+                   double share = 1.0) const {
+        return light.infinite() ? geometry : std::min(geometry, share * limit_[point]);
+    }
+    /// G between an eye vertex and a light vertex as weights may trust it: no larger than what the
+    /// pmf at the point knows of it. Where the light vertex is near the eye vertex and not near
+    /// the point, or behind the point's surface, which scatters nothing of it, it is picked rarely,
+    /// and no weight must count on it.
+    double trustedGeometry(std::uint32_t point, const PathVertex& light, double geometry) const;
+
+    std::uint64_t bytes() const;
+
+    /// The search structure alone: all that is needed of a set whose iteration is over.
+    NearestPoints takeNearest() && { return std::move(nearest_); }
+
+  private:
+    std::uint32_t nearest(Vec3 position) const;
+
+    std::vector<PathVertex> vertices_;   // whole eye subpaths
+    std::vector<std::uint32_t> points_;  // index into vertices_
+    std::vector<std::uint32_t> around_;  // perPoint_ each
+    std::vector<double> limit_;          // of 1 / d^2
+    std::size_t perPoint_ = 0;
+    NearestPoints nearest_;
+};
+
+/// What earlier iterations found at their cache points, to be read at new ones: the frozen
+/// normalisers Q. Holds the last `sets` sets.
+class EarlierValues {
+  public:
+    /// `columns` values per point; `count`: N_q.
+    EarlierValues(int columns, int sets, int count)
+        : columns_(std::size_t(columns)), sets_(std::size_t(sets)), count_(std::size_t(count)) {}
+
+    /// Forgets the oldest set where there are too many. An empty set is not one.
+    void add(CachePoints points, std::vector<double> values);
+    /// For each new point the mean over all sets of the mean over the N_q points nearest to it:
+    /// columns values each. Zero without sets.
+    std::vector<double> at(const CachePoints& points, const ThreadPool& threads) const;
+
+  private:
+    struct Set {
+        NearestPoints nearest;
+        std::vector<double> values;
+    };
+    std::size_t columns_, sets_, count_;
+    std::deque<Set> history_;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+// How often eye vertices are connected, and what weights believe of so many picks: what methods
+// have in common.
+#pragma once
+
+#include "libcore/base/options.h"
+#include "libcore/bidir/method.h"
+
+namespace lacuna {
+
+/// N: how often an eye vertex is connected, by its Connection::order.
+struct Picks {
+    static constexpr int kMost = 64;
+
+    int first;  ///< the pixel determines it: nothing but the light subpath is random
+    int second;
+    int later;
+
+    int at(int order) const { return order <= 1 ? first : order == 2 ? second : later; }
+    bool alike() const { return first == second && second == later; }
+};
+
+/// N as people set it.
+struct PickOptions {
+    int connections = 1;
+    int first = 0;  ///< 0: connections
+    int deep = 0;   ///< after the first two; 0: connections
+
+    Picks picks() const {
+        return {first > 0 ? first : connections, connections, deep > 0 ? deep : connections};
+    }
+};
+/// `connections` and `first_connections`, and `deep_connections` where `deep`.
+OptionTable<PickOptions> pickOptions(const PickOptions& defaults, bool deep = false);
+
+/// `next_event`, a switch of every method that may take s = 1 from the pool.
+template <class Record, class Field>
+void addNextEvent(OptionTable<Record>& table, Field field) {
+    table.onOff("next_event", field,
+                "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light "
+                "points");
+}
+
+/// `eye_share`: see withEyeShare.
+template <class Record, class Field>
+void addEyeShare(OptionTable<Record>& table, Field field) {
+    table.real(
+        "eye_share", field, 0, 1, "share",
+        "of the variance of connections, what all picks at one eye vertex have in common, as "
+        "the weights believe of all but the first eye vertex; 0: nothing (the paper)");
+}
+
+/// n r where picks differ in their light subpath alone: a share of a connection's variance is that
+/// of its eye subpath, which all of them have in common [Grittmann21]. `samples` are what light
+/// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at the
+/// first eye vertex (Connection::order), which the pixel determines. (theory.md, "Eye subpaths")
+double withEyeShare(double samples, int order, double share);
+
+/// Proposes one fresh light point: next event (s = 1, r = 1).
+void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
+
+/// A density that depends on nothing but whether s = 1.
+class ConstantDensity final : public ConnectionDensity {
+  public:
+    ConstantDensity(double direct, double indirect) : constants_{direct, indirect} {}
+    std::optional<Constants> constants() const override { return constants_; }
+    double effectiveSamples(const Connection& c) const override {
+        return c.light.count == 1 ? constants_.direct : constants_.indirect;
+    }
+
+  private:
+    Constants constants_;
+};
+
+/// n r where every pick is worth the same r: picks x r. With next event s = 1 has one sample.
+class PicksDensity final : public ConnectionDensity {
+  public:
+    PicksDensity(const Picks& picks, bool nextEvent, double r)
+        : picks_(picks), nextEvent_(nextEvent), r_(r) {}
+    std::optional<Constants> constants() const override {
+        if (!picks_.alike()) return std::nullopt;
+        return Constants{at(1, 1), at(2, 1)};
+    }
+    double effectiveSamples(const Connection& c) const override {
+        return at(c.light.count, c.order);
+    }
+
+  private:
+    double at(int s, int order) const { return nextEvent_ && s == 1 ? 1.0 : picks_.at(order) * r_; }
+
+    Picks picks_;
+    bool nextEvent_;
+    double r_;
+};
+
+}  // namespace lacuna

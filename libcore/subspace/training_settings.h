@@ -1,0 +1,32 @@
+// How subspaces are trained: one table that lacuna-train, lacuna-render's spcbpt and the cache's
+// key share. Not the seed: what is trained with any is good for all renders.
+#pragma once
+
+#include <cstdint>
+
+#include "libcore/base/options.h"
+
+namespace lacuna {
+
+struct TrainingSettings {
+    std::uint64_t paths = 1'000'000;
+    std::uint32_t subspaces = 1000;
+    std::uint64_t lightPaths = 2'000'000;
+    int epochs = 20;
+    bool borrow = true;
+};
+
+inline OptionTable<TrainingSettings> trainingOptions() {
+    return OptionTable<TrainingSettings>()
+        .integer("paths", &TrainingSettings::paths, 1, 1e8, "full paths", "to train with")
+        .integer("subspaces", &TrainingSettings::subspaces, 1, 4000, "subspaces",
+                 "of light and of eye subpaths")
+        .integer("light_paths", &TrainingSettings::lightPaths, 1, 1e9, "light subpaths", "for Q")
+        .integer("epochs", &TrainingSettings::epochs, 0, 10'000, "epochs",
+                 "passes over the paths to optimise Gamma")
+        .onOff("borrow", &TrainingSettings::borrow,
+               "columns of Gamma that few paths speak for borrow from those around them; off, with "
+               "epochs=0: the full-contribution Gamma as it was counted (the paper's Gamma^full)");
+}
+
+}  // namespace lacuna
