@@ -43,7 +43,7 @@ struct Belief {
     double picked = 0;    ///< 1 / (1/M + (1 - 1/M) w), w the weight of the proposal; 0: never
 };
 
-/// For the light vertices y_1 of `subpaths` light subpaths and the first vertex of `eye`, which are
+/// For the light vertices y_1 of `subpaths` light subpaths and the last vertex of `eye`, which are
 /// connected with this G: from many calls of select(). `indexOf` tells the subpath of a vertex.
 template <class IndexOf>
 std::vector<Belief> beliefs(const Method& method, const ConnectionDensity& density, Subpath eye,
@@ -61,8 +61,8 @@ std::vector<Belief> beliefs(const Method& method, const ConnectionDensity& densi
             if (p.light.size() != 2) continue;
             const PathVertex& y = p.light.back();
             Connection c{};
-            c.eye = {&eye[1], &eye[0], 2, {}};
-            c.order = 1;
+            c.eye = {&eye.back(), &eye[eye.size() - 2], int(eye.size()), {}};
+            c.order = connectionOrder(eye);
             c.light = {&y, &p.light[0], 2, Rgb(1.0f)};
             c.beta = y.throughput;
             c.geometry = geometry;
