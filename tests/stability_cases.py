@@ -98,6 +98,9 @@ GROUPS = [
         Case("space-none", "none at all", "no node, and look-ups say so"),
         Case("space-flat", "space one voxel high", "its loops, and no more"),
         Case("space-scale", "rooms of 1e-3 and of 1e6 units", "the same skeleton and node map"),
+        Case("node-sides", "points on one slanted wall, of no thickness or less than a voxel's",
+             "the node of the path's side"),
+        Case("node-wedges", "points in wedges between two and three walls", "the node of the path's room, but for 1.2 %"),
     ]),
     ("Training", [
         Case("train-scale", "scenes of 1e-3 and 1e6 of their size, 1e-18 and 1e18 of their brightness",

@@ -36,6 +36,30 @@ class UnionFind {
 
 constexpr std::uint32_t kNobody = 0xffffffffu;
 
+/// An edge, as seen from one of its ends.
+struct Way {
+    std::uint32_t to, edge;
+};
+
+std::vector<std::vector<Way>> waysOf(const SkeletonGraph& graph) {
+    std::vector<std::vector<Way>> ways(graph.nodes.size());
+    for (std::uint32_t i = 0; i < graph.edges.size(); ++i) {
+        const auto& e = graph.edges[i];
+        ways[e[0]].push_back({e[1], i});
+        ways[e[1]].push_back({e[0], i});
+    }
+    return ways;
+}
+
+std::vector<std::uint32_t> byFallingRadius(std::span<const SkeletonNode> nodes) {
+    std::vector<std::uint32_t> order(nodes.size());
+    std::iota(order.begin(), order.end(), std::uint32_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return nodes[a].radius > nodes[b].radius;
+    });
+    return order;
+}
+
 }  // namespace
 
 std::int64_t SkeletonGraph::b0() const {
@@ -78,45 +102,38 @@ SkeletonGraph extractGraph(const CubicalComplex& complex, const VoxelShape& shap
 
 FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph) {
     const std::size_t n = graph.nodes.size();
-    std::vector<std::vector<std::uint32_t>> neighbours(n);
-    for (const auto& e : graph.edges) {
-        neighbours[e[0]].push_back(e[1]);
-        neighbours[e[1]].push_back(e[0]);
-    }
-    std::vector<std::uint32_t> order(n);
-    std::iota(order.begin(), order.end(), std::uint32_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return graph.nodes[a].radius > graph.nodes[b].radius;
-    });
-
+    const std::vector<std::vector<Way>> ways = waysOf(graph);
     FilteredGraph filtered;
-    std::vector<std::uint32_t> keeper(n, kNobody);  // index in filtered.nodes
+    // By raw node, as indices into filtered.nodes: who swallowed it, whose ball came there last.
+    std::vector<std::uint32_t> keeper(n, kNobody), reached(n, kNobody);
+    std::vector<bool> leftOut(graph.edges.size(), false);
     std::vector<std::uint32_t> stack;
-    for (const std::uint32_t k : order) {
+    for (const std::uint32_t k : byFallingRadius(graph.nodes)) {
         if (keeper[k] != kNobody) continue;
         const SkeletonNode& ball = graph.nodes[k];
         const auto number = std::uint32_t(filtered.nodes.size());
         filtered.nodes.push_back(ball);
-        keeper[k] = number;
+        keeper[k] = reached[k] = number;
         stack.push_back(k);
         while (!stack.empty()) {
             const std::uint32_t here = stack.back();
             stack.pop_back();
-            for (const std::uint32_t next : neighbours[here]) {
-                if (keeper[next] != kNobody ||
-                    !(length(graph.nodes[next].position - ball.position) < ball.radius)) {
+            for (const Way& way : ways[here]) {
+                if (reached[way.to] == number ||
+                    !(length(graph.nodes[way.to].position - ball.position) < ball.radius)) {
                     continue;
                 }
-                keeper[next] = number;
-                stack.push_back(next);
+                reached[way.to] = number;
+                stack.push_back(way.to);
+                if (keeper[way.to] != kNobody) continue;  // an earlier one's
+                keeper[way.to] = number;
+                leftOut[way.edge] = true;
             }
         }
     }
-
-    // Inside a swallowed set the first edges make a spanning tree; one more is a loop.
-    UnionFind tree(n);
-    for (const auto& e : graph.edges) {
-        if (keeper[e[0]] == keeper[e[1]] && tree.join(e[0], e[1])) continue;
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+        if (leftOut[i]) continue;
+        const auto& e = graph.edges[i];
         filtered.edges.push_back(
             {{keeper[e[0]], keeper[e[1]]}, graph.nodes[e[0]].position, graph.nodes[e[1]].position});
     }

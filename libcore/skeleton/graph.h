@@ -50,11 +50,15 @@ struct FilteredGraph {
     }
 };
 
-/// The maximal-ball filter [Noel15 4.4]: by falling radius (ties: lower index first) a node
-/// swallows the nodes inside its ball that are connected to it there. Unlike in the paper,
-/// connected is asked for (a ball that reaches through a thin wall must not swallow the other
-/// side), and edges are kept: every swallowed set is contracted along a spanning tree, so b0 and b1
-/// are those of `graph`.
+/// The maximal-ball filter [Noel15 4.4]: by falling radius (ties: lower index first) a node that is
+/// still there is kept and swallows the nodes inside its ball that are connected to it there, also
+/// through nodes that an earlier one has swallowed. Unlike in the paper, connected is asked for:
+/// two branches that meet in a ball but are joined outside of it would become a loop.
+///
+/// A swallowed node is reached by one edge, from a node that the same ball or an earlier one has
+/// swallowed. These edges make a forest of one tree per kept node. They are left out, and every
+/// other edge joins the nodes that swallowed its ends: b0 and b1 are those of `graph`. And as an
+/// edge that is left out lies in the ball that reached along it, the loops are the same ones.
 FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph);
 
 }  // namespace lacuna

@@ -135,18 +135,57 @@ class Waves {
 
 }  // namespace
 
-std::uint16_t NodeMap::entry(const Vec3d& point) const {
-    const VoxelIndex v = shape_.voxelOf(point);
-    return shape_.contains(v) ? entries_[shape_.at(v)] : kNone;
+std::uint16_t NodeMap::entry(const Vec3d& place) const {
+    const VoxelIndex& size = shape_.size;
+    const bool inside = place.x >= 0.0 && place.y >= 0.0 && place.z >= 0.0 && place.x < size[0] &&
+                        place.y < size[1] && place.z < size[2];
+    return inside ? entries_[shape_.at({int(place.x), int(place.y), int(place.z)})] : kNone;
+}
+
+std::uint16_t NodeMap::firstAlong(const Vec3d& place, const Vec3d& side,
+                                  std::initializer_list<double> steps) const {
+    for (const double step : steps) {
+        const std::uint16_t e = entry(place + side * step);
+        if (e < kNone) return e;
+    }
+    return kNone;
+}
+
+std::uint16_t NodeMap::around(const Vec3d& place, const Vec3d& side) const {
+    const double steepest = std::max({std::fabs(side.x), std::fabs(side.y), std::fabs(side.z)});
+    VoxelIndex low, high;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int last = shape_.size[a] - 1;
+        const int own = int(std::clamp(std::floor(place[a]), -2.0, last + 2.0));
+        low[a] = std::max(side[a] == steepest ? own : own - 1, 0);
+        high[a] = std::min(side[a] == -steepest ? own : own + 1, last);
+    }
+    std::uint16_t best = kNone;
+    double ahead = 0.0, distance2 = 1.0;  // of the best; their ratio is 1 / the ball's diameter
+    for (int z = low[2]; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            const std::uint16_t* row = &entries_[shape_.at({0, y, z})];
+            for (int x = low[0]; x <= high[0]; ++x) {
+                if (row[x] >= kNone) continue;
+                const Vec3d centre = Vec3d{x + 0.5, y + 0.5, z + 0.5} - place;
+                const double a = dot(centre, side), d2 = lengthSquared(centre);
+                if (a * distance2 <= ahead * d2) continue;
+                best = row[x];
+                ahead = a;
+                distance2 = d2;
+            }
+        }
+    }
+    return best;
 }
 
 std::uint16_t NodeMap::at(const Vec3d& point, const Vec3d& side) const {
     if (entries_.empty()) return kNone;
-    for (const double step : {0.0, 0.5, 1.0, 1.5, 2.0}) {
-        const std::uint16_t e = entry(point + side * (step * shape_.voxel));
-        if (!(e & kSolid) && e != kNone) return e;
-    }
-    return std::uint16_t(entry(point) & ~kSolid);
+    const Vec3d place = (point - shape_.origin) / shape_.voxel;
+    std::uint16_t node = firstAlong(place, side, {0.0, 0.5, 1.0});
+    if (node == kNone) node = around(place, side);
+    if (node == kNone) node = firstAlong(place, side, {1.5, 2.0, 2.5, 3.0});
+    return node != kNone ? node : std::uint16_t(entry(place) & ~kSolid);
 }
 
 NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
@@ -154,7 +193,7 @@ NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
     if (nodes.size() >= NodeMap::kNone) {
         throw RunError("node map: expected fewer than " + std::to_string(NodeMap::kNone) +
                        " nodes, found " + std::to_string(nodes.size()) +
-                       "; use a lower --resolution");
+                       "; use a lower resolution");
     }
     const VoxelShape& shape = space.shape;
     Waves waves(space, pool);

@@ -1,6 +1,7 @@
 // Which skeleton node a point belongs to.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -23,12 +24,25 @@ class NodeMap {
 
     /// Node of a point on a surface, seen from the side that the unit normal `side` points to:
     /// surfaces lie in solid voxels, and a wall one voxel thick has a node on either side. The
-    /// first empty voxel on the way out, by up to two voxels, else the entry that was extended into
-    /// the point's own. kNone where there is none, and outside of the grid.
+    /// first of these that is an Empty voxel with a node:
+    ///   1. the point's own, and those half a voxel and one voxel along `side`;
+    ///   2. of the 18 about it that are not behind it along the steepest axis of `side`, among
+    ///      those whose centre is in front of the surface, the one whose centre a ball that touches
+    ///      the surface at the point meets first as it grows;
+    ///   3. 1.5 to 3 voxels along `side`: past what is too crowded for an Empty voxel;
+    /// else the entry that was extended into the point's own voxel. kNone where there is none, and
+    /// outside of the grid. Where the 27 voxels about the point hold one flat wall and nothing
+    /// else, 1 and 2 find a node, and never one of the other side. Two walls in the point's own
+    /// voxel are not told apart: that would take the triangles, and where it was tried (by rays to
+    /// the voxels around) pictures were no better.
     std::uint16_t at(const Vec3d& point, const Vec3d& side) const;
 
   private:
-    std::uint16_t entry(const Vec3d& point) const;
+    // Places are points in voxels from the grid's low corner.
+    std::uint16_t entry(const Vec3d& place) const;
+    std::uint16_t firstAlong(const Vec3d& place, const Vec3d& side,
+                             std::initializer_list<double> steps) const;
+    std::uint16_t around(const Vec3d& place, const Vec3d& side) const;
 
     VoxelShape shape_;
     std::vector<std::uint16_t> entries_;

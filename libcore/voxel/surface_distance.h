@@ -9,8 +9,7 @@
 namespace lacuna {
 
 /// Embree's point query over the triangles, the distance itself in double: 3e-15 from CGAL's
-/// AABB tree at a third of its time (dependencies.md 4). OpenVDB's mesh to distance field is not
-/// exact.
+/// AABB tree at a third of its time. OpenVDB's mesh to distance field is not exact.
 class SurfaceDistance {
   public:
     /// Throws RunError if Embree cannot build.
