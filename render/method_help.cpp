@@ -1,15 +1,11 @@
 #include "render/method_help.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "libcore/base/number_text.h"
 
 namespace lacuna {
 namespace {
-
-std::string numberText(double value) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-}
 
 std::string rangeText(const Parameter& p) {
     switch (p.kind) {
