@@ -30,11 +30,11 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
 
     const std::string picture = "Picture and camera";
     app.add_option("--width", o.width,
-                   "Pixels (default: by --height and the shape, else extras.lacuna, else 1280)")
+                   "Pixels (default: by --height, else extras.lacuna, else 1280)")
         ->type_name("N")
         ->group(picture);
     app.add_option("--height", o.height,
-                   "Pixels (default: by --width and the shape, else extras.lacuna)")
+                   "Pixels (default: by --width, else extras.lacuna, else by the aspect)")
         ->type_name("N")
         ->group(picture);
     app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
@@ -113,10 +113,10 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
         "a second one exits at once. --width or --height alone keeps the picture's shape, that of\n"
-        "extras.lacuna where it has both sides, else the camera's. .exr: R G B, albedo, normal, Z "
-        "(distance along the viewing axis,\n"
-        "0 where nothing is hit), variance (of the mean), technique layers, and in the header how\n"
-        "it was made; with --crop it has the size of the crop, `crop` in the header says where.\n"
+        "extras.lacuna where it has both sides, else the camera's. .exr: R G B, albedo, normal, Z\n"
+        "(distance along the viewing axis, 0 where nothing is hit), variance (of the mean),\n"
+        "technique layers, and in the header how it was made; with --crop it has the size of the\n"
+        "crop, `crop` in the header says where.\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene or an image cannot be\n"
         "used, 130 interrupted.");
 }

@@ -399,14 +399,16 @@ TEST(Accessor, TypesThatAreNotWhatTheirUseWants) {
 }
 
 TEST(Accessor, NothingIsNoAccessor) {
-    for (const bool ofIndices : {false, true}) {
+    for (const bool hasView : {false, true}) {
         TriangleBuilder b;
-        b.primitive()["indices"] = b.accessor<std::uint8_t>({0, 1, 2}, "SCALAR");
-        json& accessor = b.root["accessors"][ofIndices ? 1 : 0];
-        accessor.erase("bufferView");
-        accessor["count"] = 0;
-        expectRefused(b, {"scene.glb"});
+        if (!hasView) b.root["accessors"][0].erase("bufferView");
+        b.root["accessors"][0]["count"] = 0;
+        expectRefused(b, {"accessors[0].count", "1 to 4294967295", "found 0"});
     }
+    TriangleBuilder b;
+    b.primitive()["indices"] = b.accessor<std::uint8_t>({0, 1, 2}, "SCALAR");
+    b.root["accessors"][1]["count"] = 0;
+    expectRefused(b, {"accessors[1].count", "found 0"});
 }
 
 TEST(Accessor, WithoutDataItCannotAskForMuch) {

@@ -144,6 +144,10 @@ TEST(Mesh, ZeroNormalsBecomeFaceNormals) {
     EXPECT_EQ(scene.meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
     EXPECT_EQ(warningsWith(scene, "zero length"), 1);
     EXPECT_EQ(warningsWith(scene, "2 times"), 1);
+    // What rounding left of one has no direction either.
+    b.primitive()["attributes"]["NORMAL"] =
+        b.accessor<float>({1e-13f, 0, 0, 0, 1, 0, 0, -1e-13f, 0}, "VEC3");
+    EXPECT_EQ(b.load().meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
 }
 
 TEST(Mesh, ZeroNormalsBetweenFacesBackToBackKeepOneSide) {
