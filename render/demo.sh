@@ -27,7 +27,7 @@ if [[ -f $build/CMakeCache.txt ]]; then
 else
     configure -DLACUNA_TESTS=OFF -DLACUNA_BENCHMARKS=OFF
 fi
-build_targets lacuna-study
+build_targets lacuna_tools
 
 say "Study: $study"
 "$build/render/lacuna-study" "$study" -o "$out" >&2

@@ -8,6 +8,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/base/number_text.h"
 #include "libcore/bidir/mis.h"
 #include "libcore/image/image_io.h"
 #include "render/tolerance.h"
@@ -28,10 +29,12 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->allow_extra_args(false);
 
     const std::string picture = "Picture and camera";
-    app.add_option("--width", o.width, "Pixels (default: extras.lacuna, else 1280)")
+    app.add_option("--width", o.width,
+                   "Pixels (default: by --height, else extras.lacuna, else 1280)")
         ->type_name("N")
         ->group(picture);
-    app.add_option("--height", o.height, "Pixels (default: extras.lacuna, else by the aspect)")
+    app.add_option("--height", o.height,
+                   "Pixels (default: by --width, else extras.lacuna, else by the aspect)")
         ->type_name("N")
         ->group(picture);
     app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
@@ -51,7 +54,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(picture);
 
     const std::string light = "Environment";
-    app.add_option("--env", o.environment, "Latitude-longitude map instead of the scene's")
+    app.add_option("--env", o.environment,
+                   "Latitude-longitude map, .exr or .hdr, instead of the scene's")
         ->type_name("FILE")
         ->group(light);
     app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
@@ -64,7 +68,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
                    "One eye path per pixel each (default: 64; unlimited with --time)")
         ->type_name("N")
         ->group(effort);
-    app.add_option("--time", o.timeText, "Wall clock from the first iteration on: 90s, 10m, 1h")
+    app.add_option("--time", o.timeText,
+                   "Wall clock from the first iteration on: 90s (or 90), 10m, 1h")
         ->type_name("T")
         ->group(effort);
     app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
@@ -107,10 +112,11 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     addCommonOptions(app, o.common);
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
-        "a second one exits at once. Without --height the picture has extras.lacuna's height even\n"
-        "where --width is given. .exr: R G B, albedo, normal, Z (distance along the viewing axis,\n"
-        "0 where nothing is hit), variance (of the mean), technique layers, and in the header how\n"
-        "it was made; with --crop it has the size of the crop, `crop` in the header says where.\n"
+        "a second one exits at once. --width or --height alone keeps the picture's shape, that of\n"
+        "extras.lacuna where it has both sides, else the camera's. .exr: R G B, albedo, normal, Z\n"
+        "(distance along the viewing axis, 0 where nothing is hit), variance (of the mean),\n"
+        "technique layers, and in the header how it was made; with --crop it has the size of the\n"
+        "crop, `crop` in the header says where.\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene or an image cannot be\n"
         "used, 130 interrupted.");
 }
@@ -142,25 +148,34 @@ void requireRange(const char* option, const std::optional<std::int64_t>& value, 
     }
 }
 
-void requireReal(const char* option, const std::optional<double>& value, double low,
+void requireReal(const char* option, const std::optional<double>& value, double low, double high,
                  const char* expected) {
-    if (value && !(*value >= low && std::isfinite(*value))) {
+    if (value && !(*value >= low && *value <= high)) {
         throw UsageError(std::string(option) + ": expected " + expected + ", found " +
-                         std::to_string(*value));
+                         numberText(*value));
     }
+}
+
+/// Before the scene is loaded: readImage reads pictures of eight bits too, whose lamps are cut off
+/// at white.
+void requireEnvironmentEnding(const std::string& file) {
+    const std::string ending = endingOf(file);
+    if (ending == ".exr" || ending == ".hdr") return;
+    throw InputError(file + ": expected an environment .exr or .hdr, found the ending '" + ending +
+                     "'; convert the image");
 }
 
 }  // namespace
 
 double parseDuration(const std::string& text) {
-    const std::size_t digits = text.empty() ? 0 : text.size() - 1;
     const char unit = text.empty() ? '\0' : text.back();
-    const double factor = unit == 's' ? 1.0 : unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 0.0;
+    const double factor = unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 1.0;
+    std::string_view number = text;
+    if (unit == 's' || unit == 'm' || unit == 'h') number.remove_suffix(1);
     double value = 0.0;
-    if (factor == 0.0 || !parseNumber(std::string_view(text).substr(0, digits), value) ||
-        !(value > 0.0) || !std::isfinite(value)) {
-        throw UsageError("--time: expected a time above 0 such as 90s, 10m or 1h, found '" + text +
-                         "'");
+    if (!parseNumber(number, value) || !(value > 0.0) || !std::isfinite(value * factor)) {
+        throw UsageError("--time: expected a time above 0 such as 90s, 90, 10m or 1h, found '" +
+                         text + "'");
     }
     return value * factor;
 }
@@ -218,15 +233,14 @@ void checkOptions(RenderOptions& o) {
     requireRange("--iterations", o.iterations, 1, 1'000'000'000);
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
     requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
-    requireReal("--aperture", o.aperture, 0.0, "a radius from 0 on");
-    requireReal("--focus", o.focus, 1e-30, "a distance above 0");
-    requireReal("--env-rotate", o.environmentRotation, -1e6, "an angle in degrees");
-    requireReal("--env-scale", o.environmentScale, 0.0, "a factor from 0 on");
-    requireReal("--exposure", o.exposure, -1000.0, "a number of stops");
-    if (!(o.tolerance >= 0.0 && o.tolerance <= kMaxTolerance)) {
-        throw UsageError("--tolerance: expected a share from 0 to 0.1, found " +
-                         std::to_string(o.tolerance));
-    }
+    // The bounds of the scene's extras: products of what lies inside are floats still.
+    requireReal("--aperture", o.aperture, 0.0, 1e30, "a radius from 0 to 1e30");
+    requireReal("--focus", o.focus, 1e-30, 1e30, "a distance from 1e-30 to 1e30");
+    requireReal("--env-rotate", o.environmentRotation, -1e6, 1e6, "an angle in degrees up to 1e6");
+    requireReal("--env-scale", o.environmentScale, 0.0, 1e30, "a factor from 0 to 1e30");
+    requireReal("--exposure", o.exposure, -1000.0, 1000.0, "stops from -1000 to 1000");
+    requireReal("--tolerance", o.tolerance, 0.0, kMaxTolerance, "a share from 0 to 0.1");
+    if (!o.environment.empty()) requireEnvironmentEnding(o.environment);
     if (!o.timeText.empty()) o.timeSeconds = parseDuration(o.timeText);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);

@@ -50,17 +50,18 @@ struct RenderOptions {
     std::vector<EffectSwitch> effectSwitches;  ///< taken out of `assignments`
 };
 
-/// Declares every option of interface.md. Both must outlive the parsing.
+/// Declares every option. Both must outlive the parsing.
 void declareOptions(CLI::App& app, RenderOptions& options);
 
-/// Parses the texts and checks every range that the scene has no say in. Throws UsageError.
+/// Parses the texts and checks every range that the scene has no say in. Throws UsageError, and
+/// InputError for an environment of another format.
 void checkOptions(RenderOptions& options);
 
 /// Throws UsageError where the result and an input, or two results, would be the same file;
 /// RunError where a result cannot be written. Leaves no file behind.
 void checkOutputs(const RenderOptions& options);
 
-/// "90s", "10m", "1h" (decimals allowed) in seconds. Throws UsageError.
+/// "90s", "90", "10m", "1h" (decimals allowed) in seconds. Throws UsageError.
 double parseDuration(const std::string& text);
 /// "x0,x1,y0,y1", half open, not empty. Throws UsageError.
 PixelRect parseCrop(const std::string& text);

@@ -11,6 +11,7 @@
 #include "libcore/base/error.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/image_io.h"
+#include "render/black_picture.h"
 
 namespace lacuna {
 namespace {
@@ -257,6 +258,7 @@ void Session::save() {
         report_.phaseSeconds[phase] += seconds;
     }
     report_.mean = film_.meanColour();
+    warnIfBlack();
     if (verifier_) report_.verify = verifier_->result();
 
     progress_.phase("saving");
@@ -303,6 +305,16 @@ void Session::save() {
                     report_.verify->maxDifference,
                     static_cast<unsigned long long>(report_.verify->paths));
     }
+}
+
+/// A scene without light was told so before. Nobody who interrupts wants to wait for causes.
+void Session::warnIfBlack() {
+    const auto& mean = report_.mean.mean;
+    const bool black = mean[0] == 0.0 && mean[1] == 0.0 && mean[2] == 0.0;
+    if (!black || stage_.scene->lights().empty() || report_.stopped == "interrupt") return;
+    progress_.phase("looking for light");
+    report_.warnings.push_back(whyBlack(stage_, *report_.method, pool_));
+    progress_.warning("warning: " + options_.scene + ": " + report_.warnings.back());
 }
 
 std::string Session::replayCommand(const std::string& replay) const {

@@ -34,6 +34,7 @@ class Session {
     void measure();
     void logRow();
     void save();
+    void warnIfBlack();
     void warnAboutDefects();
     std::string replayCommand(const std::string& replay) const;
 

@@ -30,16 +30,22 @@ const CameraDescription& chosenCamera(const SceneDescription& scene, const std::
     throw UsageError("--camera: expected one of " + names + ", found '" + name + "'");
 }
 
-/// Each side: option, else extras, else by the camera's aspect from the other, else 1280 wide.
+/// The extras' aspect where they name both sides, else the camera's.
+double chooseAspect(const SceneDescription& scene, const CameraDescription& camera) {
+    if (scene.width && scene.height) return double(*scene.width) / double(*scene.height);
+    return camera.aspectRatio > 0.0 ? camera.aspectRatio : kDefaultAspect;
+}
+
+/// The options' sides; without any the extras'; without those 1280 wide. One side alone is given
+/// the other by the aspect.
 Camera::Film chooseFilm(const RenderOptions& options, const SceneDescription& scene,
                         const CameraDescription& camera) {
-    const double aspect = camera.aspectRatio > 0.0 ? camera.aspectRatio : kDefaultAspect;
-    const auto given = [](const std::optional<std::int64_t>& option,
-                          const std::optional<int>& extras) {
-        return option ? option : extras ? std::optional<std::int64_t>(*extras) : std::nullopt;
-    };
-    std::optional<std::int64_t> width = given(options.width, scene.width);
-    std::optional<std::int64_t> height = given(options.height, scene.height);
+    const double aspect = chooseAspect(scene, camera);
+    std::optional<std::int64_t> width = options.width, height = options.height;
+    if (!width && !height) {
+        width = scene.width;
+        height = scene.height;
+    }
     // Far-fetched aspects end in requireSaneFilm, not in a conversion that overflows.
     const auto side = [](double pixels) {
         return std::int64_t(std::clamp(std::round(pixels), 1.0, 1e9));
@@ -57,6 +63,19 @@ PixelRect chooseCrop(const RenderOptions& options, Camera::Film film) {
                          std::to_string(film.height) + " pixels, found " + options.cropText);
     }
     return *options.crop;
+}
+
+/// Of a scene without light. Blender leaves lights out unasked.
+std::string noLightText(const Scene& scene) {
+    std::string text = "no light in the scene: the picture is black";
+    if (scene.lights().size() > 0) {
+        text += " (its lights, " + std::to_string(scene.lights().size()) + ", have no power)";
+    } else if (scene.description().fromBlender) {
+        text +=
+            " (Blender exports points, spots and suns only with Include > Punctual Lights on, area "
+            "lights and the world never)";
+    }
+    return text;
 }
 
 Camera::Lens chooseLens(const RenderOptions& options, const SceneDescription& scene) {
@@ -148,9 +167,11 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     progress.phase("building");
     const Clock::time_point building = Clock::now();
     stage.scene = std::make_unique<Scene>(std::move(description), pool);
+    stage.cameraName = options.camera;
+    stage.lens = lens;
     stage.camera = std::make_unique<Camera>(stage.scene->makeCamera(options.camera, film, lens));
     stage.phaseSeconds["build"] = secondsSince(building);
-    if (stage.scene->lights().empty()) warn("no light in the scene: the picture is black");
+    if (stage.scene->lights().empty()) warn(noLightText(*stage.scene));
     stage.setupSeconds = secondsSince(start);
     return stage;
 }

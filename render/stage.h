@@ -20,6 +20,8 @@ struct Stage {
     Techniques techniques;  ///< the method's, as far as effects were not forced
     std::unique_ptr<Scene> scene;
     std::unique_ptr<Camera> camera;
+    std::string cameraName;  ///< as asked for; empty: the first
+    Camera::Lens lens;
     RenderSettings settings;  ///< limits, seed, crop (the whole film where none was asked for)
     double setupSeconds = 0.0;
     std::map<std::string, double> phaseSeconds;

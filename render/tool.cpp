@@ -1,6 +1,7 @@
 #include "render/tool.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -18,6 +19,36 @@ int report(std::string message, int exitCode) {
     }
     std::fprintf(stderr, "%s\n", message.c_str());
     return exitCode;
+}
+
+/// Whether all of `text` is an integer of 64 bits as people write it.
+bool isDecimal(const std::string& text) {
+    const char *begin = text.data(), *end = begin + text.size();
+    const std::size_t sign = text.starts_with('-') ? 1 : 0;
+    if (text.size() > sign + 1 && text[sign] == '0') return false;
+    std::uint64_t natural = 0;
+    std::int64_t integer = 0;
+    const auto fits = [&](auto result) { return result.ec == std::errc{} && result.ptr == end; };
+    return fits(std::from_chars(begin, end, natural)) || fits(std::from_chars(begin, end, integer));
+}
+
+/// What CLI11 takes without a word: nothing for a text, 0640 as octal, and the largest integer
+/// there is for a larger one.
+void checkValues(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const bool isInteger = type == "N" || type.starts_with("N:");  // validators add their own
+    for (const std::string& value : option.results()) {
+        if (value.empty()) {
+            throw UsageError(option.get_name() +
+                             ": expected a value, found an empty text; leave the option out or "
+                             "give it one");
+        }
+        if (isInteger && !isDecimal(value)) {
+            throw UsageError(option.get_name() +
+                             ": expected a decimal integer of at most 64 bits, found '" + value +
+                             "'");
+        }
+    }
 }
 
 }  // namespace
@@ -47,6 +78,7 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
         throw UsageError("command line: " + std::string(e.what()) + "; see " + app.get_name() +
                          " --help");
     }
+    for (const CLI::Option* option : app.get_options()) checkValues(*option);
     return std::nullopt;
 }
 

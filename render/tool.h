@@ -12,7 +12,7 @@ class App;
 
 namespace lacuna {
 
-/// Options that every tool takes (interface.md, "Common"), so that scripts can pass them to all.
+/// Options that every tool takes so that scripts can pass them to all.
 struct CommonOptions {
     std::string cacheDirectory;  // empty: beside the scene
     int threads = 0;             // 0: all

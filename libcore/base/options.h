@@ -14,12 +14,9 @@
 #include <utility>
 #include <vector>
 
-namespace lacuna {
+#include "libcore/base/number_text.h"
 
-/// The shortest text that reads back as the same number; whole numbers without an exponent.
-std::string numberText(double value);
-/// All of a text as a finite number, whatever the locale; empty where it is none.
-std::optional<double> parseNumber(std::string_view text);
+namespace lacuna {
 
 /// Something that people may set, in words and bounds.
 struct Option {

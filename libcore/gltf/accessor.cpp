@@ -5,8 +5,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "libcore/gltf/limits.h"
-
 namespace lacuna::gltf {
 namespace {
 
@@ -162,10 +160,6 @@ AccessorView viewAccessor(const Document& document, int index, int components) {
         checkRange(document, place, accessor.byteOffset, accessor.count, view.stride, elementSize,
                    bytes.size());
         view.base = bytes.data() + accessor.byteOffset;
-    } else if (accessor.count > Limits::kZeroElements) {
-        refuse(document.file, place + ".count",
-               "at most " + std::to_string(Limits::kZeroElements) + " without a buffer view",
-               std::to_string(accessor.count));
     }
     if (accessor.sparse.isSparse) viewSparse(document, accessor, index, elementSize, view);
     return view;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "libcore/base/number_text.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -12,7 +14,7 @@ namespace {
 void require(const Document& document, const std::string& place, double value, double least,
              double most, const std::string& expected) {
     if (!(value >= least && value <= most)) {
-        refuse(document.file, place, expected, std::to_string(value), "correct the value");
+        refuse(document.file, place, expected, numberText(value), "correct the value");
     }
 }
 
@@ -29,17 +31,14 @@ void readCone(const Document& document, const std::string& place, const tinygltf
     light.innerConeAngle = std::min(spot.innerConeAngle, light.outerConeAngle);
 }
 
-/// The light that node extension KHR_lights_punctual names, or null.
-const tinygltf::Light* lightOf(const Document& document, const tinygltf::Node& node,
-                               std::string& place) {
-    const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end() || !extension->second.Has("light")) return nullptr;
-    const int index = extension->second.Get("light").GetNumberAsInt();
-    place = "lights[" + std::to_string(index) + "]";
-    return &document.model.lights[std::size_t(index)];
-}
-
 }  // namespace
+
+const tinygltf::Light* lightOf(const Document& document, std::size_t node) {
+    const auto& extensions = document.model.nodes[node].extensions;
+    const auto extension = extensions.find("KHR_lights_punctual");
+    if (extension == extensions.end() || !extension->second.Has("light")) return nullptr;
+    return &document.model.lights[std::size_t(extension->second.Get("light").GetNumberAsInt())];
+}
 
 void addCamera(const Document& document, std::size_t node, const Affine& toWorld,
                SceneDescription& scene, Warnings& warnings) {
@@ -71,9 +70,10 @@ void addCamera(const Document& document, std::size_t node, const Affine& toWorld
 
 void addLight(const Document& document, std::size_t node, const Affine& toWorld,
               SceneDescription& scene, Warnings& warnings) {
-    std::string place;
-    const tinygltf::Light* source = lightOf(document, document.model.nodes[node], place);
+    const tinygltf::Light* source = lightOf(document, node);
     if (!source) return;
+    const std::string place =
+        "lights[" + std::to_string(source - document.model.lights.data()) + "]";
     PunctualLight light;
     if (source->type == "point") {
         light.kind = PunctualLight::Kind::Point;

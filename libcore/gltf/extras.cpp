@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "libcore/gltf/guard.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -56,45 +58,73 @@ class Members {
     std::string place_;
 };
 
+/// What `text` says as JSON. Custom properties that are typed into Blender arrive as texts.
+json parseText(const Document& document, const std::string& place, const std::string& text,
+               const std::string& expected) {
+    checkJsonDepth(document.file, text);
+    try {
+        return json::parse(text);
+    } catch (const json::exception& error) {
+        refuse(document.file, place, expected,
+               '"' + printable(text, 60) + "\" (" + error.what() + ")", kCorrect);
+    }
+}
+
 void readPicture(const Document& document, const json& extras, SceneDescription& scene,
                  Warnings& warnings) {
-    const auto lacuna = extras.find("lacuna");
-    if (lacuna == extras.end()) return;
+    const auto entry = extras.find("lacuna");
+    if (entry == extras.end()) return;
     const std::string place = "scene.extras.lacuna";
-    if (!lacuna->is_object()) {
-        refuse(document.file, place, "an object", printable(lacuna->dump(), 60), kCorrect);
+    const std::string expected = "an object, or one as a text of JSON such as {\"width\": 640}";
+    const json lacuna =
+        entry->is_string()
+            ? parseText(document, place, entry->get_ref<const std::string&>(), expected)
+            : *entry;
+    if (!lacuna.is_object()) {
+        refuse(document.file, place, expected, printable(entry->dump(), 60), kCorrect);
     }
-    const Members members(document, *lacuna, place);
+    const Members members(document, lacuna, place);
     scene.width = members.integer("width", 1, 65536);
     scene.height = members.integer("height", 1, 65536);
     scene.maxDepth = members.integer("max_depth", 1, 1000);
-    scene.aperture = members.number("aperture", 0.0, 1e30, "a radius from 0 on");
-    scene.focus = members.number("focus", 1e-30, 1e30, "a distance above 0");
+    scene.aperture = members.number("aperture", 0.0, 1e30, "a radius from 0 to 1e30");
+    scene.focus = members.number("focus", 1e-30, 1e30, "a distance from 1e-30 to 1e30");
     members.warnAboutOthers({"width", "height", "max_depth", "aperture", "focus"}, warnings);
+}
+
+/// Whether a text is not a file's name but an object.
+bool looksLikeObject(const json& value) {
+    if (!value.is_string()) return false;
+    const auto& text = value.get_ref<const std::string&>();
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && text[first] == '{';
 }
 
 void readEnvironment(Document& document, const json& extras, SceneDescription& scene,
                      Warnings& warnings) {
-    const auto entry = extras.find("environment");
-    if (entry == extras.end()) return;
+    const auto found = extras.find("environment");
+    if (found == extras.end()) return;
     const std::string place = "scene.extras.environment";
+    const std::string expected = "a file name, or an object with `file`";
+    const json entry =
+        looksLikeObject(*found)
+            ? parseText(document, place, found->get_ref<const std::string&>(), expected)
+            : *found;
     EnvironmentDescription environment;
-    const json* name = &*entry;
-    if (entry->is_object()) {
-        const Members members(document, *entry, place);
+    const json* name = &entry;
+    if (entry.is_object()) {
+        const Members members(document, entry, place);
         environment.scale =
             members.number("scale", 0.0, 1e30, "a number from 0 to 1e30").value_or(1.0);
         environment.rotationDegrees =
             members.number("rotation_degrees", -1e6, 1e6, "an angle in degrees").value_or(0.0);
         members.warnAboutOthers({"file", "scale", "rotation_degrees"}, warnings);
-        const auto file = entry->find("file");
-        if (file == entry->end())
-            refuse(document.file, place + ".file", "a name", "none", kCorrect);
+        const auto file = entry.find("file");
+        if (file == entry.end()) refuse(document.file, place + ".file", "a name", "none", kCorrect);
         name = &*file;
     }
     if (!name->is_string()) {
-        refuse(document.file, place, "a file name, or an object with `file`",
-               printable(name->dump(), 60), kCorrect);
+        refuse(document.file, place, expected, printable(name->dump(), 60), kCorrect);
     }
     const std::filesystem::path path =
         resolveFileName(document.file, place, name->get_ref<const std::string&>());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "libcore/gltf/blender.h"
 #include "libcore/gltf/document.h"
 #include "libcore/gltf/entities.h"
 #include "libcore/gltf/extras.h"
@@ -101,6 +102,9 @@ void load(const std::string& path, SceneDescription& scene, Warnings& warnings) 
         addLight(document, placement.node, placement.toWorld, scene, warnings);
     }
     addDefaultMaterial(scene);
+    scene.fromBlender = isFromBlender(document);
+    warnAboutLighting(document, placements, warnings);
+    warnAboutBareMaterials(document, scene, warnings);
     scene.phaseSeconds["meshes"] = watch.lap();
     scene.contentHash = document.hash.hex();
 }
@@ -123,7 +127,9 @@ SceneDescription loadGltf(const std::string& path) {
 void requireCamera(const SceneDescription& scene) {
     if (!scene.cameras.empty()) return;
     refuse(scene.file, "", "a perspective camera in the scene", "none",
-           "add a camera and export again");
+           scene.fromBlender ? "add one and export again with Include > Cameras on, which Blender "
+                               "leaves off"
+                             : "add a camera and export again");
 }
 
 }  // namespace lacuna

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libcore/base/number_text.h"
+
 namespace lacuna::gltf {
 namespace {
 
@@ -78,7 +80,7 @@ class Reader {
         }
         if (!(ior >= 1.0)) {
             refuse(document_.file, place_ + ".extensions.KHR_materials_ior.ior", "0 or at least 1",
-                   std::to_string(ior), "correct the material");
+                   numberText(ior), "correct the material");
         }
         material_.ior = clamped(ior, 1, kTotal, "ior");
     }

@@ -1,4 +1,4 @@
-// glTF materials and the extensions of interface.md as the description's materials.
+// glTF materials and the extensions that are rendered as the description's materials.
 #pragma once
 
 #include <vector>

@@ -108,7 +108,6 @@ Vec3d areaNormal(const Mesh& mesh, const Triangle& t) {
 void dropFlatTriangles(Task& task) {
     Mesh& mesh = task.result;
     const auto isFlat = [&](const Triangle& t) {
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
         return !(float(length(areaNormal(mesh, t))) > 0.0f);
     };
     const auto kept = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), isFlat);
@@ -224,16 +223,15 @@ void readPrimitive(const Document& document, Task& task) {
     repairNormals(task);
 }
 
-/// Elements that a primitive has read although no bytes of the file stand behind them.
+/// Elements that a primitive has read although no bytes of the file stand behind them. Indices
+/// without a buffer view do not come this far: tinygltf refuses them.
 std::size_t zeroElements(const Document& document, const tinygltf::Primitive& primitive) {
     std::size_t sum = 0;
-    const auto add = [&](int index) {
+    for (const auto& [name, index] : primitive.attributes) {
         const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
         // Far above the limit is enough: sums must not overflow.
         if (accessor.bufferView < 0) sum += std::min(accessor.count, Limits::kZeroElements + 1);
-    };
-    if (primitive.indices >= 0) add(primitive.indices);
-    for (const auto& [name, index] : primitive.attributes) add(index);
+    }
     return sum;
 }
 

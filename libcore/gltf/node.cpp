@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/base/number_text.h"
 #include "libcore/gltf/accessor.h"
 
 namespace lacuna::gltf {
@@ -37,7 +38,7 @@ Affine fromTrs(const Document& document, std::size_t index, const tinygltf::Node
         const double l = std::sqrt(x * x + y * y + z * z + w * w);
         if (!(l > 0.0) || !std::isfinite(l)) {
             refuse(document.file, placeOf(index) + ".rotation", "a unit quaternion",
-                   "one of length " + std::to_string(l));
+                   "one of length " + numberText(l));
         }
         x /= l, y /= l, z /= l, w /= l;
         a.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};

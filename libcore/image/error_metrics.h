@@ -1,4 +1,4 @@
-// How far an image is from a reference (interface.md, "Error measures").
+// How far an image is from a reference: the measures and their formulas.
 #pragma once
 
 #include <cstddef>

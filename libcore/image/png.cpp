@@ -49,6 +49,12 @@ struct StbFree {
     throw InputError(path + ": expected an intact PNG file, found: " + found + "; write it again");
 }
 
+/// What stb_image says of its last failure, which may be nothing.
+std::string reason() {
+    const char* text = stbi_failure_reason();
+    return text && *text ? text : "a damaged one";
+}
+
 }  // namespace
 
 Image readPng(const std::string& path) {
@@ -62,14 +68,14 @@ Image readPng(const std::string& path) {
     const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels)) {
-        fail(path, stbi_failure_reason());
+        fail(path, reason());
     }
     requireSaneSize(path, width, height);
 
     Image image(width, height);
     const auto read = [&](auto* loaded) {
         const std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, StbFree> data(loaded);
-        if (!data) fail(path, stbi_failure_reason());
+        if (!data) fail(path, reason());
         decode(data.get(), image);
     };
     if (stbi_is_16_bit_from_memory(bytes.data(), size)) {

@@ -63,6 +63,7 @@ struct EnvironmentDescription {
 
 struct SceneDescription {
     std::string file;
+    bool fromBlender = false;  ///< asset.generator says so
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<Material>

@@ -65,6 +65,21 @@ std::vector<std::string> readOptions(JsonObject object, const std::string& study
     return arguments;
 }
 
+/// `options`, and those of `defaults` that they do not name.
+std::vector<std::string> withDefaults(std::vector<std::string> options,
+                                      const std::vector<std::string>& defaults) {
+    const std::size_t own = options.size();
+    for (std::size_t i = 0; i < defaults.size(); i += 2) {
+        bool overridden = false;
+        for (std::size_t j = 0; j < own; j += 2) {
+            overridden = overridden || options[j] == defaults[i];
+        }
+        if (overridden) continue;
+        options.insert(options.end(), {defaults[i], defaults[i + 1]});
+    }
+    return options;
+}
+
 void requireUnique(JsonObject& object, std::set<std::string>& names, const std::string& name) {
     if (!names.insert(name).second) {
         object.fail("name", "a name of its own ('" + name + "' is there twice)");
@@ -185,7 +200,8 @@ std::vector<StudyMethod> readMethod(JsonObject& object, const Study& study) {
 
 void readEffort(JsonObject& object, Study& study) {
     if (object.has("time")) {
-        study.effort = {"--time", object.text("time")};
+        const json& time = object.value("time");
+        study.effort = {"--time", time.is_number() ? time.dump() : object.text("time")};
     }
     if (object.has("iterations")) {
         study.effort.push_back("--iterations");
@@ -196,7 +212,7 @@ void readEffort(JsonObject& object, Study& study) {
 
 void readSeeds(JsonObject& object, Study& study) {
     for (const double seed : object.positives("seeds")) {
-        if (seed != std::uint64_t(seed) || seed >= 1e6) {
+        if (seed >= 1e6 || seed != std::uint64_t(seed)) {
             object.fail("seeds", "integers below a million (references take those above)");
         }
         study.seeds.push_back(std::uint64_t(seed));
@@ -227,17 +243,7 @@ void requireRenderable(const Study& study, const StudyScene& scene, const StudyM
 }  // namespace
 
 std::vector<std::string> mergedOptions(const StudyScene& scene, const StudyMethod& method) {
-    std::vector<std::string> merged = method.options;
-    for (std::size_t i = 0; i < scene.options.size(); i += 2) {
-        bool overridden = false;
-        for (std::size_t j = 0; j < method.options.size(); j += 2) {
-            overridden = overridden || method.options[j] == scene.options[i];
-        }
-        if (overridden) continue;
-        merged.insert(merged.end(), scene.options.begin() + std::ptrdiff_t(i),
-                      scene.options.begin() + std::ptrdiff_t(i + 2));
-    }
-    return merged;
+    return withDefaults(method.options, scene.options);
 }
 
 RenderOptions parseRenderArguments(const std::vector<std::string>& arguments) {
@@ -277,9 +283,12 @@ Study readStudy(const std::string& path, bool quick) {
     const auto bounds = object.has("bounds") ? readBounds(object.object("bounds"))
                                              : std::map<std::string, std::vector<double>>{};
 
+    const std::vector<std::string> options = readOptions(object.object("options"), study.file);
+
     std::set<std::string> names;
     for (JsonObject& scene : object.objects("scenes")) {
         study.scenes.push_back(readScene(scene, study));
+        study.scenes.back().options = withDefaults(study.scenes.back().options, options);
         requireUnique(scene, names, study.scenes.back().name);
         study.scenes.back().bounds.insert(bounds.begin(), bounds.end());
     }

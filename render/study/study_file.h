@@ -73,7 +73,8 @@ struct Study {
 /// lacuna-render would refuse.
 Study readStudy(const std::string& path, bool quick);
 
-/// The scene's options and the method's; of one that both name, the method's counts.
+/// The scene's options (the study's among them, where it has none of its own) and the method's; of
+/// one that both name, the method's counts.
 std::vector<std::string> mergedOptions(const StudyScene& scene, const StudyMethod& method);
 
 /// What lacuna-render would make of these arguments (without its own name). Throws UsageError.

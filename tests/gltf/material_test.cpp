@@ -152,7 +152,8 @@ TEST(Material, AttenuationOfSolidGlass) {
     const auto load = [](json volume, double transmission = 1) {
         volume["attenuationColor"] = {0.5, 1, 0};
         return withMaterial(
-                   {{"extensions",
+                   {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                    {"extensions",
                      {{"KHR_materials_transmission", {{"transmissionFactor", transmission}}},
                       {"KHR_materials_volume", volume}}}})
             .load();

@@ -60,6 +60,14 @@ TEST(Mesh, LeftOverVerticesAreReported) {
     const SceneDescription scene = fivePoints(4).load();
     EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
     EXPECT_EQ(warningsWith(scene, "do not complete a triangle"), 1);
+    EXPECT_EQ(warningsWith(fivePoints(5).load(), "do not complete a triangle"), 0);
+    for (const int mode : {5, 6}) {
+        TriangleBuilder b;
+        b.primitive()["mode"] = mode;
+        b.root["accessors"][0]["count"] = 2;
+        EXPECT_EQ(warningsWith(b.load(), "do not complete a triangle"), 1);
+        EXPECT_TRUE(b.load().meshes.empty());
+    }
 }
 
 TEST(Mesh, FlatTrianglesAreCountedInOneWarning) {
@@ -79,10 +87,21 @@ TEST(Mesh, FlatTrianglesAreCountedInOneWarning) {
 }
 
 TEST(Mesh, TinyTrianglesAreKept) {
+    for (const float s : {1e-9f, 1e-19f}) {  // of the second a float holds no squared area
+        TriangleBuilder b;
+        b.primitive()["attributes"]["POSITION"] =
+            b.accessor<float>({s, 0, 0, 2 * s, 0, 0, s, s, 0}, "VEC3");
+        EXPECT_EQ(b.load().meshes.size(), 1u) << s;
+    }
+}
+
+TEST(Mesh, CornersOnALineAreFlatHoweverTheyRound) {
+    // Products of these fill twice the digits of a float.
+    const float x = 3355443.0f / 4194304.0f, y = 2097151.0f / 4194304.0f;
     TriangleBuilder b;
     b.primitive()["attributes"]["POSITION"] =
-        b.accessor<float>({1e-9f, 0, 0, 2e-9f, 0, 0, 1e-9f, 1e-9f, 0}, "VEC3");
-    EXPECT_EQ(b.load().meshes.size(), 1u);
+        b.accessor<float>({0, 0, 0, x, y, x, 3 * x, 3 * y, 3 * x}, "VEC3");
+    EXPECT_TRUE(b.load().meshes.empty());
 }
 
 TEST(Mesh, NormalsAndUvs) {
@@ -125,6 +144,10 @@ TEST(Mesh, ZeroNormalsBecomeFaceNormals) {
     EXPECT_EQ(scene.meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
     EXPECT_EQ(warningsWith(scene, "zero length"), 1);
     EXPECT_EQ(warningsWith(scene, "2 times"), 1);
+    // What rounding left of one has no direction either.
+    b.primitive()["attributes"]["NORMAL"] =
+        b.accessor<float>({1e-13f, 0, 0, 0, 1, 0, 0, -1e-13f, 0}, "VEC3");
+    EXPECT_EQ(b.load().meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
 }
 
 TEST(Mesh, ZeroNormalsBetweenFacesBackToBackKeepOneSide) {
@@ -164,6 +187,8 @@ TEST(Mesh, OnlyMeshesOfTheSceneAreRead) {
     EXPECT_EQ(b.load().meshes.size(), 1u);
     b.rootNode({{"mesh", 1}});
     expectRefused(b, {"meshes[1].primitives[0].mode", "99"});
+    b.root["meshes"][1]["primitives"][0]["mode"] = 7;
+    expectRefused(b, {"meshes[1].primitives[0].mode", "found 7"});
 }
 
 TEST(Mesh, NonFiniteNumbersAreRefused) {
@@ -182,6 +207,16 @@ TEST(Mesh, NonFiniteNumbersAreRefused) {
     }
 }
 
+TEST(Mesh, OfPartsTheVertexInTheFileIsNamed) {
+    TriangleBuilder b;
+    std::vector<float> positions(30);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = float(i * i % 7);
+    positions[8 * 3] = std::numeric_limits<float>::infinity();
+    b.primitive()["attributes"]["POSITION"] = b.accessor<float>(positions, "VEC3");
+    b.primitive()["indices"] = b.accessor<std::uint8_t>({8, 2, 3}, "SCALAR");
+    expectRefused(b, {"POSITION", "finite", "vertex 8"});
+}
+
 TEST(Mesh, IndicesBeyondTheVerticesAreRefused) {
     TriangleBuilder b;
     b.primitive()["indices"] = b.accessor<std::uint32_t>({0, 1, 3}, "SCALAR");
@@ -196,6 +231,9 @@ TEST(Mesh, AttributesMustAgree) {
     TriangleBuilder b;
     b.primitive()["attributes"]["NORMAL"] = b.accessor<float>({0, 0, 1, 0, 0, 1}, "VEC3");
     expectRefused(b, {"NORMAL", "3 elements", "found 2"});
+    b.primitive()["attributes"]["NORMAL"] =
+        b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    expectRefused(b, {"NORMAL", "3 elements", "found 4"});
     TriangleBuilder c;
     c.primitive()["attributes"] = {{"NORMAL", 0}};
     expectRefused(c, {"POSITION", "none"});

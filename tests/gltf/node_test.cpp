@@ -324,6 +324,19 @@ TEST(Light, ImpossibleOnesAreRefused) {
               std::numbers::pi / 2);
 }
 
+/// Not "found 0.000000" for what is refused because it is below zero, by however little.
+TEST(Light, MessagesShowTheNumberThatWasFound) {
+    expectRefused(withLight({{"type", "point"}, {"intensity", -1e-46}}), {"found -1e-46;"});
+    expectRefused(withLight({{"type", "point"}, {"intensity", 1e39}}), {"found 1e+39;"});
+    GltfBuilder b;
+    b.add("cameras", perspective(1e-46));
+    b.rootNode({{"camera", 0}});
+    expectRefused(b, {"cameras[0].perspective.yfov", "found 1e-46;"});
+    TriangleBuilder extras;
+    extras.extras()["lacuna"] = {{"focus", 1e39}};
+    expectRefused(extras, {"a distance from 1e-30 to 1e30", "found 1e+39;"});
+}
+
 TEST(Extras, LacunaMembers) {
     TriangleBuilder b;
     EXPECT_FALSE(b.load().width);
@@ -361,6 +374,51 @@ TEST(Extras, LacunaMembersAreChecked) {
     TriangleBuilder b;
     b.extras()["lacuna"] = {640, 480};
     expectRefused(b, {"scene.extras.lacuna", "an object"});
+}
+
+/// Blender's custom properties are texts unless a script makes them.
+TEST(Extras, TextsHoldObjects) {
+    const TempDir dir;
+    dir.write("sky.hdr", std::string("not looked into"));
+    TriangleBuilder b;
+    b.extras()["lacuna"] = R"( {"width": 640, "max_depth": 7, "apertur": 1})";
+    b.extras()["environment"] =
+        " {\"file\": \"sky.hdr\", \"scale\": 2, \"rotation_degrees\": 90}\n";
+    const SceneDescription scene = loadGltf(dir.write("scene.glb", b.glb()));
+    EXPECT_EQ(scene.width, 640);
+    EXPECT_FALSE(scene.height);
+    EXPECT_EQ(scene.maxDepth, 7);
+    EXPECT_EQ(warningsWith(scene, "scene.extras.lacuna.apertur"), 1);
+    ASSERT_TRUE(scene.environment);
+    EXPECT_EQ(scene.environment->file, dir / "sky.hdr");
+    EXPECT_EQ(scene.environment->scale, 2.0);
+    EXPECT_EQ(scene.environment->rotationDegrees, 90.0);
+}
+
+TEST(Extras, TextsAreChecked) {
+    const TempDir dir;
+    dir.write("sky.hdr", std::string("x"));
+    const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+    for (const char* bad :
+         {R"({"width": 640)", R"({'width': 640})", "width: 640", "", "640", "[640, 480]", "\"{}\"",
+          R"({"width": 640} and more)", R"({"width": "640"})"}) {
+        SCOPED_TRACE(bad);
+        TriangleBuilder b;
+        b.extras()["lacuna"] = bad;
+        expectRefused(b, {"scene.extras.lacuna"});
+    }
+    for (const char* bad : {R"({"file": "sky.hdr")", R"({"scale": 2})", R"({"file": "sky.png"})",
+                            "{}", R"({"file": "../sky.hdr"})"}) {
+        SCOPED_TRACE(bad);
+        TriangleBuilder b;
+        b.extras()["environment"] = bad;
+        expectRefused(dir.write("scene.glb", b.glb()), {"scene.extras.environment"});
+    }
+    TriangleBuilder b;
+    b.extras()["lacuna"] = deep;
+    expectRefused(b, {"nested"});
+    b.extras()["lacuna"] = R"({"width": 640)";
+    expectRefused(b, {R"({"width": 640)", "column 14", R"(such as {"width": 640})"});
 }
 
 TEST(Extras, Environment) {

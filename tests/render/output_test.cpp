@@ -276,14 +276,10 @@ TEST_F(RenderOutput, SizeDepthAndLensComeFromTheSceneUnlessGiven) {
     EXPECT_EQ(json("o.json")["width"], 20);
     EXPECT_EQ(json("o.json")["height"], 10);
     EXPECT_EQ(json("o.json")["max_depth"], 3);
-    ASSERT_EQ(run(start + "@sized.gltf --width 8 --max-depth 2").exitCode, 0);
+    ASSERT_EQ(run(start + "@sized.gltf --width 8 --height 9 --max-depth 2").exitCode, 0);
     EXPECT_EQ(json("o.json")["width"], 8);
-    EXPECT_EQ(json("o.json")["height"], 10);
+    EXPECT_EQ(json("o.json")["height"], 9);
     EXPECT_EQ(json("o.json")["max_depth"], 2);
-    // By the camera's aspect, 1.5.
-    ASSERT_EQ(run(start + "@room.gltf --height 10").exitCode, 0);
-    EXPECT_EQ(json("o.json")["width"], 15);
-    EXPECT_EQ(json("o.json")["max_depth"], 12);
 
     scene.lacuna = {{"aperture", 0.2}, {"focus", 3.0}, {"width", 12}, {"height", 8}};
     write("lens.gltf", scene.text());
@@ -295,6 +291,36 @@ TEST_F(RenderOutput, SizeDepthAndLensComeFromTheSceneUnlessGiven) {
     EXPECT_TRUE(has("simulated"));
     ASSERT_EQ(run(start + "@lens.gltf --aperture 0").exitCode, 0);
     EXPECT_TRUE(has("left_out"));
+}
+
+TEST_F(RenderOutput, OneSideAloneKeepsTheShape) {
+    using Size = std::pair<int, int>;
+    const auto size = [&](const nlohmann::json& lacuna, const std::string& options) -> Size {
+        TinyScene scene;
+        scene.lacuna = lacuna;
+        write("sized.gltf", scene.text());
+        const Outcome o =
+            run("@sized.gltf -o @out.exr --method pt --iterations 1 --quiet --json "
+                "@o.json " +
+                options);
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        return {json("o.json")["width"], json("o.json")["height"]};
+    };
+    const nlohmann::json none, both{{"width", 64}, {"height", 16}}, wide{{"width", 24}},
+        high{{"height", 10}};
+    EXPECT_EQ(size(both, ""), Size(64, 16));
+    EXPECT_EQ(size(both, "--width 20"), Size(20, 5));
+    EXPECT_EQ(size(both, "--height 4"), Size(16, 4));
+    EXPECT_EQ(size(both, "--width 20 --height 9"), Size(20, 9));
+    EXPECT_EQ(size(both, "--width 1"), Size(1, 1));
+    // By the camera's aspect, 1.5, where the extras name one side only.
+    EXPECT_EQ(size(wide, ""), Size(24, 16));
+    EXPECT_EQ(size(wide, "--width 12"), Size(12, 8));
+    EXPECT_EQ(size(wide, "--height 10"), Size(15, 10));
+    EXPECT_EQ(size(high, ""), Size(15, 10));
+    EXPECT_EQ(size(high, "--width 12"), Size(12, 8));
+    EXPECT_EQ(size(none, "--height 10"), Size(15, 10));
+    EXPECT_EQ(size(none, "--width 12"), Size(12, 8));
 }
 
 /// Experiments say so wherever somebody may look: list, help, stderr, header, JSON.

@@ -70,6 +70,7 @@ json material(std::array<float, 4> color, float metallic, float roughness) {
 std::string TinyScene::text() const {
     json root;
     root["asset"]["version"] = "2.0";
+    if (!generator.empty()) root["asset"]["generator"] = generator;
     root["scene"] = 0;
     root["scenes"].push_back({{"nodes", json::array()}});
     root["nodes"] = root["meshes"] = json::array();
@@ -102,7 +103,7 @@ std::string TinyScene::text() const {
     if (pointLight) {
         root["extensionsUsed"].push_back("KHR_lights_punctual");
         root["extensions"]["KHR_lights_punctual"]["lights"].push_back(
-            {{"type", "point"}, {"intensity", 2.0}, {"color", {1.0, 1.0, 1.0}}});
+            {{"type", "point"}, {"intensity", pointIntensity}, {"color", {1.0, 1.0, 1.0}}});
         root["scenes"][0]["nodes"].push_back(root["nodes"].size());
         root["nodes"].push_back({{"translation", {0.3, 0.2, 0.1}},
                                  {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});

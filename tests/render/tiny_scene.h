@@ -15,6 +15,8 @@ struct TinyScene {
     bool camera = true;
     bool lamp = true;
     bool pointLight = false;
+    double pointIntensity = 2.0;
+    std::string generator;    ///< asset.generator; empty: none
     std::string environment;  ///< file name beside the scene
     nlohmann::json lacuna;    ///< scene.extras.lacuna; null: none
 

@@ -66,7 +66,8 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure(start + "--width 65536 --height 65536", 2, "pixels");
     expectFailure(start + "--width 1e99", 2, "--width");
     expectFailure(start + "--width wide", 2, "wide");
-    for (const char* time : {"0s", "-1s", "10", "10d", "s", "1e999s", "nans"}) {
+    for (const char* time :
+         {"0s", "-1s", "0", "-1", "10d", "s", "1e999s", "1e308h", "nans", "nan"}) {
         expectFailure(start + "--time " + time, 2, "--time");
     }
     for (const char* crop : {"1,2,3", "0,0,0,4", "4,0,0,4", "-1,4,0,4", "a,b,c,d", "0,4,0,4,"}) {
@@ -78,7 +79,7 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     for (const char* option :
          {"--iterations 0", "--iterations -1", "--max-depth 0", "--max-depth 255", "--rr-depth -1",
           "--aperture -1", "--aperture nan", "--focus 0", "--env-scale -1", "--threads 0",
-          "--seed -1", "--exposure inf"}) {
+          "--seed -1", "--exposure inf", "--focus 1e39", "--aperture 1e39"}) {
         expectFailure(start + option, 2, std::string(option).substr(0, 6));
     }
     expectFailure(start + "--count-setup", 2, "--time");
@@ -86,6 +87,88 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure(start + "--display-server localhost:14158", 2, "not there yet");
     expectFailure(start + "--checkpoint @state", 2, "not there yet");
     expectFailure(start + "--json @out.exr", 2, "file of its own");
+}
+
+/// A variable of the shell that is not set must not leave an option out.
+TEST_F(RenderUsage, EmptyTextsExitWith2) {
+    const std::string start = "@none.glb -o @out.exr --method pt ";
+    for (const char* option :
+         {"--time",      "--crop",   "--replay",     "--env",         "--reference",
+          "--log",       "--camera", "--json",       "--cache",       "--set",
+          "--width",     "--height", "--iterations", "--max-depth",   "--rr-depth",
+          "--aperture",  "--focus",  "--exposure",   "--env-rotate",  "--env-scale",
+          "--tolerance", "--seed",   "--threads",    "--help-method", "--display-server",
+          "--checkpoint"}) {
+        expectFailure(start + option + " \"\"", 2, option);
+    }
+    expectFailure(start + "--time=", 2, "--time");
+    expectFailure("\"\" -o @out.exr --method pt", 2, "SCENE");
+}
+
+/// What the parser of the command line would make something else of.
+TEST_F(RenderUsage, IntegersAreDecimalAndFit) {
+    const std::string start = "@none.glb -o @out.exr --method pt ";
+    for (const char* seed : {"18446744073709551616", "99999999999999999999999", "010", "0x10"}) {
+        expectFailure(start + "--seed " + seed, 2, std::string("found '") + seed);
+    }
+    for (const char* option : {"--width", "--height", "--iterations", "--max-depth", "--threads"}) {
+        expectFailure(start + option + " 9223372036854775808", 2, option);
+        expectFailure(start + option + " 010", 2, "found '010'");
+    }
+    EXPECT_EQ(run(quick("pt", "--quiet --seed 18446744073709551615")).exitCode, 0);
+    EXPECT_EQ(run(quick("pt", "--quiet --seed 0")).exitCode, 0);
+}
+
+TEST_F(RenderUsage, MessagesShowTheNumberThatWasFound) {
+    const std::string start = "@none.glb -o @out.exr --method pt ";
+    expectFailure(start + "--focus 1e-46", 2, "found 1e-46");
+    expectFailure(start + "--focus 1e39", 2, "found 1e+39");
+    expectFailure(start + "--tolerance -1e-46", 2, "found -1e-46");
+}
+
+/// A picture of eight bits has no light above white, and was made to be looked at.
+TEST_F(RenderUsage, EnvironmentsAreExrOrHdr) {
+    ASSERT_EQ(run("@room.gltf -o @sheet.png --method pt --width 24 --height 16 --iterations 1 "
+                  "--quiet")
+                  .exitCode,
+              0);
+    std::filesystem::copy(path("sheet.png"), path("sheet.PNG"));
+    std::filesystem::copy(path("sheet.png"), path("sheet"));
+    for (const char* name : {"sheet.png", "sheet.PNG", "sheet", "sheet.pfm", "sheet.jpg"}) {
+        const std::string more = std::string("--env @") + name;
+        expectFailure(quick("pt", "--quiet " + more), 3, ".exr or .hdr");
+        expectFailure("@room.gltf --effects " + more, 3, name);
+    }
+    TinyScene scene;
+    scene.environment = "sheet.png";
+    write("outside.gltf", scene.text());
+    expectFailure("@outside.gltf -o @out.exr --method pt --quiet", 3, ".exr or .hdr");
+    ASSERT_EQ(run(quick("pt", "--quiet")).exitCode, 0);
+    std::filesystem::rename(path("out.exr"), path("SKY.EXR"));
+    EXPECT_EQ(run(quick("pt", "--quiet --env @SKY.EXR")).exitCode, 0);
+}
+
+TEST_F(RenderUsage, WhatBlenderLeavesOutIsNamed) {
+    TinyScene scene;
+    scene.camera = scene.lamp = false;
+    scene.generator = "Khronos glTF Blender I/O v3.4.50";
+    write("blind.gltf", scene.text());
+    expectFailure("@blind.gltf -o @out.exr --method pt --quiet", 3, "Include > Cameras");
+    scene.camera = true;
+    write("dark.gltf", scene.text());
+    const Outcome dark =
+        run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 1 --method pt --quiet");
+    EXPECT_EQ(dark.exitCode, 0);
+    EXPECT_NE(dark.err.find("no light in the scene"), std::string::npos) << dark.err;
+    EXPECT_NE(dark.err.find("Include > Punctual Lights"), std::string::npos) << dark.err;
+    scene.generator.clear();
+    scene.pointLight = true;
+    scene.pointIntensity = 0.0;
+    write("off.gltf", scene.text());
+    const Outcome off =
+        run("@off.gltf -o @out.exr --width 12 --height 8 --iterations 1 --method pt --quiet");
+    EXPECT_NE(off.err.find("have no power"), std::string::npos) << off.err;
+    EXPECT_EQ(std::count(off.err.begin(), off.err.end(), '\n'), 1) << off.err;
 }
 
 TEST_F(RenderUsage, WhatTheSceneDecidesExitsWith2Too) {

@@ -68,6 +68,55 @@ TEST_F(StudyRun, MethodsFollowEachOtherWithinASeed) {
                                                "lvcbpt candidates=200", "pt"}));
 }
 
+/// `options` of the study are those of its scenes, which may have their own, as may the methods.
+TEST_F(StudyRun, OptionsOfTheStudyAreDefaults) {
+    writeStudy(R"({"options": {"width": 20, "height": 10, "max-depth": 3}, "seeds": [1],
+        "scenes": [{"file": "room.gltf", "name": "plain",
+                    "reference": {"method": "bpt", "iterations": 4, "parts": 1}},
+                   {"file": "room.gltf", "name": "own", "options": {"max-depth": 4},
+                    "reference": {"method": "bpt", "iterations": 4, "parts": 1}}],
+        "methods": [{"method": "pt"},
+                    {"method": "pt", "name": "deep", "options": {"max-depth": 5}}]})");
+    const Outcome made = study();
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    std::map<std::string, std::string> commands;  // by scene and method
+    std::istringstream in(read("out/runs.csv"));
+    for (std::string line; std::getline(in, line);) {
+        const std::size_t second = line.find(',', line.find(',') + 1);
+        commands[line.substr(0, second)] = line;
+    }
+    ASSERT_EQ(commands.size(), 5u) << read("out/runs.csv");
+    for (const auto& [run, depth] : std::map<std::string, std::string>{
+             {"plain,pt", "3"}, {"own,pt", "4"}, {"plain,deep", "5"}, {"own,deep", "5"}}) {
+        const std::string& line = commands[run];
+        EXPECT_NE(line.find("--max-depth " + depth), std::string::npos) << line;
+        EXPECT_EQ(line.find("--max-depth"), line.rfind("--max-depth")) << line;
+        EXPECT_NE(line.find("--width 20"), std::string::npos) << line;
+        EXPECT_NE(line.find("--height 10"), std::string::npos) << line;
+    }
+    writeStudy(R"({"options": {"widht": 20}})");
+    expectFailure("@study.json -o @out --quiet", 3, "options: widht");
+    writeStudy(R"({"options": {"env": "sky.png"}})");
+    expectFailure("@study.json -o @out --quiet", 3, ".exr or .hdr");
+}
+
+TEST_F(StudyRun, ATimeMayBeANumberOfSeconds) {
+    for (const char* time : {"0.01", "\"0.01\"", "\"0.01s\""}) {
+        writeStudy(std::string(R"({"iterations": null, "equal_iterations": null, "seeds": [1],
+                                   "time": )") +
+                   time + "}");
+        const Outcome made = study();
+        EXPECT_EQ(made.exitCode, 0) << time << "\n" << made.err;
+    }
+    for (const char* time : {"0", "-1", "\"\"", "\"soon\"", "[1]", "null"}) {
+        writeStudy(std::string(R"({"iterations": null, "equal_iterations": null, "time": )") +
+                   time + "}");
+        const Outcome refused = study();
+        EXPECT_TRUE(refused.exitCode == 2 || refused.exitCode == 3) << time << refused.err;
+        EXPECT_NE(refused.err.find("time"), std::string::npos) << time << refused.err;
+    }
+}
+
 TEST_F(StudyRun, AnInterruptKeepsWhatIsFinished) {
     writeStudy(R"({"iterations": 100000})");
     const Outcome stopped =
@@ -86,6 +135,8 @@ TEST_F(StudyRun, RefusesWhatDoesNotFit) {
     expectFailure("@study.json -o @out --quiet", 2, "nonsense");
     writeStudy(R"({"seeds": [1, 1]})");
     expectFailure("@study.json -o @out --quiet", 3, "every seed once");
+    writeStudy(R"({"seeds": [18446744073709551616]})");
+    expectFailure("@study.json -o @out --quiet", 3, "integers below a million");
     writeStudy(R"({"baseline": "bpt"})");
     expectFailure("@study.json -o @out --quiet", 3, "baseline");
     write("study.json", "{\"title\": \"a\", \"title\": \"b\"}");

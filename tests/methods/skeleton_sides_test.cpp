@@ -6,10 +6,11 @@
 #include <limits>
 
 #include "libcore/base/parallel.h"
-#include "libcore/methods/methods.h"
+#include "libcore/methods/registry.h"
 #include "libcore/skeleton/node_map.h"
-#include "tests/bidir/beliefs.h"
-#include "tests/bidir/fixed_eye_path.h"
+#include "tests/fixtures/beliefs.h"
+#include "tests/fixtures/fixed_eye_path.h"
+#include "tests/fixtures/test_rows.h"
 
 namespace lacuna::test {
 namespace {
@@ -43,8 +44,8 @@ std::shared_ptr<const Skeleton> nodeOnEitherSide() {
     return skeleton;
 }
 
-// As in SightMap.skelbptBelievesWhatItPicks, but the two nodes want other light vertices: what one
-// is next to is far from the other.
+// One pmf per node, so that no even choice among pmfs comes between belief and picks. The two nodes
+// want other light vertices: what one is next to is far from the other.
 TEST(SkeletonSides, beliefsAreThoseOfThePathsSide) {
     constexpr int kSubpaths = 6;
     const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
@@ -53,18 +54,19 @@ TEST(SkeletonSides, beliefsAreThoseOfThePathsSide) {
     });
     const WallFromBothSides space;
     const ThreadPool threads(1);
-    const MethodRow row = skeletonRow();
-    const std::vector<std::string> settings = {"candidates=6", "choice=mass", "node_acceptance=0"};
+    const MethodRow& row = findMethod("skelbpt");
+    const std::vector<std::string> settings = {"candidates=6", "distributions=c",
+                                               "node_acceptance=0"};
     IterationStatistics statistics;
     IterationContext context{space, threads, 41, 1000, statistics};
     const auto method = row.create(resolve(row, settings));
-    method->useSkeleton(nodeOnEitherSide());
+    give(*method, nodeOnEitherSide());
     const ConnectionDensity& density = settle(*method, pool, context, 2);
 
-    // Without tags, which are looked up on the way, and with those of a walk.
+    // Without labels, when the node is looked up on the way, and with those of a walk.
     std::vector<PathVertex> eye(space.eye().begin(), space.eye().end());
-    for (const bool tagged : {false, true}) {
-        if (tagged) density.tagWalk(eye);
+    for (const bool labelled : {false, true}) {
+        if (labelled) density.labelWalk(eye);
         std::vector<Belief> found[2];
         for (const std::size_t t : {2, 3}) {
             found[t - 2] = beliefs(
