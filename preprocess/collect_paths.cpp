@@ -5,7 +5,6 @@
 
 #include "libcore/base/error.h"
 #include "libcore/bidir/integrator.h"
-#include "libcore/gltf/gltf.h"
 #include "libcore/methods/registry.h"
 
 namespace lacuna {
@@ -33,40 +32,25 @@ struct Collector {
 
 }  // namespace
 
-Camera trainingCamera(const Scene& scene, std::uint64_t paths) {
-    const SceneDescription& d = scene.description();
-    requireCamera(d);
-    double aspect = d.cameras[0].aspectRatio > 0.0 ? d.cameras[0].aspectRatio : 16.0 / 9.0;
-    if (d.width && d.height) aspect = double(*d.width) / double(*d.height);
+TrainingView trainingView(const Camera& camera, double aspect, const WalkLimits& limits,
+                          std::uint64_t paths) {
     aspect = std::clamp(aspect, 0.05, 20.0);
     // Some paths per pixel and iteration; more pixels for more paths, up to 256 x 144.
     const double pixels = std::clamp(double(paths) / 16.0, 256.0, 36864.0);
     const int width = std::max(1, int(std::lround(std::sqrt(pixels * aspect))));
     const int height = std::max(1, int(std::lround(pixels / width)));
-    Camera::Lens lens;
-    if (d.aperture.value_or(0.0) > 0.0 && d.focus.value_or(0.0) > 0.0) {
-        lens = {float(*d.aperture), float(*d.focus)};
-    }
-    return scene.makeCamera("", {width, height}, lens);
+    return {camera.withFilm({width, height}), limits};
 }
 
-WalkLimits trainingLimits(const Scene& scene) {
-    WalkLimits limits;
-    if (scene.description().maxDepth) {
-        limits.maxDepth = std::min(*scene.description().maxDepth, kMaxEdges);
-    }
-    return limits;
-}
-
-CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::uint64_t paths,
-                            std::uint64_t seed, const ThreadPool& pool,
+CollectedPaths collectPaths(const Scene& scene, const TrainingView& view, const LightCells& cells,
+                            std::uint64_t paths, std::uint64_t seed, const ThreadPool& pool,
                             const std::atomic<bool>& cancel) {
-    const Camera camera = trainingCamera(scene, paths);
+    const Camera& camera = view.camera;
     const Camera::Film film = camera.film();
     const MethodRow& row = findMethod("bpt");
     const std::unique_ptr<Method> method = row.create(resolve(row, {}));
     RenderSettings settings;
-    settings.limits = trainingLimits(scene);
+    settings.limits = view.limits;
     settings.seed = seed;
     settings.crop = {0, film.width, 0, film.height};
     BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);

@@ -17,18 +17,23 @@ struct CollectedPaths {
     std::uint64_t iterations = 0;
 };
 
-/// The scene's first camera, pinhole or as the scene's extras say, on a small film for so many
-/// paths. Throws InputError where there is none.
-Camera trainingCamera(const Scene& scene, std::uint64_t paths);
-/// As the scene's extras say, else by default.
-WalkLimits trainingLimits(const Scene& scene);
+/// How training looks at a scene: as it is rendered.
+struct TrainingView {
+    Camera camera;
+    WalkLimits limits;
+};
+
+/// The rendered camera with a small film for so many paths. `aspect`: width over height of the
+/// picture.
+TrainingView trainingView(const Camera& camera, double aspect, const WalkLimits& limits,
+                          std::uint64_t paths);
 
 /// About `paths` paths that connections can make, or as many as a hundred iterations give; a tenth
 /// of the pixels is held out. Random numbers are of iterations that no render reaches: what is
 /// learned from these paths must not know those that it weighs. Throws Error 130 once `cancel` is
 /// set.
-CollectedPaths collectPaths(const Scene& scene, const LightCells& cells, std::uint64_t paths,
-                            std::uint64_t seed, const ThreadPool& pool,
+CollectedPaths collectPaths(const Scene& scene, const TrainingView& view, const LightCells& cells,
+                            std::uint64_t paths, std::uint64_t seed, const ThreadPool& pool,
                             const std::atomic<bool>& cancel);
 
 /// The first iteration number of training.

@@ -6,11 +6,12 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/tool/interrupt.h"
+#include "libcore/tool/progress.h"
+#include "libcore/tool/scene_stage.h"
+#include "libcore/tool/table_options.h"
 #include "preprocess/skeletonize.h"
 #include "preprocess/tool_stage.h"
-#include "render/interrupt.h"
-#include "render/progress.h"
-#include "render/table_options.h"
 
 namespace lacuna {
 namespace {
@@ -37,7 +38,7 @@ int skeletonizeTool(int argc, const char* const* argv) {
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const VoxelSettings settings = voxels.read();
     if (!settings.domain.empty()) parseDomain(settings.domain);
-    checkFiles(options);
+    checkBuildOptions(options);
     if (!graphPath.empty()) const AtomicFile probe(graphPath);
 
     const ThreadPool pool(options.common.threads);
@@ -45,27 +46,31 @@ int skeletonizeTool(int argc, const char* const* argv) {
     Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
-    std::unique_ptr<Scene> scene;
+    SceneStage stage;
     Skeletonized result;
     std::string path;
     total.run("all", [&] {
-        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
-        const std::string hash = scene->description().contentHash;
-        CacheStamp stamp = voxelStamp(hash, settings.resolution, settings.domain);
+        phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
+        // Voxels of any resolution may be named, but of this scene.
+        CacheStamp expected{stage.sceneInputs};
         if (voxelPath.empty()) {
+            expected = voxelStamp(stage.sceneInputs, settings);
             voxelPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
-                                  stamp, "voxels.vdb");
+                                  expected, "voxels.vdb");
         }
         VoxelFile voxelFile;
         phases.run("read", [&] {
-            const std::string remedy = "run lacuna-voxelize " + options.scene;
-            pool.run([&] { voxelFile = readVoxelFile(voxelPath, hash, scene->centre(), remedy); });
+            const std::string remedy = "run lacuna-voxelize" + optionArguments(voxels.changed()) +
+                                       sceneArguments(options) + " " + shellQuoted(options.scene);
+            pool.run([&] {
+                voxelFile = readVoxelFile(voxelPath, expected, stage.scene->centre(), remedy);
+            });
         });
         path = resultFile(options, voxelFile.stamp, "skeleton.vdb");
-        result = skeletonize(*scene, voxelFile, pool, interrupt.requested(), phases);
+        result = skeletonize(*stage.scene, voxelFile, pool, interrupt.requested(), phases);
         phases.run("write", [&] {
-            pool.run([&] { writeSkeletonFile(path, result.file, scene->centre()); });
-            if (!graphPath.empty()) writeGraphGlb(graphPath, result, scene->centre());
+            pool.run([&] { writeSkeletonFile(path, result.file, stage.scene->centre()); });
+            if (!graphPath.empty()) writeGraphGlb(graphPath, result, stage.scene->centre());
         });
     });
 

@@ -8,8 +8,6 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
-#include "libcore/base/parallel.h"
-#include "libcore/gltf/gltf.h"
 
 namespace lacuna {
 
@@ -20,9 +18,11 @@ void addBuildOptions(CLI::App& app, BuildOptions& options) {
     app.add_option("-o,--output", options.output, "Result (default: in the scene's cache)")
         ->type_name("FILE");
     addCommonOptions(app, options.common);
+    addSceneOptions(app, options);
 }
 
-void checkFiles(const BuildOptions& options) {
+void checkBuildOptions(BuildOptions& options) {
+    checkSceneOptions(options);
     const std::string& json = options.common.json;
     if (!json.empty() && (json == options.output || json == options.scene)) {
         throw UsageError("--json: expected a file of its own, found " + json);
@@ -31,12 +31,6 @@ void checkFiles(const BuildOptions& options) {
         throw UsageError("-o: expected a file of its own, found the scene, " + options.scene);
     }
     if (!json.empty()) const AtomicFile probe(json);
-}
-
-std::unique_ptr<Scene> loadScene(const std::string& file, const ThreadPool& pool) {
-    SceneDescription description;
-    pool.run([&] { description = loadGltf(file); });
-    return std::make_unique<Scene>(std::move(description), pool);
 }
 
 std::string resultFile(const BuildOptions& options, const CacheStamp& stamp,

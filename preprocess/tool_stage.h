@@ -1,28 +1,23 @@
-// What the preprocessing tools share: the scene, the place of their result, what they report.
+// What the preprocessing tools share: options, the place of their result, what they report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "libcore/scene/scene.h"
-#include "preprocess/voxelize.h"
-#include "render/tool.h"
+#include "libcore/cache/cache_name.h"
+#include "libcore/tool/scene_options.h"
 
 namespace lacuna {
 
 /// The options of one tool that builds a cache of a scene.
-struct BuildOptions {
-    CommonOptions common;
-    std::string scene, output;
+struct BuildOptions : SceneOptions {
+    std::string output;
 };
 
-/// SCENE, -o and the common options. Both must outlive the parsing.
+/// SCENE, -o, the common options and those of the scene. Both must outlive the parsing.
 void addBuildOptions(CLI::App& app, BuildOptions& options);
-/// Throws UsageError if the JSON and the result are one file; RunError where the JSON cannot be
-/// written.
-void checkFiles(const BuildOptions& options);
-
-/// Loads in the pool's threads. Throws InputError.
-std::unique_ptr<Scene> loadScene(const std::string& file, const ThreadPool& pool);
+/// Checks what the scene has no say in. Throws UsageError for a value out of its range, and if the
+/// JSON and the result are one file; RunError where the JSON cannot be written.
+void checkBuildOptions(BuildOptions& options);
 
 /// Where the result goes: -o, or the cache's own name (whose directory is made). Throws RunError if
 /// it cannot be written.

@@ -6,7 +6,6 @@
 
 #include "libcore/base/error.h"
 #include "libcore/subspace/centroids.h"
-#include "preprocess/collect_paths.h"
 #include "preprocess/tool_stage.h"
 
 namespace lacuna {
@@ -141,13 +140,13 @@ class Classification {
 };
 
 /// Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19], and their number / M'.
-void measureQ(const Scene& scene, Subspaces& subspaces, const TrainSettings& settings,
-              const ThreadPool& pool, const std::atomic<bool>& cancel) {
+void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces,
+              const TrainSettings& settings, const ThreadPool& pool,
+              const std::atomic<bool>& cancel) {
     struct Sums {
         std::vector<double> q, count;
     };
-    const Camera camera = trainingCamera(scene, settings.paths);
-    const Walker walker(scene, camera, trainingLimits(scene));
+    const Walker walker(scene, view.camera, view.limits);
     const std::uint64_t tasks = (settings.lightPaths + kLightPathsPerTask - 1) / kLightPathsPerTask;
     subspaces.lightPaths = settings.lightPaths;
     subspaces.q.assign(subspaces.lightCount, 0.0);
@@ -205,8 +204,17 @@ double emptyShareOfEye(const GammaData& data) {
 
 }  // namespace
 
-Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPool& pool,
-              const std::atomic<bool>& cancel, Phases& phases) {
+CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
+                         const TrainingSettings& settings) {
+    CacheStamp stamp{sceneInputs};
+    stamp.inputs.insert(viewInputs.begin(), viewInputs.end());
+    for (const auto& [name, value] : trainingOptions().values(settings)) stamp.inputs[name] = value;
+    return stamp;
+}
+
+Trained train(const Scene& scene, const TrainingView& view, const TrainSettings& settings,
+              const CacheStamp& stamp, const ThreadPool& pool, const std::atomic<bool>& cancel,
+              Phases& phases) {
     Trained result;
     Subspaces& s = result.file.subspaces;
     const auto run = [&](const char* name, const auto& work) {
@@ -218,7 +226,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
     run("paths", [&] {
         const auto cells = std::uint32_t(std::lround(kLightShare * settings.subspaces));
         s.cells = LightCells(scene.lights(), std::max(1u, cells));
-        paths = collectPaths(scene, s.cells, settings.paths, settings.seed, pool, cancel);
+        paths = collectPaths(scene, view, s.cells, settings.paths, settings.seed, pool, cancel);
         result.trainPaths = paths.train.size();
         result.heldOutPaths = paths.heldOut.size();
         result.traced = paths.traced;
@@ -245,7 +253,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         result.lightTree = light.report(s.lightTree);
         result.eyeTree = eye.report(s.eyeTree);
     });
-    run("light paths", [&] { measureQ(scene, s, settings, pool, cancel); });
+    run("light paths", [&] { measureQ(scene, view, s, settings, pool, cancel); });
     run("gamma", [&] {
         const GammaData data = gammaData(paths.train, s, kPicks, pool);
         const GammaData heldOut = gammaData(paths.heldOut, s, kPicks, pool);
@@ -257,7 +265,7 @@ Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPoo
         result.emptyEye = emptyShareOfEye(data);
     });
     result.emptyLight = double(std::count(s.q.begin(), s.q.end(), 0.0)) / double(s.q.size());
-    result.file.stamp = settings.stamp(scene.description().contentHash);
+    result.file.stamp = stamp;
     result.file.contentHash = s.contentHash();
     return result;
 }

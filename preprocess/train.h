@@ -4,15 +4,19 @@
 
 #include "libcore/cache/subspace_file.h"
 #include "libcore/subspace/gamma.h"
+#include "libcore/subspace/training_settings.h"
+#include "preprocess/collect_paths.h"
 #include "preprocess/voxelize.h"
 
 namespace lacuna {
 
 struct TrainSettings : TrainingSettings {
     std::uint64_t seed = 1;
-
-    CacheStamp stamp(const std::string& sceneHash) const { return subspaceStamp(sceneHash, *this); }
 };
+
+/// What subspaces are made of.
+CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
+                         const TrainingSettings& settings);
 
 /// One of the two trees against the nearest centroid.
 struct TreeReport {
@@ -34,8 +38,9 @@ struct Trained {
     std::map<std::string, std::uint64_t> peakBytes;  ///< of the process, at each phase's end
 };
 
-/// Throws InputError for a scene without a camera, Error 130 once `cancel` is set.
-Trained train(const Scene& scene, const TrainSettings& settings, const ThreadPool& pool,
-              const std::atomic<bool>& cancel, Phases& phases);
+/// `stamp` says what the result is made of. Throws Error 130 once `cancel` is set.
+Trained train(const Scene& scene, const TrainingView& view, const TrainSettings& settings,
+              const CacheStamp& stamp, const ThreadPool& pool, const std::atomic<bool>& cancel,
+              Phases& phases);
 
 }  // namespace lacuna

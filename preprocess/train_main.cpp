@@ -5,11 +5,12 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/tool/interrupt.h"
+#include "libcore/tool/progress.h"
+#include "libcore/tool/scene_stage.h"
+#include "libcore/tool/table_options.h"
 #include "preprocess/tool_stage.h"
 #include "preprocess/train.h"
-#include "render/interrupt.h"
-#include "render/progress.h"
-#include "render/table_options.h"
 
 namespace lacuna {
 namespace {
@@ -63,27 +64,32 @@ int trainTool(int argc, const char* const* argv) {
     CLI::App app("Trains the subspaces of a scene's light and eye subpaths", "lacuna-train");
     BuildOptions options;
     addBuildOptions(app, options);
+    addViewOptions(app, options);
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
-        "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt. Exit\n"
+        "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt with the\n"
+        "same options of scene, picture and camera: what is learned is of what they show. Exit\n"
         "codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
         "interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const TrainSettings settings{training.read(), options.common.seed};
-    checkFiles(options);
+    checkBuildOptions(options);
 
     const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
     Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
-    std::unique_ptr<Scene> scene;
+    SceneStage stage;
     Trained result;
     std::string path;
     total.run("all", [&] {
-        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
-        path = resultFile(options, settings.stamp(scene->description().contentHash), "subspaces");
-        result = train(*scene, settings, pool, interrupt.requested(), phases);
+        phases.run("load", [&] { stage = loadScene(options, Look::Camera, pool, progress); });
+        const CacheStamp stamp = subspaceStamp(stage.sceneInputs, stage.viewInputs, settings);
+        path = resultFile(options, stamp, "subspaces");
+        const TrainingView view =
+            trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);
+        result = train(*stage.scene, view, settings, stamp, pool, interrupt.requested(), phases);
         phases.run("write", [&] { writeSubspaceFile(path, result.file); });
     });
     if (result.trainPaths == 0) {
@@ -118,7 +124,7 @@ int trainTool(int argc, const char* const* argv) {
                                  {"outliers_lowered", result.outliers},
                                  {"path_bytes", result.pathBytes},
                                  {"content_hash", result.file.contentHash},
-                                 {"scene_hash", scene->description().contentHash},
+                                 {"scene_hash", stage.scene->description().contentHash},
                                  {"phases", phases.seconds()},
                                  {"phase_peak_bytes", result.peakBytes},
                                  {"seconds", seconds},

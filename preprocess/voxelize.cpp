@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 
 #include "libcore/base/error.h"
@@ -31,16 +30,15 @@ VoxelBox parseDomain(const std::string& text) {
     return {{number[0], number[1], number[2]}, {number[3], number[4], number[5]}};
 }
 
-void Phases::run(const std::string& name, const std::function<void()>& work) {
-    using Clock = std::chrono::steady_clock;
-    if (announce_) announce_(name);
-    const Clock::time_point start = Clock::now();
-    work();
-    seconds_[name] += std::chrono::duration<double>(Clock::now() - start).count();
+CacheStamp voxelStamp(const Settings& sceneInputs, const VoxelSettings& settings) {
+    CacheStamp stamp{sceneInputs};
+    stamp.inputs["resolution"] = std::to_string(settings.resolution);
+    stamp.inputs["domain"] = settings.domain.empty() ? "auto" : settings.domain;
+    return stamp;
 }
 
-Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const ThreadPool& pool,
-                        const std::atomic<bool>& cancel, Phases& phases) {
+Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const CacheStamp& stamp,
+                        const ThreadPool& pool, const std::atomic<bool>& cancel, Phases& phases) {
     std::vector<Triangle> triangles;
     Reach reach;
     phases.run("reach", [&] {
@@ -54,8 +52,7 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const
     });
 
     Voxelized result;
-    result.file.stamp =
-        voxelStamp(scene.description().contentHash, settings.resolution, settings.domain);
+    result.file.stamp = stamp;
     VoxelSpace& space = result.file.space;
     bool flat = false;  // no resolution leaves room between the surfaces
     phases.run("voxelize", [&] {

@@ -4,10 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/parallel.h"
+#include "libcore/tool/interrupt.h"
+#include "libcore/tool/progress.h"
+#include "libcore/tool/scene_stage.h"
+#include "libcore/tool/table_options.h"
 #include "preprocess/tool_stage.h"
-#include "render/interrupt.h"
-#include "render/progress.h"
-#include "render/table_options.h"
+#include "preprocess/voxelize.h"
 
 namespace lacuna {
 namespace {
@@ -25,24 +27,24 @@ int voxelizeTool(int argc, const char* const* argv) {
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const VoxelSettings settings = voxels.read();
     if (!settings.domain.empty()) parseDomain(settings.domain);
-    checkFiles(options);
+    checkBuildOptions(options);
 
     const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
     Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
-    std::unique_ptr<Scene> scene;
+    SceneStage stage;
     Voxelized result;
     std::string path;
     total.run("all", [&] {
-        phases.run("load", [&] { scene = loadScene(options.scene, pool); });
-        const CacheStamp stamp =
-            voxelStamp(scene->description().contentHash, settings.resolution, settings.domain);
+        phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
+        const CacheStamp stamp = voxelStamp(stage.sceneInputs, settings);
         path = resultFile(options, stamp, "voxels.vdb");
-        result = voxelizeScene(*scene, settings, pool, interrupt.requested(), phases);
-        phases.run("write",
-                   [&] { pool.run([&] { writeVoxelFile(path, result.file, scene->centre()); }); });
+        result = voxelizeScene(*stage.scene, settings, stamp, pool, interrupt.requested(), phases);
+        phases.run("write", [&] {
+            pool.run([&] { writeVoxelFile(path, result.file, stage.scene->centre()); });
+        });
     });
 
     const VoxelSpace& space = result.file.space;
@@ -55,8 +57,8 @@ int voxelizeTool(int argc, const char* const* argv) {
         "%s: %d x %d x %d voxels of %.4g, %zu solid, %zu empty in %zu of %zu parts, %.3g s\n",
         path.c_str(), space.shape.size[0], space.shape.size[1], space.shape.size[2],
         space.shape.voxel, solid, empty, result.parts.reached, result.parts.total, seconds);
-    const Vec3d low = space.shape.box().low + scene->centre();
-    const Vec3d high = space.shape.box().high + scene->centre();
+    const Vec3d low = space.shape.box().low + stage.scene->centre();
+    const Vec3d high = space.shape.box().high + stage.scene->centre();
     writeReport(options.common, {{"file", path},
                                  {"resolution", space.shape.size},
                                  {"voxel", space.shape.voxel},
@@ -67,7 +69,7 @@ int voxelizeTool(int argc, const char* const* argv) {
                                  {"parts", result.parts.total},
                                  {"reached_parts", result.parts.reached},
                                  {"content_hash", space.contentHash()},
-                                 {"scene_hash", scene->description().contentHash},
+                                 {"scene_hash", stage.scene->description().contentHash},
                                  {"phases", phases.seconds()},
                                  {"seconds", seconds},
                                  {"peak_bytes", peakBytes()}});

@@ -27,7 +27,7 @@ SmallPicture smallPicture(const Stage& stage) {
     const Camera::Film small{scaled(film.width), scaled(film.height)};
     const int x0 = std::min(int(crop.x0 * scale), small.width - 1);
     const int y0 = std::min(int(crop.y0 * scale), small.height - 1);
-    return {stage.scene->makeCamera(stage.cameraName, small, stage.lens),
+    return {stage.camera->withFilm(small),
             {x0, std::min(x0 + scaled(crop.width()), small.width), y0,
              std::min(y0 + scaled(crop.height()), small.height)}};
 }

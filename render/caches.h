@@ -1,35 +1,31 @@
-// The caches that a method needs, read or (with --prepare) built.
+// The assets that a method needs, read from the scene's cache or (with --prepare) made.
 #pragma once
 
 #include <atomic>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "libcore/methods/registry.h"
-#include "libcore/scene/scene.h"
-#include "libcore/skeleton/node_map.h"
-#include "libcore/subspace/subspaces.h"
+#include "preprocess/assets.h"
 #include "render/options.h"
-#include "render/progress.h"
 
 namespace lacuna {
 
 struct Caches {
-    std::shared_ptr<const Skeleton> skeleton;    ///< null where the method needs none
-    std::shared_ptr<const Subspaces> subspaces;  ///< likewise
-    std::map<std::string, std::string> hashes;   ///< of their content, by kind
+    std::vector<std::unique_ptr<Asset>> assets;  ///< in the order of the row's needs
+    std::map<std::string, std::string> hashes;   ///< of their content, by name
     std::map<std::string, double> phaseSeconds;
     double seconds = 0.0;
 
     void giveTo(Method& method) const;
 };
 
-/// Reads what `row` needs from the scene's cache. A missing or stale cache is an InputError that
-/// names the command that builds it; with options.prepare it is built and written instead. Throws
-/// Error 130 if `cancel` is set meanwhile.
+/// Reads what `row` needs. A missing or stale cache is an InputError that names the command that
+/// makes it; with options.prepare it is made and written instead. Throws Error 130 if `cancel` is
+/// set meanwhile.
 Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-                  const Scene& scene, const ThreadPool& pool, const std::atomic<bool>& cancel,
+                  const SceneStage& stage, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress);
 
 }  // namespace lacuna

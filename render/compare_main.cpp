@@ -10,7 +10,7 @@
 #include "libcore/image/error_map.h"
 #include "libcore/image/error_metrics.h"
 #include "libcore/image/image_io.h"
-#include "render/tool.h"
+#include "libcore/tool/tool.h"
 
 namespace lacuna {
 namespace {

@@ -9,9 +9,7 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
-#include "libcore/bidir/mis.h"
 #include "libcore/image/image_io.h"
-#include "render/tolerance.h"
 
 namespace lacuna {
 
@@ -23,45 +21,19 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
     app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
         ->type_name("NAME");
-    app.add_option("--set", o.assignments,
-                   "Set a parameter of the method, or effects.NAME=on|off; may be repeated")
+    app.add_option("--set", o.assignments, "Set a parameter of the method; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
 
+    addSceneOptions(app, o);
+    addViewOptions(app, o);
     const std::string picture = "Picture and camera";
-    app.add_option("--width", o.width,
-                   "Pixels (default: by --height, else extras.lacuna, else 1280)")
-        ->type_name("N")
-        ->group(picture);
-    app.add_option("--height", o.height,
-                   "Pixels (default: by --width, else extras.lacuna, else by the aspect)")
-        ->type_name("N")
-        ->group(picture);
     app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
         ->type_name("x0,x1,y0,y1")
-        ->group(picture);
-    app.add_option("--camera", o.camera, "Camera of the scene (default: the first)")
-        ->type_name("NAME")
-        ->group(picture);
-    app.add_option("--aperture", o.aperture, "Radius of the thin lens, scene units; 0: pinhole")
-        ->type_name("R")
-        ->group(picture);
-    app.add_option("--focus", o.focus, "Distance in focus along the viewing axis, scene units")
-        ->type_name("D")
         ->group(picture);
     app.add_option("--exposure", o.exposure, "Stops, for .png only (default: 0)")
         ->type_name("E")
         ->group(picture);
-
-    const std::string light = "Environment";
-    app.add_option("--env", o.environment,
-                   "Latitude-longitude map, .exr or .hdr, instead of the scene's")
-        ->type_name("FILE")
-        ->group(light);
-    app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
-        ->type_name("DEG")
-        ->group(light);
-    app.add_option("--env-scale", o.environmentScale, "Multiply it")->type_name("S")->group(light);
 
     const std::string effort = "Effort";
     app.add_option("--iterations", o.iterations,
@@ -73,19 +45,6 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("T")
         ->group(effort);
     app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
-        ->group(effort);
-    app.add_option("--max-depth", o.maxDepth, "Longest path in edges, 1 to 254 (default: 12)")
-        ->type_name("N")
-        ->group(effort);
-    app.add_option("--rr-depth", o.rouletteDepth,
-                   "First vertex of a subpath at which Russian roulette is played (default: 3)")
-        ->type_name("N")
-        ->group(effort);
-    app.add_option(
-           "--tolerance", o.tolerance,
-           "Leave out layers and lamps that hold no more than this share of the energy, and\n"
-           "say so (default: 0, nothing)")
-        ->type_name("E")
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
 
@@ -140,31 +99,6 @@ std::vector<std::string_view> splitAtCommas(std::string_view text) {
     }
 }
 
-void requireRange(const char* option, const std::optional<std::int64_t>& value, std::int64_t low,
-                  std::int64_t high) {
-    if (value && (*value < low || *value > high)) {
-        throw UsageError(std::string(option) + ": expected an integer from " + std::to_string(low) +
-                         " to " + std::to_string(high) + ", found " + std::to_string(*value));
-    }
-}
-
-void requireReal(const char* option, const std::optional<double>& value, double low, double high,
-                 const char* expected) {
-    if (value && !(*value >= low && *value <= high)) {
-        throw UsageError(std::string(option) + ": expected " + expected + ", found " +
-                         numberText(*value));
-    }
-}
-
-/// Before the scene is loaded: readImage reads pictures of eight bits too, whose lamps are cut off
-/// at white.
-void requireEnvironmentEnding(const std::string& file) {
-    const std::string ending = endingOf(file);
-    if (ending == ".exr" || ending == ".hdr") return;
-    throw InputError(file + ": expected an environment .exr or .hdr, found the ending '" + ending +
-                     "'; convert the image");
-}
-
 }  // namespace
 
 double parseDuration(const std::string& text) {
@@ -209,16 +143,6 @@ ReplayRequest parseReplay(const std::string& text) {
     return r;
 }
 
-void requireSaneFilm(std::int64_t width, std::int64_t height) {
-    requireRange("--width", width, 1, kMaxImageSide);
-    requireRange("--height", height, 1, kMaxImageSide);
-    if (std::uint64_t(width) * std::uint64_t(height) > kMaxImagePixels) {
-        throw UsageError("--width, --height: expected at most " + std::to_string(kMaxImagePixels) +
-                         " pixels, found " + std::to_string(width) + " x " +
-                         std::to_string(height));
-    }
-}
-
 void checkOptions(RenderOptions& o) {
     if (!o.displayServer.empty()) {
         throw UsageError(
@@ -228,19 +152,15 @@ void checkOptions(RenderOptions& o) {
         throw UsageError(
             "--checkpoint: not there yet; leave it out (an interrupt saves the image)");
     }
-    o.effectSwitches = takeEffectSwitches(o.assignments);
-    requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
+    checkSceneOptions(o);
+    for (const std::string& text : o.assignments) {
+        if (!text.starts_with("effects.")) continue;
+        throw UsageError("--set " + text +
+                         ": effects have an option of their own; write --effect " +
+                         text.substr(text.find('.') + 1));
+    }
     requireRange("--iterations", o.iterations, 1, 1'000'000'000);
-    requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
-    requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
-    // The bounds of the scene's extras: products of what lies inside are floats still.
-    requireReal("--aperture", o.aperture, 0.0, 1e30, "a radius from 0 to 1e30");
-    requireReal("--focus", o.focus, 1e-30, 1e30, "a distance from 1e-30 to 1e30");
-    requireReal("--env-rotate", o.environmentRotation, -1e6, 1e6, "an angle in degrees up to 1e6");
-    requireReal("--env-scale", o.environmentScale, 0.0, 1e30, "a factor from 0 to 1e30");
     requireReal("--exposure", o.exposure, -1000.0, 1000.0, "stops from -1000 to 1000");
-    requireReal("--tolerance", o.tolerance, 0.0, kMaxTolerance, "a share from 0 to 0.1");
-    if (!o.environment.empty()) requireEnvironmentEnding(o.environment);
     if (!o.timeText.empty()) o.timeSeconds = parseDuration(o.timeText);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
@@ -297,24 +217,6 @@ void checkOutputs(const RenderOptions& o) {
     for (const std::string* path : {&o.log, &o.common.json}) {
         if (!path->empty()) const AtomicFile probe(*path);
     }
-}
-
-std::string commandLineText(int argc, const char* const* argv) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
-    std::string text;
-    for (int i = 0; i < argc; ++i) {
-        const std::string_view argument = argv[i];
-        if (i > 0) text += ' ';
-        if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) {
-            text += argument;
-            continue;
-        }
-        text += '\'';
-        for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        text += '\'';
-    }
-    return text;
 }
 
 }  // namespace lacuna

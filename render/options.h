@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
-#include "render/effect_switches.h"
-#include "render/tool.h"
+#include "libcore/tool/scene_options.h"
 
 namespace lacuna {
 
@@ -20,24 +19,16 @@ struct ReplayRequest {
     std::uint32_t iteration = 0;
 };
 
-struct RenderOptions {
-    CommonOptions common;
+struct RenderOptions : SceneOptions {
     std::string commandLine;  ///< as a shell would take it again
 
-    std::string scene, output, method;
+    std::string output, method;
     std::vector<std::string> assignments;  ///< --set
-    std::optional<std::int64_t> width, height;
     std::optional<std::int64_t> iterations;
     std::string timeText, cropText, replayText;
     bool countSetup = false;
-    std::optional<std::int64_t> maxDepth, rouletteDepth;
-    std::optional<double> aperture, focus;
-    std::string camera;
-    std::string environment;
-    std::optional<double> environmentRotation, environmentScale;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false;
-    double tolerance = 0.0;
     double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;
@@ -47,7 +38,6 @@ struct RenderOptions {
     std::optional<double> timeSeconds;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
-    std::vector<EffectSwitch> effectSwitches;  ///< taken out of `assignments`
 };
 
 /// Declares every option. Both must outlive the parsing.
@@ -67,10 +57,5 @@ double parseDuration(const std::string& text);
 PixelRect parseCrop(const std::string& text);
 /// Throws UsageError.
 ReplayRequest parseReplay(const std::string& text);
-/// Throws UsageError for a picture without pixels or beyond kMaxImageSide, kMaxImagePixels.
-void requireSaneFilm(std::int64_t width, std::int64_t height);
-
-/// The arguments joined, quoted where a shell needs it.
-std::string commandLineText(int argc, const char* const* argv);
 
 }  // namespace lacuna

@@ -12,7 +12,7 @@
 #include "libcore/bidir/verify.h"
 #include "libcore/image/error_metrics.h"
 #include "libcore/methods/registry.h"
-#include "render/effects.h"
+#include "libcore/tool/effects.h"
 
 namespace lacuna {
 

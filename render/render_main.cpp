@@ -5,11 +5,11 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
+#include "libcore/tool/tolerance.h"
 #include "render/method_help.h"
 #include "render/options.h"
 #include "render/replay.h"
 #include "render/session.h"
-#include "render/tolerance.h"
 
 namespace lacuna {
 namespace {

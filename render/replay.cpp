@@ -4,8 +4,8 @@
 
 #include "libcore/base/error.h"
 #include "libcore/bidir/verify.h"
+#include "libcore/tool/interrupt.h"
 #include "render/caches.h"
-#include "render/interrupt.h"
 #include "render/stage.h"
 
 namespace lacuna {
@@ -134,7 +134,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
 
     const std::unique_ptr<Method> method = row.create(settings);
     const Caches caches =
-        loadCaches(options, row, settings, *stage.scene, pool, interrupt.requested(), progress);
+        loadCaches(options, row, settings, stage, pool, interrupt.requested(), progress);
     caches.giveTo(*method);
     BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));

@@ -76,8 +76,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       interrupt_(interrupt),
       progress_(progress),
       stage_(loadStage(options, row, settings, pool, progress)),
-      caches_(
-          loadCaches(options, row, settings, *stage_.scene, pool, interrupt.requested(), progress)),
+      caches_(loadCaches(options, row, settings, stage_, pool, interrupt.requested(), progress)),
       method_(row.create(settings)),
       film_(makeFilm(options, stage_.settings)) {
     caches_.giveTo(*method_);
@@ -93,12 +92,12 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
                                                      stage_.settings.limits, pool_);
     }
     if (options_.techniques && !row.proposalLabels.empty()) {
-        parts_.emplace(row.proposalLabels, film_.width(), film_.height());
+        proposalLayers_.emplace(row.proposalLabels, film_.width(), film_.height());
     }
-    if (verifier_ || parts_) {
+    if (verifier_ || proposalLayers_) {
         integrator_->delivery().setObserver([this](const PathEvent& event) {
             if (verifier_) verifier_->check(event);
-            if (parts_) parts_->add(event);
+            if (proposalLayers_) proposalLayers_->add(event);
         });
     }
 
@@ -272,18 +271,11 @@ void Session::save() {
         const Stopwatch watch(report_.phaseSeconds["save"]);
         LayeredImage image = composeImage(report_, film_, features ? &*features : nullptr,
                                           techniques_ ? &*techniques_ : nullptr);
-        if (parts_) parts_->writeTo(image, report_.iterations);
-        if (caches_.skeleton && features) {
-            image.setRgb("node", nodeLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                           *caches_.skeleton, pool_));
-        }
-        if (caches_.subspaces && features) {
-            image.setRgb("subspace",
-                         subspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                       *caches_.subspaces, pool_));
-            image.setRgb("lightSubspace",
-                         lightSubspaceLayer(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                            *caches_.subspaces, pool_));
+        if (proposalLayers_) proposalLayers_->writeTo(image, report_.iterations);
+        if (features) {
+            for (const auto& asset : caches_.assets) {
+                asset->draw(image, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
+            }
         }
         writeImage(options_.output, image, options_.exposure);
     }

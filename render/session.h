@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "libcore/image/error_metrics.h"
+#include "libcore/tool/interrupt.h"
+#include "libcore/tool/progress.h"
 #include "render/caches.h"
 #include "render/curve_log.h"
-#include "render/interrupt.h"
-#include "render/method_layers.h"
 #include "render/options.h"
 #include "render/output.h"
-#include "render/progress.h"
+#include "render/proposal_layers.h"
 #include "render/stage.h"
 
 namespace lacuna {
@@ -49,7 +49,7 @@ class Session {
     std::unique_ptr<BidirIntegrator> integrator_;
     Film film_;
     std::optional<TechniqueFilm> techniques_;
-    std::optional<PartFilm> parts_;
+    std::optional<ProposalLayers> proposalLayers_;
     std::unique_ptr<WeightVerifier> verifier_;
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;

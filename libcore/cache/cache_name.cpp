@@ -5,29 +5,68 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "libcore/base/error.h"
 
 namespace lacuna {
+namespace {
 
-CacheStamp voxelStamp(const std::string& sceneHash, int resolution, const std::string& domain) {
-    return {sceneHash, "resolution=" + std::to_string(resolution) +
-                           " domain=" + (domain.empty() ? "auto" : domain)};
+/// Hashes say nothing to people.
+bool isHash(const std::string& value) {
+    constexpr std::size_t kDigits = 32;
+    return value.size() >= kDigits && value.find_first_not_of("0123456789abcdef") >= kDigits;
 }
 
-CacheStamp subspaceStamp(const std::string& sceneHash, const TrainingSettings& settings) {
-    CacheStamp stamp{sceneHash, {}};
-    for (const auto& [name, value] : trainingOptions().values(settings)) {
-        stamp.settings += (stamp.settings.empty() ? "" : " ") + name + "=" + value;
+}  // namespace
+
+std::string CacheStamp::text() const {
+    std::string text;
+    for (const auto& [name, value] : inputs) {
+        std::string line = value;
+        std::replace(line.begin(), line.end(), '\n', ' ');  // a camera may be called anything
+        text += name + "=" + line + "\n";
+    }
+    return text;
+}
+
+CacheStamp CacheStamp::parse(const std::string& text) {
+    CacheStamp stamp;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t equals = line.find('=');
+        if (equals != std::string::npos) {
+            stamp.inputs[line.substr(0, equals)] = line.substr(equals + 1);
+        }
     }
     return stamp;
 }
 
-std::string trainOptions(const TrainingSettings& settings) {
+std::vector<std::string> differences(const CacheStamp& expected, const CacheStamp& found) {
+    std::vector<std::string> result;
+    for (const auto& [name, value] : expected.inputs) {
+        const auto there = found.inputs.find(name);
+        if (there == found.inputs.end()) {
+            result.push_back(name + " (not said there)");
+        } else if (there->second == value) {
+            continue;
+        } else if (isHash(value) && isHash(there->second)) {
+            result.push_back(name + " (of another content)");
+        } else {
+            const auto shown = [](const std::string& v) {
+                return isHash(v) ? std::string("one") : "'" + v + "'";
+            };
+            result.push_back(name + " (there " + shown(there->second) + ", here " + shown(value) +
+                             ")");
+        }
+    }
+    return result;
+}
+
+std::string differencesText(const CacheStamp& expected, const CacheStamp& found) {
     std::string text;
-    for (auto [name, value] : trainingOptions().values(settings)) {
-        std::replace(name.begin(), name.end(), '_', '-');
-        text += (text.empty() ? "--" : " --") + name + " " + value;
+    for (const std::string& d : differences(expected, found)) {
+        text += (text.empty() ? "" : ", ") + d;
     }
     return text;
 }
@@ -41,11 +80,22 @@ std::string cacheDirectory(const std::string& scene, const std::string& director
 
 std::string cacheFile(const std::string& directory, const CacheStamp& stamp,
                       const std::string& kind) {
-    const std::string text = stamp.sceneHash + "\n" + stamp.settings;
+    const std::string text = stamp.text();
     char key[17];
     std::snprintf(key, sizeof(key), "%016llx",
                   (unsigned long long)(XXH3_64bits(text.data(), text.size())));
     return (std::filesystem::path(directory) / (std::string(key) + "." + kind)).string();
+}
+
+std::vector<std::string> cachesIn(const std::string& directory, const std::string& kind) {
+    std::vector<std::string> files;
+    std::error_code error;
+    for (std::filesystem::directory_iterator it(directory, error), end; !error && it != end;
+         it.increment(error)) {
+        if (it->path().string().ends_with("." + kind)) files.push_back(it->path().string());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
 }
 
 void makeCacheDirectory(const std::string& file) {
@@ -56,7 +106,7 @@ void makeCacheDirectory(const std::string& file) {
     if (error) {
         throw RunError(directory.string() +
                        ": expected to make this directory for caches, found: " + error.message() +
-                       "; name a place with --cache DIR");
+                       "; name another directory for caches (--cache DIR)");
     }
 }
 

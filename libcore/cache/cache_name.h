@@ -1,26 +1,32 @@
-// Where a scene's caches lie: NAME.cache/KEY.KIND beside the scene, or in --cache DIR.
+// Where a scene's caches lie, and what they belong to: NAME.cache/KEY.KIND beside the scene, or in
+// another directory.
 #pragma once
 
-#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "libcore/subspace/training_settings.h"
+#include "libcore/base/options.h"
 
 namespace lacuna {
 
-/// What a cache belongs to. `settings` is the text of everything else that its content depends on.
+/// Everything that a cache's content depends on: each input by name, with its value in words or the
+/// hash of its content. One of them is "scene", the content hash of the scene's files.
 struct CacheStamp {
-    std::string sceneHash;
-    std::string settings;
+    Settings inputs;
+
+    /// A line "name=value" for each, in the order of names: what files hold and what is hashed.
+    std::string text() const;
+    /// Of such a text. Lines without = are left out.
+    static CacheStamp parse(const std::string& text);
+
     friend bool operator==(const CacheStamp&, const CacheStamp&) = default;
 };
 
-/// The stamp of voxels and skeleton. `domain` is the text of --domain, or empty.
-CacheStamp voxelStamp(const std::string& sceneHash, int resolution, const std::string& domain);
-
-CacheStamp subspaceStamp(const std::string& sceneHash, const TrainingSettings& settings);
-/// The settings as lacuna-train takes them: "--paths 1000000 --subspaces 1000 ..".
-std::string trainOptions(const TrainingSettings& settings);
+/// The inputs of `expected` that `found` has another value of, or none, in words for a message:
+/// "camera (there 'Cam', here 'Hall')". Empty where all agree.
+std::vector<std::string> differences(const CacheStamp& expected, const CacheStamp& found);
+/// The same as one text.
+std::string differencesText(const CacheStamp& expected, const CacheStamp& found);
 
 /// `directory`, or NAME.cache beside the scene where that is empty.
 std::string cacheDirectory(const std::string& scene, const std::string& directory);
@@ -30,7 +36,10 @@ std::string cacheDirectory(const std::string& scene, const std::string& director
 std::string cacheFile(const std::string& directory, const CacheStamp& stamp,
                       const std::string& kind);
 
-/// Makes the directory that `file` is to lie in. Throws RunError that asks for --cache DIR.
+/// All files DIRECTORY/*.kind, by name; none where there is no such directory.
+std::vector<std::string> cachesIn(const std::string& directory, const std::string& kind);
+
+/// Makes the directory that `file` is to lie in. Throws RunError that asks for another one.
 void makeCacheDirectory(const std::string& file);
 
 }  // namespace lacuna

@@ -81,9 +81,9 @@ void writeSkeletonFile(const std::string& path, const SkeletonFile& file, const 
     vdb::write(path, {grid}, meta);
 }
 
-SkeletonFile readSkeletonFile(const std::string& path, const std::string& sceneHash,
+SkeletonFile readSkeletonFile(const std::string& path, const CacheStamp& expected,
                               const Vec3d& centre, const std::string& remedy) {
-    const vdb::Content content = vdb::read(path, kKind, sceneHash, centre, remedy);
+    const vdb::Content content = vdb::read(path, kKind, expected, centre, remedy);
     SkeletonFile file;
     file.stamp = content.stamp;
     file.contentHash = content.contentHash;

@@ -16,9 +16,9 @@ struct SkeletonFile {
 /// `centre` as of Scene::centre(). Throws RunError.
 void writeSkeletonFile(const std::string& path, const SkeletonFile& file, const Vec3d& centre);
 
-/// Throws InputError if the file is missing, damaged, of another kind, version or scene; `remedy`
-/// says what to do.
-SkeletonFile readSkeletonFile(const std::string& path, const std::string& sceneHash,
+/// Throws InputError if the file is missing, damaged, of another kind or version, or made of other
+/// inputs than `expected` names; `remedy` says what to do.
+SkeletonFile readSkeletonFile(const std::string& path, const CacheStamp& expected,
                               const Vec3d& centre, const std::string& remedy);
 
 }  // namespace lacuna

@@ -15,7 +15,7 @@ namespace lacuna {
 namespace {
 
 constexpr char kMagic[8] = {'L', 'A', 'C', 'U', 'N', 'A', 'S', 'S'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Header {
     char magic[8];
@@ -32,14 +32,13 @@ struct Section {
 };
 static_assert(sizeof(Section) == 32);
 
-constexpr std::uint32_t kSections = 11;
+constexpr std::uint32_t kSections = 10;
 static_assert(sizeof(LightCells::Block) == 8 && sizeof(DecisionTree::Node) == 8);
 
 /// Calls put(name, array) for every section in the order of the file: the schema, for both ways.
 template <class Visitor>
 void forEachSection(Visitor& visit) {
-    visit("scene_hash", visit.sceneHash);      // text
-    visit("settings", visit.settings);         // text
+    visit("inputs", visit.inputs);             // text: CacheStamp::text()
     visit("content_hash", visit.contentHash);  // text
     visit("subspaces", visit.counts);          // uint32: of light, of eye
     visit("light_paths", visit.lightPaths);    // uint64: M'
@@ -53,7 +52,7 @@ void forEachSection(Visitor& visit) {
 
 /// The sections as arrays.
 struct Arrays {
-    std::string sceneHash, settings, contentHash;
+    std::string inputs, contentHash;
     std::vector<std::uint32_t> counts;
     std::vector<std::uint64_t> lightPaths;
     std::vector<LightCells::Block> blocks;
@@ -124,8 +123,7 @@ std::array<std::uint64_t, 2> hashOf(Header header, const std::string& bytes) {
 void writeSubspaceFile(const std::string& path, const SubspaceFile& file) {
     const Subspaces& s = file.subspaces;
     Writer w;
-    w.sceneHash = file.stamp.sceneHash;
-    w.settings = file.stamp.settings;
+    w.inputs = file.stamp.text();
     w.contentHash = file.contentHash;
     w.counts = {s.lightCount, s.eyeCount};
     w.lightPaths = {s.lightPaths};
@@ -148,10 +146,10 @@ void writeSubspaceFile(const std::string& path, const SubspaceFile& file) {
     writeFileAtomically(path, w.bytes);
 }
 
-SubspaceFile readSubspaceFile(const std::string& path, const std::string& sceneHash,
+SubspaceFile readSubspaceFile(const std::string& path, const CacheStamp& expected,
                               const std::string& remedy) {
-    const auto refuse = [&](const std::string& expected, const std::string& found) {
-        throw InputError(path + ": expected " + expected + ", found " + found + "; " + remedy);
+    const auto refuse = [&](const std::string& what, const std::string& found) {
+        throw InputError(path + ": expected " + what + ", found " + found + "; " + remedy);
     };
     std::string bytes;
     {
@@ -193,14 +191,13 @@ SubspaceFile readSubspaceFile(const std::string& path, const std::string& sceneH
         s.population = std::move(r.population);
         s.gamma = std::move(r.gamma);
         s.check();
-        file.stamp = {r.sceneHash, r.settings};
+        file.stamp = CacheStamp::parse(r.inputs);
         file.contentHash = r.contentHash;
     } catch (const std::invalid_argument& e) {
         refuse("subspaces that fit together", std::string("something else: ") + e.what());
     }
-    if (file.stamp.sceneHash != sceneHash) {
-        refuse("subspaces of this scene", "those of another (or of its earlier state)");
-    }
+    const std::string differ = differencesText(expected, file.stamp);
+    if (!differ.empty()) refuse("subspaces made of what is rendered", differ);
     return file;
 }
 

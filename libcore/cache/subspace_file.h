@@ -22,9 +22,9 @@ struct SubspaceFile {
 /// Atomically. Throws RunError.
 void writeSubspaceFile(const std::string& path, const SubspaceFile& file);
 
-/// Throws InputError if the file is missing, damaged, of another version or scene; `remedy` says
-/// what to do.
-SubspaceFile readSubspaceFile(const std::string& path, const std::string& sceneHash,
+/// Throws InputError if the file is missing, damaged, of another version, or made of other inputs
+/// than `expected` names; `remedy` says what to do.
+SubspaceFile readSubspaceFile(const std::string& path, const CacheStamp& expected,
                               const std::string& remedy);
 
 }  // namespace lacuna

@@ -12,8 +12,7 @@ namespace lacuna::vdb {
 namespace {
 const char* const kKind = "lacuna.kind";
 const char* const kFormat = "lacuna.version";
-const char* const kScene = "lacuna.scene_hash";
-const char* const kSettings = "lacuna.settings";
+const char* const kInputs = "lacuna.inputs";  // CacheStamp::text()
 const char* const kContent = "lacuna.content_hash";
 const char* const kOrigin = "lacuna.origin";  // the file's coordinates
 const char* const kVoxel = "lacuna.voxel_size";
@@ -29,8 +28,7 @@ void putHeader(openvdb::MetaMap& meta, const std::string& kind, const CacheStamp
                const VoxelShape& shape, const Vec3d& centre, const std::string& contentHash) {
     meta.insertMeta(kKind, openvdb::StringMetadata(kind));
     meta.insertMeta(kFormat, openvdb::Int32Metadata(kVersion));
-    meta.insertMeta(kScene, openvdb::StringMetadata(stamp.sceneHash));
-    meta.insertMeta(kSettings, openvdb::StringMetadata(stamp.settings));
+    meta.insertMeta(kInputs, openvdb::StringMetadata(stamp.text()));
     meta.insertMeta(kContent, openvdb::StringMetadata(contentHash));
     meta.insertMeta(kOrigin, openvdb::Vec3DMetadata(toVdb(shape.origin + centre)));
     meta.insertMeta(kVoxel, openvdb::DoubleMetadata(shape.voxel));
@@ -57,7 +55,7 @@ void refuse(const std::string& path, const std::string& expected, const std::str
     throw InputError(path + ": expected " + expected + ", found " + found + "; " + remedy);
 }
 
-Content read(const std::string& path, const std::string& kind, const std::string& sceneHash,
+Content read(const std::string& path, const std::string& kind, const CacheStamp& expected,
              const Vec3d& centre, const std::string& remedy) {
     std::istringstream bytes(readGuarded(path, remedy), std::ios::binary);
     openvdb::initialize();
@@ -73,7 +71,7 @@ Content read(const std::string& path, const std::string& kind, const std::string
         if (version != kVersion) {
             refuse(path, "format " + std::to_string(kVersion), std::to_string(version), remedy);
         }
-        content.stamp = {text(kScene), text(kSettings)};
+        content.stamp = CacheStamp::parse(text(kInputs));
         content.contentHash = text(kContent);
         const auto origin = meta.metaValue<openvdb::Vec3d>(kOrigin);
         content.shape.origin = Vec3d{origin.x(), origin.y(), origin.z()} - centre;
@@ -87,9 +85,8 @@ Content read(const std::string& path, const std::string& kind, const std::string
         if (n < 1 || n > kLargestSide) refuse(path, "a grid of sane size", "another", remedy);
     }
     if (!(content.shape.voxel > 0.0)) refuse(path, "voxels with a size", "none", remedy);
-    if (content.stamp.sceneHash != sceneHash) {
-        refuse(path, kind + " of this scene", "those of another (or of its earlier state)", remedy);
-    }
+    const std::string differ = differencesText(expected, content.stamp);
+    if (!differ.empty()) refuse(path, kind + " made of what is rendered", differ, remedy);
     return content;
 }
 

@@ -10,7 +10,7 @@
 
 namespace lacuna::vdb {
 
-inline constexpr int kVersion = 1;
+inline constexpr int kVersion = 2;
 
 /// Writes the stamp, `kind`, the version and the lattice into a file's metadata.
 void putHeader(openvdb::MetaMap& meta, const std::string& kind, const CacheStamp& stamp,
@@ -29,8 +29,8 @@ struct Content {
     CacheStamp stamp;
     std::string contentHash;
 };
-/// Throws InputError naming what does not fit: kind, version, scene; `remedy` says what to do.
-Content read(const std::string& path, const std::string& kind, const std::string& sceneHash,
+/// Throws InputError naming what does not fit: kind, version, inputs; `remedy` says what to do.
+Content read(const std::string& path, const std::string& kind, const CacheStamp& expected,
              const Vec3d& centre, const std::string& remedy);
 
 /// The grid of that name and type. Throws InputError.

@@ -48,9 +48,9 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
     vdb::write(path, {solid, distance}, meta);
 }
 
-VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash, const Vec3d& centre,
+VoxelFile readVoxelFile(const std::string& path, const CacheStamp& expected, const Vec3d& centre,
                         const std::string& remedy) {
-    const vdb::Content content = vdb::read(path, kKind, sceneHash, centre, remedy);
+    const vdb::Content content = vdb::read(path, kKind, expected, centre, remedy);
     VoxelFile file;
     file.stamp = content.stamp;
     VoxelSpace& space = file.space;

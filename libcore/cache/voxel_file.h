@@ -15,9 +15,9 @@ struct VoxelFile {
 /// `centre` as of Scene::centre(). Throws RunError.
 void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d& centre);
 
-/// Throws InputError if the file is missing, damaged, of another kind, version or scene; `remedy`
-/// says what to do.
-VoxelFile readVoxelFile(const std::string& path, const std::string& sceneHash, const Vec3d& centre,
+/// Throws InputError if the file is missing, damaged, of another kind or version, or made of other
+/// inputs than `expected` names; `remedy` says what to do.
+VoxelFile readVoxelFile(const std::string& path, const CacheStamp& expected, const Vec3d& centre,
                         const std::string& remedy);
 
 }  // namespace lacuna

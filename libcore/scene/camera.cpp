@@ -7,7 +7,7 @@
 namespace lacuna {
 
 Camera::Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens)
-    : film_(film), lens_(lens) {
+    : lens_(lens), tangent_(std::tan(0.5 * description.yfov)) {
     const Affine& m = description.toWorld;
     const Vec3d forward = normalize(-m.m[2]);
     const Vec3d right = normalize(cross(forward, m.m[1]));
@@ -16,11 +16,22 @@ Camera::Camera(const CameraDescription& description, Vec3d offset, Film film, Le
     right_ = Vec3(right);
     up_ = Vec3(cross(right, forward));
 
-    const double tanY = std::tan(0.5 * description.yfov);
+    setFilm(film);
+}
+
+void Camera::setFilm(Film film) {
+    film_ = film;
+    const double tanY = tangent_;
     const double tanX = tanY * film.width / film.height;
     tanX_ = float(tanX);
     tanY_ = float(tanY);
     pixelArea_ = float((2.0 * tanX / film.width) * (2.0 * tanY / film.height));
+}
+
+Camera Camera::withFilm(Film film) const {
+    Camera other = *this;
+    other.setFilm(film);
+    return other;
 }
 
 Vec3 Camera::sampleLens(Vec2 u) const {

@@ -25,6 +25,9 @@ class Camera {
     Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens);
 
     Film film() const { return film_; }
+    Lens lens() const { return lens_; }
+    /// The same camera with another film: the vertical angle stays.
+    Camera withFilm(Film film) const;
     Vec3 forward() const { return forward_; }
     Vec3 position() const { return position_; }
 
@@ -49,9 +52,12 @@ class Camera {
     std::optional<Projection> project(const Vec3& lensPoint, const Vec3& direction) const;
 
   private:
+    void setFilm(Film film);
+
     Film film_;
     Lens lens_;
     Vec3 position_, right_, up_, forward_;
+    double tangent_;  ///< of half the vertical angle
     float tanX_, tanY_;
     float pixelArea_;  ///< on the image plane at distance 1
 };

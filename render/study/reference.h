@@ -7,7 +7,7 @@
 #include <string>
 
 #include "libcore/image/error_metrics.h"
-#include "render/progress.h"
+#include "libcore/tool/progress.h"
 #include "render/study/plan.h"
 
 namespace lacuna {

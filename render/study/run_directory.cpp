@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
-#include "render/interrupt.h"
+#include "libcore/tool/interrupt.h"
 #include "render/study/child.h"
 
 namespace lacuna {

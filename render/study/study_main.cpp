@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "libcore/base/error.h"
-#include "render/interrupt.h"
+#include "libcore/tool/interrupt.h"
 #include "render/study/execute.h"
 #include "render/study/page.h"
 #include "render/study/report.h"

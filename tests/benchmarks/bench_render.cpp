@@ -22,8 +22,8 @@
 #include "libcore/bidir/integrator.h"
 #include "libcore/gltf/gltf.h"
 #include "libcore/methods/registry.h"
-#include "render/effect_switches.h"
-#include "render/tolerance.h"
+#include "libcore/tool/effect_switches.h"
+#include "libcore/tool/tolerance.h"
 
 namespace lacuna {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
-#include "render/effect_switches.h"
+#include "libcore/tool/effect_switches.h"
 #include "tests/render/render_tool.h"
 
 namespace lacuna::test {

@@ -1,5 +1,5 @@
 // --tolerance: what is left out, that it is said, and that the bounds hold that it promises.
-#include "render/tolerance.h"
+#include "libcore/tool/tolerance.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "libcore/base/error.h"
+#include "libcore/tool/effects.h"
+#include "libcore/tool/progress.h"
 #include "render/curve_log.h"
-#include "render/effects.h"
 #include "render/options.h"
-#include "render/progress.h"
 
 namespace lacuna {
 namespace {

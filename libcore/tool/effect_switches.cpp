@@ -1,4 +1,4 @@
-#include "render/effect_switches.h"
+#include "libcore/tool/effect_switches.h"
 
 #include <algorithm>
 
@@ -6,8 +6,6 @@
 
 namespace lacuna {
 namespace {
-
-const std::string kPrefix = "effects.";
 
 /// A texture of one texel.
 TextureUse addTexel(SceneDescription& scene, bool srgb) {
@@ -127,22 +125,18 @@ bool switchOn(const std::string& name, const SwitchTargets& to) {
 
 }  // namespace
 
-std::vector<EffectSwitch> takeEffectSwitches(std::vector<std::string>& assignments) {
+std::vector<EffectSwitch> parseEffectSwitches(std::span<const std::string> texts) {
     std::vector<EffectSwitch> switches;
-    for (const std::string& text : assignments) {
-        if (!text.starts_with(kPrefix)) continue;
+    for (const std::string& text : texts) {
         const std::size_t equals = text.find('=');
-        const std::string name =
-            text.substr(kPrefix.size(), equals == text.npos ? equals : equals - kPrefix.size());
+        const std::string name = text.substr(0, equals);
         const std::string value = equals == text.npos ? "" : text.substr(equals + 1);
-        if (value != "on" && value != "off") {
-            throw UsageError("--set " + kPrefix + name + ": expected on or off, found '" + value +
-                             "'");
+        if (name.empty() || (value != "on" && value != "off")) {
+            throw UsageError("--effect: expected NAME=on or NAME=off, found '" + text + "'");
         }
         std::erase_if(switches, [&](const EffectSwitch& s) { return s.name == name; });
         switches.push_back({name, value == "on"});
     }
-    std::erase_if(assignments, [](const std::string& a) { return a.starts_with(kPrefix); });
     return switches;
 }
 
@@ -150,7 +144,7 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
                                       const SwitchTargets& targets, std::vector<Effect>& effects) {
     std::vector<std::string> warnings;
     for (const EffectSwitch& s : switches) {
-        const std::string option = "--set " + kPrefix + s.name;
+        const std::string option = "--effect " + s.name;
         const auto effect = std::find_if(effects.begin(), effects.end(),
                                          [&](const Effect& e) { return e.name == s.name; });
         if (effect == effects.end()) {
@@ -164,14 +158,15 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
                 throw UsageError(option + "=on: there is nothing to simulate (" + effect->reason +
                                  "); leave it out");
             }
-            effect->reason = "on by --set (" + effect->reason + ")";
+            effect->reason = "on by --effect (" + effect->reason + ")";
         } else {
             switchOff(s.name, targets);
             warnings.push_back(s.name + " is off though the scene calls for it (" + effect->reason +
                                "): the picture lacks what it does");
-            effect->reason = "off by --set, though " + effect->reason;
+            effect->reason = "off by --effect, though " + effect->reason;
         }
         effect->simulated = s.on;
+        effect->forced = true;
     }
     return warnings;
 }

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "libcore/scene/description.h"
-#include "render/effects.h"
+#include "libcore/tool/effects.h"
 
 namespace lacuna {
 

@@ -1,7 +1,9 @@
-#include "render/table_options.h"
+#include "libcore/tool/table_options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+
+#include "libcore/tool/tool.h"
 
 namespace lacuna {
 namespace {
@@ -24,10 +26,27 @@ const char* typeName(Option::Kind kind) {
 
 }  // namespace
 
-std::string optionName(const Option& option) {
-    std::string name = "--" + option.name;
-    std::replace(name.begin(), name.end(), '_', '-');
-    return name;
+std::string optionName(const std::string& name) {
+    std::string text = "--" + name;
+    std::replace(text.begin(), text.end(), '_', '-');
+    return text;
+}
+
+Settings changedSettings(std::span<const Option> options, const Settings& settings) {
+    Settings changed;
+    for (const Option& o : options) {
+        const auto found = settings.find(o.name);
+        if (found != settings.end() && found->second != o.standard) changed.insert(*found);
+    }
+    return changed;
+}
+
+std::string optionArguments(const Settings& settings) {
+    std::string text;
+    for (const auto& [name, value] : settings) {
+        text += " " + optionName(name) + " " + shellQuoted(value);
+    }
+    return text;
 }
 
 OptionTexts::OptionTexts(CLI::App& app, std::vector<Option> options)
@@ -36,7 +55,7 @@ OptionTexts::OptionTexts(CLI::App& app, std::vector<Option> options)
         const std::string standard = o.standardText.empty() ? o.standard : o.standardText;
         std::string help = o.unit.empty() ? o.help : o.unit + " " + o.help;
         help[0] = char(std::toupper(static_cast<unsigned char>(help[0])));
-        app.add_option(optionName(o), texts_.emplace_back(o.standard),
+        app.add_option(optionName(o.name), texts_.emplace_back(o.standard),
                        help + " (" + o.range() + "; default: " + standard + ")")
             ->type_name(typeName(o.kind));
     }
@@ -45,7 +64,7 @@ OptionTexts::OptionTexts(CLI::App& app, std::vector<Option> options)
 Settings OptionTexts::settings() const {
     Settings settings;
     for (std::size_t i = 0; i < options_.size(); ++i) {
-        settings[options_[i].name] = options_[i].checked(texts_[i], optionName(options_[i]));
+        settings[options_[i].name] = options_[i].checked(texts_[i], optionName(options_[i].name));
     }
     return settings;
 }

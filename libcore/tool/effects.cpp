@@ -1,4 +1,4 @@
-#include "render/effects.h"
+#include "libcore/tool/effects.h"
 
 #include <algorithm>
 #include <set>
@@ -60,23 +60,27 @@ class Table {
     void add(const char* name, bool simulated, const std::string& reason) {
         rows.push_back({name, simulated, reason});
     }
+    void addTechnique(const char* name, bool simulated, const std::string& reason) {
+        add(name, simulated, reason);
+        rows.back().ofScene = false;
+    }
     std::vector<Effect> rows;
 };
 
 void addTechniques(Table& table, const MethodRow& method, bool hittable, bool anyLight) {
     const Techniques& t = method.techniques;
-    table.add("hits", t.hits && hittable,
-              !t.hits    ? method.name + " has no technique s = 0"
-              : hittable ? "an eye path can run into a light"
-                         : "no light that an eye path can run into");
-    table.add("connections", t.connects && anyLight,
-              !t.connects ? method.name + " connects no vertices"
-              : anyLight  ? "eye vertices are connected with light vertices"
-                          : "no light");
-    table.add("splats", t.splats && anyLight,
-              !t.splats  ? method.name + " has no technique t = 1"
-              : anyLight ? "light paths are seen by the lens"
-                         : "no light");
+    table.addTechnique("hits", t.hits && hittable,
+                       !t.hits    ? method.name + " has no technique s = 0"
+                       : hittable ? "an eye path can run into a light"
+                                  : "no light that an eye path can run into");
+    table.addTechnique("connections", t.connects && anyLight,
+                       !t.connects ? method.name + " connects no vertices"
+                       : anyLight  ? "eye vertices are connected with light vertices"
+                                   : "no light");
+    table.addTechnique("splats", t.splats && anyLight,
+                       !t.splats  ? method.name + " has no technique t = 1"
+                       : anyLight ? "light paths are seen by the lens"
+                                  : "no light");
 }
 
 }  // namespace

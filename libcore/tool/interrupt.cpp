@@ -1,4 +1,4 @@
-#include "render/interrupt.h"
+#include "libcore/tool/interrupt.h"
 
 #include <unistd.h>
 

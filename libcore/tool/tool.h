@@ -29,6 +29,11 @@ void addCommonOptions(CLI::App& app, CommonOptions& options);
 /// it. Throws UsageError for a wrong command line.
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv);
 
+/// A text as a shell takes it, in quotes where it needs them.
+std::string shellQuoted(const std::string& text);
+/// The arguments joined, as a shell would take them again.
+std::string commandLineText(int argc, const char* const* argv);
+
 /// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and the
 /// code of its kind: Error its own, everything else 1. Results that could not reach stdout are a
 /// failure (1) as well.

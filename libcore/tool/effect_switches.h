@@ -1,4 +1,4 @@
-// --set effects.NAME=on|off: effects forced on or off, whatever the scene calls for.
+// --effect NAME=on|off: effects forced on or off, whatever the scene calls for.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 #include "libcore/methods/registry.h"
 #include "libcore/scene/description.h"
-#include "render/effects.h"
+#include "libcore/tool/effects.h"
 
 namespace lacuna {
 
@@ -16,9 +16,9 @@ struct EffectSwitch {
     bool on = false;
 };
 
-/// Takes the assignments `effects.NAME=on|off` out of `assignments`; a later one of the same name
-/// wins. Throws UsageError for another value.
-std::vector<EffectSwitch> takeEffectSwitches(std::vector<std::string>& assignments);
+/// Of texts NAME=on|off, in their order; a later one of the same name takes the earlier one's
+/// place. Throws UsageError for another text.
+std::vector<EffectSwitch> parseEffectSwitches(std::span<const std::string> texts);
 
 /// What the switches change besides the scene.
 struct SwitchTargets {
@@ -30,8 +30,9 @@ struct SwitchTargets {
 /// Changes the scene so that an effect is not there any more, or so that its code runs though
 /// nothing calls for it (a white texture, a normal map that tilts nothing, a mask that hides
 /// nothing: the picture stays the same). `effects` is what effectsOf() found before; its rows then
-/// say what is done and why. Returns a warning for every effect that is off though the scene calls
-/// for it. Throws UsageError for unknown names and for what cannot be forced on.
+/// say what is done and why, and are `forced` where a switch changed something. Returns a warning
+/// for every effect that is off though the scene calls for it. Throws UsageError for unknown names
+/// and for what cannot be forced on.
 std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
                                       const SwitchTargets& targets, std::vector<Effect>& effects);
 

@@ -1,4 +1,4 @@
-#include "render/tolerance.h"
+#include "libcore/tool/tolerance.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "render/progress.h"
+#include "libcore/tool/progress.h"
 
 #include <unistd.h>
 

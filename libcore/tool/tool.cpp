@@ -1,4 +1,4 @@
-#include "render/tool.h"
+#include "libcore/tool/tool.h"
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string_view>
 
 #include "libcore/base/error.h"
 
@@ -80,6 +81,21 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* 
     }
     for (const CLI::Option* option : app.get_options()) checkValues(*option);
     return std::nullopt;
+}
+
+std::string shellQuoted(const std::string& text) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./,:=+@%";
+    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string commandLineText(int argc, const char* const* argv) {
+    std::string text;
+    for (int i = 0; i < argc; ++i) text += (i > 0 ? " " : "") + shellQuoted(argv[i]);
+    return text;
 }
 
 int runTool(const std::function<int()>& body) {

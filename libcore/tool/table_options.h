@@ -2,6 +2,8 @@
 #pragma once
 
 #include <deque>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "libcore/base/options.h"
@@ -20,6 +22,7 @@ class OptionTexts {
 
     /// Complete and checked. Throws UsageError that names the option with its dashes.
     Settings settings() const;
+    std::span<const Option> options() const { return options_; }
 
   private:
     std::vector<Option> options_;
@@ -27,7 +30,18 @@ class OptionTexts {
 };
 
 /// "--light-paths"
-std::string optionName(const Option& option);
+std::string optionName(const std::string& name);
+
+/// Those of `settings` that are not their options' defaults.
+Settings changedSettings(std::span<const Option> options, const Settings& settings);
+/// A record's values that are not the defaults.
+template <class Record>
+Settings changedValues(const OptionTable<Record>& table, const Record& record) {
+    const auto values = table.values(record);
+    return changedSettings(table.options(), Settings(values.begin(), values.end()));
+}
+/// Settings as a shell takes them: " --light-paths 1000", or nothing.
+std::string optionArguments(const Settings& settings);
 
 /// The same for a table: its record, read.
 template <class Record>
@@ -37,6 +51,8 @@ class TableOptions {
         : table_(std::move(table)), texts_(app, table_.options()) {}
     /// Throws UsageError.
     Record read() const { return table_.read(texts_.settings()); }
+    /// What was given and is not the default. Throws UsageError.
+    Settings changed() const { return changedSettings(texts_.options(), texts_.settings()); }
 
   private:
     OptionTable<Record> table_;

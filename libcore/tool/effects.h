@@ -12,7 +12,9 @@ namespace lacuna {
 struct Effect {
     std::string name;  ///< stable, for scripts: "rough_refraction"
     bool simulated = false;
-    std::string reason;  ///< what in the scene calls for it, or what is missing
+    std::string reason;   ///< what in the scene calls for it, or what is missing
+    bool forced = false;  ///< on or off against what the scene calls for
+    bool ofScene = true;  ///< not one of the method's techniques
 };
 
 /// One row per effect, always all of them, in a fixed order. `lensRadius` as it will be rendered.

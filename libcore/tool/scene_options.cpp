@@ -1,0 +1,159 @@
+#include "libcore/tool/scene_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "libcore/base/error.h"
+#include "libcore/base/number_text.h"
+#include "libcore/bidir/full_path.h"
+#include "libcore/image/image_io.h"
+#include "libcore/tool/tolerance.h"
+
+namespace lacuna {
+
+void addSceneOptions(CLI::App& app, SceneOptions& o) {
+    const std::string scene = "Scene";
+    app.add_option("--env", o.environment,
+                   "Latitude-longitude map, .exr or .hdr, instead of the scene's")
+        ->type_name("FILE")
+        ->group(scene);
+    app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
+        ->type_name("DEG")
+        ->group(scene);
+    app.add_option("--env-scale", o.environmentScale, "Multiply it")->type_name("S")->group(scene);
+    app.add_option("--effect", o.effectTexts,
+                   "Force an effect on or off; lacuna-render --effects lists them; may be repeated")
+        ->type_name("NAME=on|off")
+        ->allow_extra_args(false)
+        ->group(scene);
+    app.add_option(
+           "--tolerance", o.tolerance,
+           "Leave out layers and lamps that hold no more than this share of the energy, and\n"
+           "say so (default: 0, nothing)")
+        ->type_name("E")
+        ->group(scene);
+}
+
+void addViewOptions(CLI::App& app, SceneOptions& o) {
+    const std::string view = "Picture and camera";
+    app.add_option("--width", o.width,
+                   "Pixels (default: by --height, else extras.lacuna, else 1280)")
+        ->type_name("N")
+        ->group(view);
+    app.add_option("--height", o.height,
+                   "Pixels (default: by --width, else extras.lacuna, else by the aspect)")
+        ->type_name("N")
+        ->group(view);
+    app.add_option("--camera", o.camera, "Camera of the scene (default: the first)")
+        ->type_name("NAME")
+        ->group(view);
+    app.add_option("--aperture", o.aperture, "Radius of the thin lens, scene units; 0: pinhole")
+        ->type_name("R")
+        ->group(view);
+    app.add_option("--focus", o.focus, "Distance in focus along the viewing axis, scene units")
+        ->type_name("D")
+        ->group(view);
+    app.add_option("--max-depth", o.maxDepth, "Longest path in edges, 1 to 254 (default: 12)")
+        ->type_name("N")
+        ->group(view);
+    app.add_option("--rr-depth", o.rouletteDepth,
+                   "First vertex of a subpath at which Russian roulette is played (default: 3)")
+        ->type_name("N")
+        ->group(view);
+}
+
+void requireRange(const char* option, const std::optional<std::int64_t>& value, std::int64_t low,
+                  std::int64_t high) {
+    if (value && (*value < low || *value > high)) {
+        throw UsageError(std::string(option) + ": expected an integer from " + std::to_string(low) +
+                         " to " + std::to_string(high) + ", found " + std::to_string(*value));
+    }
+}
+
+void requireReal(const char* option, const std::optional<double>& value, double low, double high,
+                 const char* expected) {
+    if (value && !(*value >= low && *value <= high)) {
+        throw UsageError(std::string(option) + ": expected " + expected + ", found " +
+                         numberText(*value));
+    }
+}
+
+void requireSaneFilm(std::int64_t width, std::int64_t height) {
+    requireRange("--width", width, 1, kMaxImageSide);
+    requireRange("--height", height, 1, kMaxImageSide);
+    if (std::uint64_t(width) * std::uint64_t(height) > kMaxImagePixels) {
+        throw UsageError("--width, --height: expected at most " + std::to_string(kMaxImagePixels) +
+                         " pixels, found " + std::to_string(width) + " x " +
+                         std::to_string(height));
+    }
+}
+
+namespace {
+
+/// Before the scene is loaded: readImage reads pictures of eight bits too, whose lamps are cut off
+/// at white.
+void requireEnvironmentEnding(const std::string& file) {
+    const std::string ending = endingOf(file);
+    if (ending == ".exr" || ending == ".hdr") return;
+    throw InputError(file + ": expected an environment .exr or .hdr, found the ending '" + ending +
+                     "'; convert the image");
+}
+
+/// Options as text, in the order of their declaration.
+class Arguments {
+  public:
+    void add(const char* option, const std::string& value) {
+        if (!value.empty()) text_ += std::string(" ") + option + " " + shellQuoted(value);
+    }
+    void add(const char* option, const std::optional<double>& value) {
+        if (value) add(option, numberText(*value));
+    }
+    void add(const char* option, const std::optional<std::int64_t>& value) {
+        if (value) add(option, std::to_string(*value));
+    }
+    std::string text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+}  // namespace
+
+void checkSceneOptions(SceneOptions& o) {
+    o.effectSwitches = parseEffectSwitches(o.effectTexts);
+    requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
+    requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
+    requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
+    // The bounds of the scene's extras: products of what lies inside are floats still.
+    requireReal("--aperture", o.aperture, 0.0, 1e30, "a radius from 0 to 1e30");
+    requireReal("--focus", o.focus, 1e-30, 1e30, "a distance from 1e-30 to 1e30");
+    requireReal("--env-rotate", o.environmentRotation, -1e6, 1e6, "an angle in degrees up to 1e6");
+    requireReal("--env-scale", o.environmentScale, 0.0, 1e30, "a factor from 0 to 1e30");
+    requireReal("--tolerance", o.tolerance, 0.0, kMaxTolerance, "a share from 0 to 0.1");
+    if (!o.environment.empty()) requireEnvironmentEnding(o.environment);
+}
+
+std::string sceneArguments(const SceneOptions& o) {
+    Arguments a;
+    a.add("--env", o.environment);
+    a.add("--env-rotate", o.environmentRotation);
+    a.add("--env-scale", o.environmentScale);
+    for (const EffectSwitch& s : o.effectSwitches) {
+        a.add("--effect", s.name + (s.on ? "=on" : "=off"));
+    }
+    if (o.tolerance > 0.0) a.add("--tolerance", numberText(o.tolerance));
+    return a.text();
+}
+
+std::string viewArguments(const SceneOptions& o) {
+    Arguments a;
+    a.add("--width", o.width);
+    a.add("--height", o.height);
+    a.add("--camera", o.camera);
+    a.add("--aperture", o.aperture);
+    a.add("--focus", o.focus);
+    a.add("--max-depth", o.maxDepth);
+    a.add("--rr-depth", o.rouletteDepth);
+    return a.text();
+}
+
+}  // namespace lacuna

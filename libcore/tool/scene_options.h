@@ -1,0 +1,58 @@
+// What a command line says about the scene and how it is looked at: the same options for every tool
+// that loads one, so that what is learned of a scene beforehand is learned of what is rendered.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libcore/tool/effect_switches.h"
+#include "libcore/tool/tool.h"
+
+namespace lacuna {
+
+struct SceneOptions {
+    CommonOptions common;
+    std::string scene;
+
+    std::string environment;
+    std::optional<double> environmentRotation, environmentScale;
+    std::vector<std::string> effectTexts;  ///< --effect
+    double tolerance = 0.0;
+
+    std::string camera;
+    std::optional<double> aperture, focus;
+    std::optional<std::int64_t> width, height;
+    std::optional<std::int64_t> maxDepth, rouletteDepth;
+
+    std::vector<EffectSwitch> effectSwitches;  ///< of effectTexts, by checkSceneOptions
+};
+
+/// Declares --env, --env-rotate, --env-scale, --effect and --tolerance. Both must outlive the
+/// parsing.
+void addSceneOptions(CLI::App& app, SceneOptions& options);
+/// Declares --width, --height, --camera, --aperture, --focus, --max-depth and --rr-depth.
+void addViewOptions(CLI::App& app, SceneOptions& options);
+
+/// Parses the switches and checks every range that the scene has no say in. Throws UsageError, and
+/// InputError for an environment of another format.
+void checkSceneOptions(SceneOptions& options);
+
+/// Throws UsageError for a picture without pixels or beyond kMaxImageSide, kMaxImagePixels.
+void requireSaneFilm(std::int64_t width, std::int64_t height);
+
+/// The options of addSceneOptions that were given, as a shell takes them: " --env sky.hdr", or
+/// nothing.
+std::string sceneArguments(const SceneOptions& options);
+/// Likewise those of addViewOptions.
+std::string viewArguments(const SceneOptions& options);
+
+/// Throws UsageError unless low <= value <= high, if there is one.
+void requireRange(const char* option, const std::optional<std::int64_t>& value, std::int64_t low,
+                  std::int64_t high);
+/// Likewise; `expected` says in words what is.
+void requireReal(const char* option, const std::optional<double>& value, double low, double high,
+                 const char* expected);
+
+}  // namespace lacuna

@@ -1,0 +1,27 @@
+#include "preprocess/assets.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "preprocess/skeleton_asset.h"
+#include "preprocess/subspace_asset.h"
+
+namespace lacuna {
+
+std::span<const AssetRow> assetRows() {
+    static const AssetRow rows[] = {
+        {"skeleton", acquireSkeleton},
+        {"subspaces", acquireSubspaces},
+    };
+    return rows;
+}
+
+const AssetRow& findAsset(const std::string& name) {
+    const auto rows = assetRows();
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const AssetRow& r) { return r.name == name; });
+    if (row == rows.end()) throw std::logic_error("no asset is called " + name);
+    return *row;
+}
+
+}  // namespace lacuna

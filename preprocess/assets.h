@@ -1,0 +1,67 @@
+// Assets: what methods need to be made of a scene beforehand, a skeleton or subspaces. Each knows
+// how it is read, made, hashed and drawn. Adding one = a file in this folder and a row in
+// assets.cpp.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "libcore/bidir/asset_set.h"
+#include "libcore/cache/cache_name.h"
+#include "libcore/image/image.h"
+#include "libcore/tool/scene_stage.h"
+#include "preprocess/phases.h"
+
+namespace lacuna {
+
+/// An asset in memory.
+class Asset {
+  public:
+    virtual ~Asset() = default;
+    virtual void giveTo(AssetSet& assets) const = 0;
+    /// Of its content: two files with the same one are the same to a method.
+    virtual std::string contentHash() const = 0;
+    /// Layers of the picture that show what belongs to what is seen in each pixel of `crop`.
+    virtual void draw(LayeredImage& image, const Scene& scene, const Camera& camera,
+                      const PixelRect& crop, const ThreadPool& pool) const = 0;
+};
+
+/// What an asset is read or made for.
+struct AssetRequest {
+    const SceneStage& stage;
+    const SceneOptions& options;  ///< as the stage was loaded with, for the cache and for messages
+    const Settings& settings;     ///< of the method
+    const std::string& prefix;    ///< of the asset's own options among them: "voxels."
+    bool build;                   ///< where there is no file of it, or none that can be used
+    const ThreadPool& pool;
+    const std::atomic<bool>& cancel;
+    Phases& phases;
+    std::function<void(const std::string& path)> built;  ///< called with each file that is written
+};
+
+struct AssetRow {
+    std::string name;  ///< as AssetNeed has it
+    /// Reads it from the scene's cache, or makes it. Throws InputError that says which inputs
+    /// differ and which command makes it, where it is not there and not asked to be made; Error 130
+    /// once `cancel` is set; RunError.
+    std::unique_ptr<Asset> (*acquire)(const AssetRequest& request);
+};
+
+std::span<const AssetRow> assetRows();
+/// Throws std::logic_error for a name that no row has.
+const AssetRow& findAsset(const std::string& name);
+
+/// For the rows: `readFile` (path, stamp, remedy) gives the file of that stamp, or throws
+/// InputError. Empty where it cannot be used and is asked to be made; else throws what `readFile`
+/// threw, with the inputs in which the most similar file of this kind differs.
+template <class File, class ReadFile>
+std::optional<File> readCache(const AssetRequest& request, const CacheStamp& stamp,
+                              const std::string& kind, const std::string& remedy,
+                              const ReadFile& readFile);
+
+}  // namespace lacuna
+
+#include "preprocess/assets_inl.h"

@@ -1,0 +1,53 @@
+// Included by assets.h.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "libcore/base/error.h"
+
+namespace lacuna {
+
+/// The file of another stamp that differs in the fewest inputs, in words for a message; nothing
+/// where there is none.
+template <class ReadFile>
+std::string mostSimilarCache(const std::string& directory, const CacheStamp& stamp,
+                             const std::string& kind, const ReadFile& readFile) {
+    std::string text;
+    std::size_t fewest = stamp.inputs.size();
+    for (const std::string& path : cachesIn(directory, kind)) {
+        try {
+            const CacheStamp found = readFile(path, CacheStamp{}, "").stamp;
+            const std::size_t count = differences(stamp, found).size();
+            if (count == 0 || count >= fewest) continue;
+            fewest = count;
+            text = path + " was made of another " + differencesText(stamp, found);
+        } catch (const InputError&) {
+            // Damaged, or of another version: nothing to compare with.
+        }
+    }
+    return text;
+}
+
+template <class File, class ReadFile>
+std::optional<File> readCache(const AssetRequest& request, const CacheStamp& stamp,
+                              const std::string& kind, const std::string& remedy,
+                              const ReadFile& readFile) {
+    const std::string directory =
+        cacheDirectory(request.options.scene, request.options.common.cacheDirectory);
+    const std::string path = cacheFile(directory, stamp, kind);
+    std::optional<File> file;
+    try {
+        request.pool.run([&] {
+            const bool missing = !std::filesystem::exists(path);
+            const std::string similar =
+                missing && !request.build ? mostSimilarCache(directory, stamp, kind, readFile) : "";
+            file = readFile(path, stamp, similar.empty() ? remedy : similar + "; " + remedy);
+        });
+    } catch (const InputError&) {
+        if (!request.build) throw;
+    }
+    return file;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,39 @@
+// Layers that show which node or subspace visible surfaces belong to.
+#pragma once
+
+#include <optional>
+
+#include "libcore/base/parallel.h"
+#include "libcore/image/image.h"
+#include "libcore/scene/scene.h"
+
+namespace lacuna {
+
+/// A colour by the number that `numberOf` (point, direction it is seen along) gives to what the
+/// middle of each pixel of `crop` shows; black where it gives none.
+template <class NumberOf>
+Image numberLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
+                  const ThreadPool& pool, const NumberOf& numberOf) {
+    Image layer(crop.width(), crop.height());
+    pool.forEach(std::size_t(crop.height()), [&](std::size_t row) {
+        RayTally tally;
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            const Vec2 raster{float(x) + 0.5f, float(crop.y0 + int(row)) + 0.5f};
+            const Vec3 direction = camera.directionAt(camera.position(), raster).direction;
+            const auto hit =
+                scene.intersect(camera.position(), {}, direction, RayKind::Camera, tally);
+            if (!hit) continue;
+            const std::optional<std::uint32_t> number = numberOf(*hit, direction);
+            if (!number) continue;
+            // Neighbours in number are far apart in colour.
+            const std::uint32_t h = (*number + 1u) * 2654435761u;
+            const auto part = [h](int shift) {
+                return 0.1f + 0.8f * float(h >> shift & 255u) / 255.0f;
+            };
+            layer.at(x - crop.x0, int(row)) = {part(24), part(16), part(8)};
+        }
+    });
+    return layer;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,72 @@
+#include "preprocess/subspace_asset.h"
+
+#include <algorithm>
+
+#include "libcore/tool/table_options.h"
+#include "preprocess/number_layer.h"
+#include "preprocess/train.h"
+
+namespace lacuna {
+namespace {
+
+class SubspaceAsset final : public Asset {
+  public:
+    explicit SubspaceAsset(SubspaceFile file)
+        : subspaces_(std::make_shared<const Subspaces>(std::move(file.subspaces))),
+          contentHash_(std::move(file.contentHash)) {}
+
+    void giveTo(AssetSet& assets) const override { assets.put(subspaces_); }
+    std::string contentHash() const override { return contentHash_; }
+    /// `subspace`: of the eye, as seen from the camera [Su22 fig 7]; `lightSubspace`: the one that
+    /// Gamma picks most often there.
+    void draw(LayeredImage& image, const Scene& scene, const Camera& camera, const PixelRect& crop,
+              const ThreadPool& pool) const override {
+        const auto eyeSubspace = [&](const SurfacePoint& hit) {
+            return subspaces_->eyeTree(subpathEnd(hit.position, hit.ng, camera.position(), false));
+        };
+        image.setRgb("subspace", numberLayer(scene, camera, crop, pool,
+                                             [&](const SurfacePoint& hit, const Vec3&) {
+                                                 return std::optional(eyeSubspace(hit));
+                                             }));
+        image.setRgb(
+            "lightSubspace",
+            numberLayer(scene, camera, crop, pool, [&](const SurfacePoint& hit, const Vec3&) {
+                const auto column = subspaces_->column(eyeSubspace(hit));
+                return std::optional(
+                    std::uint32_t(std::max_element(column.begin(), column.end()) - column.begin()));
+            }));
+    }
+
+  private:
+    std::shared_ptr<const Subspaces> subspaces_;
+    std::string contentHash_;
+};
+
+}  // namespace
+
+std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
+    TrainSettings settings;
+    static_cast<TrainingSettings&>(settings) = trainingOptions().read(r.settings, r.prefix);
+    const CacheStamp stamp = subspaceStamp(r.stage.sceneInputs, r.stage.viewInputs, settings);
+    const std::string remedy = "add --prepare, or run lacuna-train" +
+                               optionArguments(changedValues(trainingOptions(), settings)) +
+                               sceneArguments(r.options) + viewArguments(r.options) + " " +
+                               shellQuoted(r.options.scene);
+    std::optional<SubspaceFile> file;
+    r.phases.run("read subspaces", [&] {
+        file = readCache<SubspaceFile>(r, stamp, "subspaces", remedy, readSubspaceFile);
+    });
+    if (!file) {
+        const std::string path = cacheFile(
+            cacheDirectory(r.options.scene, r.options.common.cacheDirectory), stamp, "subspaces");
+        makeCacheDirectory(path);
+        const TrainingView view =
+            trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);
+        file = train(*r.stage.scene, view, settings, stamp, r.pool, r.cancel, r.phases).file;
+        writeSubspaceFile(path, *file);
+        r.built(path);
+    }
+    return std::make_unique<SubspaceAsset>(std::move(*file));
+}
+
+}  // namespace lacuna

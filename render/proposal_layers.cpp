@@ -1,0 +1,28 @@
+#include "render/proposal_layers.h"
+
+namespace lacuna {
+
+ProposalLayers::ProposalLayers(std::vector<std::string> names, int width, int height)
+    : names_(std::move(names)),
+      width_(width),
+      height_(height),
+      sums_(names_.size(), std::vector<Rgb>(std::size_t(width) * std::size_t(height))) {}
+
+void ProposalLayers::add(const PathEvent& event) {
+    if (!event.proposal || event.proposal->label >= sums_.size()) return;
+    if (isFinite(event.contribution))
+        sums_[event.proposal->label][event.pixel] += event.contribution;
+}
+
+void ProposalLayers::writeTo(LayeredImage& image, std::uint64_t iterations) const {
+    const float scale = iterations > 0 ? 1.0f / float(iterations) : 0.0f;
+    for (std::size_t part = 0; part < names_.size(); ++part) {
+        Image layer(width_, height_);
+        for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
+            layer.pixels[i] = sums_[part][i] * scale;
+        }
+        image.setRgb("part." + names_[part], layer);
+    }
+}
+
+}  // namespace lacuna
