@@ -1,4 +1,4 @@
-// lacuna-compare: the four error measures of interface.md between an image and a reference.
+// lacuna-compare: the four error measures (error_metrics.h) between an image and a reference.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-/// Exit code of an interrupted tool (interface.md).
+/// Exit code of an interrupted tool (README.md, "Exit codes").
 inline constexpr int kInterruptedExit = 130;
 
 /// Installs the handlers for its lifetime; one at a time.

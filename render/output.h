@@ -56,7 +56,7 @@ LayeredImage composeImage(const RenderReport& report, const Film& film,
 /// {"simulated": [names], "left_out": [names], "reasons": {name: text}}
 nlohmann::json effectsJson(const std::vector<Effect>& effects);
 
-/// The keys of interface.md, and more.
+/// The keys that README.md, "--json" lists.
 nlohmann::json reportJson(const RenderReport& report);
 
 /// Atomically, as text that people can read. Throws RunError.

@@ -1,4 +1,5 @@
-// Where a scene's caches lie: NAME.cache/KEY.KIND beside the scene, or in --cache DIR.
+// Where a scene's caches lie: NAME.cache/KEY.KIND beside the scene, or in --cache DIR. (files.md,
+// "Names and keys")
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How far an image is from a reference (interface.md, "Error measures").
+// How far an image is from a reference (render/README.md, "lacuna-compare").
 #pragma once
 
 #include <cstddef>
