@@ -30,7 +30,7 @@ BEING_EDITED: tuple[str, ...] = (
 )
 
 GENERATED = {"tables.md"}  # what lacuna-study writes
-SKIPPED_FOLDERS = re.compile(r"\.git|build.*|out|__pycache__|corpus|.*\.cache")
+SKIPPED_FOLDERS = re.compile(r"\.(?!ci$).*|build.*|out|__pycache__|corpus|.*\.cache")
 ENDINGS = {".h", ".cpp", ".py", ".sh", ".md", ".txt", ".html", ".css", ".js", ".cmake"}
 
 MENTION = re.compile(r"(?<![\w./-])((?:[\w.-]+/)*[\w-]+\.md)\b(?!\w)")
