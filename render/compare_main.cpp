@@ -1,4 +1,4 @@
-// lacuna-compare: mae, rmse, mape and relmse of an image against a reference.
+// lacuna-compare: the four error measures (error_metrics.h) between an image and a reference.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

@@ -56,7 +56,7 @@ LayeredImage composeImage(const RenderReport& report, const Film& film,
 /// {"simulated": [names], "left_out": [names], "reasons": {name: text}}
 nlohmann::json effectsJson(const std::vector<Effect>& effects);
 
-/// What --json writes: README.md lists the keys.
+/// The keys that README.md, "--json" lists.
 nlohmann::json reportJson(const RenderReport& report);
 
 /// Atomically, as text that people can read. Throws RunError.

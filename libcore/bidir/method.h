@@ -1,6 +1,7 @@
 // The seam between the one integrator and the methods: how a light vertex is picked for an eye
 // vertex (with its realised probability), and what the weights believe about that pick (density.h).
-// These are two different numbers, so they are two interfaces.
+// These are two different numbers, so they are two interfaces. (theory.md, "What is exact, and
+// why")
 //
 // A Method lives for the whole render and owns its caches. Per iteration:
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe

@@ -1,5 +1,5 @@
 // Where a scene's caches lie, and what they belong to: NAME.cache/KEY.KIND beside the scene, or in
-// another directory.
+// another directory (files.md, "Names and keys").
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // Files that a library reads which does not survive corrupt ones: OpenVDB aborts, hangs or returns
-// other numbers (dependencies.md 3). Length and XXH3-128 of a file lie in a sidecar, FILE.xxh3, and
-// are compared before the library sees a byte. The file itself stays what viewers expect.
+// other numbers (files.md, "Sidecar"). Length and XXH3-128 of a file lie in a sidecar, FILE.xxh3,
+// and are compared before the library sees a byte. The file itself stays what viewers expect.
 #pragma once
 
 #include <string>

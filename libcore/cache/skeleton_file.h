@@ -1,5 +1,6 @@
 // KEY.skeleton.vdb: what lacuna-skeletonize writes and lacuna-render reads. One grid, "node"
 // (active where a node is mapped, value: its index), and the graph in the file's metadata.
+// (files.md, "Skeleton")
 #pragma once
 
 #include "libcore/cache/cache_name.h"

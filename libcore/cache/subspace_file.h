@@ -1,4 +1,5 @@
-// KEY.subspaces: what lacuna-train writes and lacuna-render reads. One file:
+// KEY.subspaces: what lacuna-train writes and lacuna-render reads. One file (files.md,
+// "Subspaces"):
 //
 //   64 bytes   magic, version, number of sections, bytes in all, XXH3-128 of everything else
 //   sections   name (16 bytes), bytes per element, number of elements, elements, zeros up to a

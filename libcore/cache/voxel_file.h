@@ -1,5 +1,6 @@
 // KEY.voxels.vdb: what lacuna-voxelize writes. Two grids in the scene file's coordinates that any
 // OpenVDB viewer shows: "solid" (topology) and "distance" (active where empty and reached).
+// (files.md, "Voxels")
 #pragma once
 
 #include "libcore/cache/cache_name.h"

@@ -1,4 +1,4 @@
-// How far an image is from a reference: the measures and their formulas.
+// How far an image is from a reference (render/README.md, "lacuna-compare").
 #pragma once
 
 #include <cstddef>

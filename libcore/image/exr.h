@@ -1,4 +1,4 @@
-// OpenEXR files: what the renderer writes and what the tools read back.
+// OpenEXR files: what the renderer writes and what the tools read back. (files.md, "EXR")
 #pragma once
 
 #include <string>

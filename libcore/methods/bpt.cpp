@@ -1,4 +1,4 @@
-// Bidirectional path tracing [Veach97 10], [Lafortune93].
+// Bidirectional path tracing [Veach97 10], [Lafortune93]. (theory.md, "bpt")
 //
 // Every pixel traces one light subpath of its own; every eye vertex is connected to each of its
 // vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way

@@ -1,5 +1,6 @@
 // Importance caching [Georgiev12] adapted to bidirectional path tracing as [Noel15 5] compares with
 // it: light vertices resampled at importance records on surfaces (importance_records.h).
+// (theory.md, "icbpt")
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
 //   records   vertices of record_density x pixels eye subpaths; `records` = 3 of them serve an eye

@@ -1,4 +1,5 @@
 // Light tracing [Arvo86], [Dutre93]: all light subpaths are seen by the lens (t = 1), nothing else.
+// (theory.md, "lt")
 //
 // Exact for every path whose last scatter before the lens is smooth; what the lens sees through
 // mirrors or smooth glass stays black, because no splat can make such a path.

@@ -1,4 +1,4 @@
-// Light vertex cache bidirectional path tracing [Davidovic14].
+// Light vertex cache bidirectional path tracing [Davidovic14]. (theory.md, "lvcbpt")
 //
 //   pool      Y, all connectable vertices of M light subpaths, new in every iteration
 //   pick      N per eye vertex, uniform over Y:  contribution |Y| / (M N) h(y), |Y| realised now

@@ -1,4 +1,4 @@
-// Path tracing with next event estimation [Kajiya86], [Veach97 10.3].
+// Path tracing with next event estimation [Kajiya86], [Veach97 10.3]. (theory.md, "pt")
 //
 // Every eye vertex z_{t-1} proposes one fresh light point y_0 (s = 1); eye paths that run into a
 // light count as well (s = 0). MIS sees n = 1 sample of both: the density of a fresh y_0 is that of

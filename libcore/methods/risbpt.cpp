@@ -1,7 +1,7 @@
 // Resampling-aware weights [Nabata20a]: light vertices resampled at cache points, under weights
 // that know how much better a resampled vertex is than a random one. See cache_resampling.h. Beside
 // it the paper's counterexample [Nabata20a Fig. 3]: Q of the current pool, and so weights that
-// depend on the light paths that they weigh.
+// depend on the light paths that they weigh. (theory.md, "risbpt")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/cache_resampling.h"
 

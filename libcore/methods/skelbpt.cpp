@@ -1,4 +1,5 @@
 // Connections resampled at the nodes of the empty space's skeleton [Noel15]. See node_pmfs.h.
+// (theory.md, "skelbpt")
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
 //   pick      N y per s (the paper: one) at the eye vertex's node:  contribution h(y) / (M N P(y))
@@ -38,7 +39,7 @@ struct Options {
 
 /// Frozen means of one node and length: Q of its pmfs, and Z.
 struct Expected {
-    /// Z is at least one; means of iterations without a vertex may be less.
+    /// Z is at least one; means of iterations without a vertex may be less (theory.md, "skelbpt").
     static constexpr double kLeastMaxima = 1e-3;
 
     double seen = 0, unseen = 0, uniform = 0, maxima = 0;

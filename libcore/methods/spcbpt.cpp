@@ -1,4 +1,4 @@
-// Subspace-based probabilistic connections [Su22].
+// Subspace-based probabilistic connections [Su22]. (theory.md, "spcbpt")
 //
 //   pool      Y, all connectable vertices of M light subpaths, new in every iteration, binned into
 //             light subspaces: LVC_i

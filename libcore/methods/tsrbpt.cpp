@@ -1,5 +1,5 @@
 // Two-stage resampling [Nabata20b]: many light subpaths, thinned out at every cache point by a cut
-// through a light tree before the costly target is looked at.
+// through a light tree before the costly target is looked at. (theory.md, "tsrbpt")
 //
 //   Y         all connectable vertices of M1 light subpaths, new in every iteration; a light tree
 //   stage 1   at each cache point c a cut of M2 clusters, bounded by power x G; from each cluster

@@ -1,4 +1,5 @@
-// What light vertices are worth at one cache point, and the pmfs made from that.
+// What light vertices are worth at one cache point, and the pmfs made from that. (theory.md, "Cache
+// points")
 #pragma once
 
 #include <cstdint>

@@ -114,7 +114,8 @@ double CachePoints::trustedGeometry(std::uint32_t point, const PathVertex& light
     const bool behind = leadsBehind(at, -edge.direction) &&
                         isBlack(at.bsdf.evaluate(at.toPrevious, -edge.direction).f);
     const double here = behind ? 0.0 : double(edge.geometry);
-    // Never zero for a path that carries something: it may have no other strategy.
+    // Never zero for a path that carries something: it may have no other strategy (theory.md,
+    // "Cache points").
     return limited(point, light, std::clamp(here, 1e-4 * geometry, geometry));
 }
 

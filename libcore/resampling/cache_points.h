@@ -1,5 +1,6 @@
 // Cache points: vertices of eye subpaths of their own, which add nothing to the image, at which
-// light vertices are weighed for all eye vertices nearby [Popov15], [Nabata20a 5].
+// light vertices are weighed for all eye vertices nearby [Popov15], [Nabata20a 5]. (theory.md,
+// "Cache points")
 //
 // A new set is traced for every iteration, before its light paths, so a set is frozen data for the
 // weights. An eye vertex is served by the N_c points nearest to the point that is nearest to it:

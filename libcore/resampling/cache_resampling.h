@@ -1,5 +1,5 @@
 // Light vertices resampled at cache points: what pcbpt and risbpt have in common. They differ in
-// what the weights believe.
+// what the weights believe. (theory.md, "risbpt")
 //
 //   Y         all connectable vertices of M light subpaths, new in every iteration; |Y| now
 //   P_c       at each cache point c: pmf over Y, proportional to the target q*(y, c) = beta rho G V

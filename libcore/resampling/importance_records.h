@@ -1,6 +1,6 @@
 // Light vertices weighed at importance records: points on surfaces, from eye subpaths that add
 // nothing to the image [Georgiev12], with the four distributions that [Noel15 5] compares with.
-// What icbpt is made of.
+// What icbpt is made of. (theory.md, "Importance records")
 //
 //   records   cache_points.h, new in every iteration, traced at the end of the one before
 //   pmfs      over L_s, per record c and s:  F ∝ w_F = beta rho rho_c G V (full contribution),

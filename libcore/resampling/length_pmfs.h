@@ -1,5 +1,5 @@
 // Light vertices of a pool by the length of their prefix, and pmfs over those of one length that
-// are combined from several: what skelbpt and icbpt have in common.
+// are combined from several: what skelbpt and icbpt have in common. (theory.md, "Lengths")
 #pragma once
 
 #include <algorithm>

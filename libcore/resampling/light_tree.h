@@ -1,4 +1,5 @@
 // A light tree over the light vertices of one pool, and its cuts [Nabata20b 5.1], [Walter05].
+// (theory.md, "Light tree")
 //
 // Two binary trees over disjoint ranges of the same leaves: vertices with a place in the scene by
 // position and normal, vertices at infinity by direction. Every node is split in the middle of its

@@ -1,5 +1,5 @@
 // Light vertices weighed at the nodes of the empty space's skeleton, and the pmfs made from that
-// [Noel15 4]. What skelbpt is made of.
+// [Noel15 4]. What skelbpt is made of. (theory.md, "Nodes")
 //
 //   node      n(z): nearest node by geodesic distance (node_map.h), on the side the eye path is on
 //   weight    w_n(y) = mean(beta(y)) / max(|P_n - y|, d)^2, at infinity mean(beta(y))   [eq 5]

@@ -1,5 +1,5 @@
 // How often eye vertices are connected, and what weights believe of so many picks: what methods
-// have in common.
+// have in common. (theory.md, "Picks")
 #pragma once
 
 #include "libcore/base/options.h"

@@ -1,4 +1,4 @@
-// How far one sees from a point, by direction.
+// How far one sees from a point, by direction. (theory.md, "Nodes")
 #pragma once
 
 #include <cstddef>

@@ -85,7 +85,7 @@ struct Accel::Impl {
 
     RTCScene newScene() const {
         RTCScene s = rtcNewScene(device);
-        // Without ROBUST rays slip through edges shared by triangles (dependencies.md 7).
+        // Without ROBUST rays slip through edges shared by triangles (numerics.md, "Rays").
         rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_MEDIUM);
         return s;

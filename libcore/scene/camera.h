@@ -1,6 +1,6 @@
 // Pinhole or thin-lens camera. All densities are per pixel: a pixel's eye paths are drawn uniformly
-// over that pixel (box filter), so W_e and p(z_1) are normalised over one pixel (methods.md 1,
-// numerics.md 11-13).
+// over that pixel (box filter), so W_e and p(z_1) are normalised over one pixel (theory.md,
+// "Camera"; numerics.md, "Camera").
 #pragma once
 
 #include <optional>

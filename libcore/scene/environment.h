@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// Centre of the image -Z, right half +X, top row +Y (interface.md). Radiance is the bilinear
-/// interpolation of the texels (periodic in longitude); the density is constant per texel and
-/// positive wherever that interpolation is.
+/// Centre of the image -Z, right half +X, top row +Y (theory.md, "Lights"). Radiance is the
+/// bilinear interpolation of the texels (periodic in longitude); the density is constant per texel
+/// and positive wherever that interpolation is.
 class Environment {
   public:
     /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError

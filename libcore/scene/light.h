@@ -1,5 +1,5 @@
 // All lights of a scene behind one table: picked by power, sampled as the first vertex of light
-// subpaths (y_0), asked for the density of any point or direction on them.
+// subpaths (y_0), asked for the density of any point or direction on them. (theory.md, "Lights")
 //
 // A vertex on a light carries:
 //   area light     point and normal; pdf: pmf / area                  [area measure]

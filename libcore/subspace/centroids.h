@@ -1,4 +1,5 @@
 // Centroids of subspaces and the distance that a subpath's subspace is the nearest one by.
+// (theory.md, "Subspaces")
 //
 //     kappa(y) = argmin_i d(C_i, y)                                                [Su22 eq 17]
 //     d = d_s^2 + sigma^2 (1 - cos theta_n) + k_d sigma^2 (1 - cos theta_d)        [Su22 eq 18]

@@ -1,5 +1,5 @@
 // A decision tree from a subpath's end to its subspace: the practical kappa [Su22 6.4, 7.2.2],
-// which stands in for the search of the nearest centroid.
+// which stands in for the search of the nearest centroid. (theory.md, "Subspaces")
 //
 // A node asks one attribute (a coordinate of position, normal or incident direction) for one
 // threshold; children lie side by side in one array, 8 bytes per node. Splits as in the paper:

@@ -1,5 +1,5 @@
 // Gamma(i given j), the probability of light subspace i for an eye vertex in subspace j, that
-// minimises an upper bound of the variance [Su22 6.3, 7.3].
+// minimises an upper bound of the variance [Su22 6.3, 7.3]. (theory.md, "Subspaces")
 //
 //     Loss(E) = (1/|D|) sum over X in D of f^2(X) / (p_D(X) F(X))               [Su22 eq 15, 7.3]
 //     F(X)    = g_0(X) + sum_ij g_ij(X) E_ij                                      [Su22 eq 16]

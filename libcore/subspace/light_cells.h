@@ -1,4 +1,5 @@
 // Subspaces of the light sources themselves, s = 1 [Su22 7.2.1]: by UV on the surface or the map.
+// (theory.md, "Subspaces")
 //
 // Cells are shared out by power. A light worth two cells or more is divided evenly: an area light
 // into cells of equal area by its barycentrics, the environment into cells of equal solid angle by

@@ -1,5 +1,6 @@
 // Everything that SPCBPT knows before it renders: the classification of light and eye subpaths, Q
-// and Gamma [Su22 6]. What lacuna-train makes and the method `spcbpt` reads; frozen.
+// and Gamma [Su22 6]. What lacuna-train makes and the method `spcbpt` reads; frozen. (theory.md,
+// "Subspaces")
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// D: full paths with what classification and Gamma need of them [Su22 7.1].
+// D: full paths with what classification and Gamma need of them [Su22 7.1]. (theory.md,
+// "Subspaces")
 //
 // Paths come from bidirectional path tracing (M = 1, r = 1) with all its strategies, each sampled
 // path once, under the density p_D = sum_i n_i p_i. The balance heuristic's weights are

@@ -1,5 +1,6 @@
 // How subspaces are trained: one table that lacuna-train, lacuna-render's spcbpt and the cache's
-// key share. Not the seed: what is trained with any is good for all renders.
+// key share. Not the seed: what is trained with any is good for all renders. (theory.md,
+// "Subspaces")
 #pragma once
 
 #include <cstdint>

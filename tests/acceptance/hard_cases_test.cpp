@@ -1,4 +1,4 @@
-// Hard cases of acceptance.md that need no special material: sizes, brightnesses, lights that reach
+// Hard cases (STABILITY.md) that need no special material: sizes, brightnesses, lights that reach
 // nothing, broken geometry, film shapes, roulette, threads. No sample may be invalid in any of
 // them.
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Picking by weight (numerics.md 18-20). False alarms: 1e-3 over all comparisons of this file.
+// Picking by weight (numerics.md, "Picking by weight"). False alarms: 1e-3 over all comparisons of
+// this file.
 #include "libcore/base/discrete.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Rays from the camera and back onto its film (numerics.md 11-13).
+// Rays from the camera and back onto its film (numerics.md, "Camera").
 #include "libcore/scene/camera.h"
 
 #include <gtest/gtest.h>

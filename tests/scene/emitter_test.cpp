@@ -1,5 +1,5 @@
 // Area lights of a scene: sides, barycentrics and densities where light paths start and where eye
-// paths end must be the same, under every transform, baked and instanced (numerics.md, report 13).
+// paths end must be the same, under every transform, baked and instanced (numerics.md, "Lights").
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -301,7 +301,8 @@ struct TexelCells {
     double solidAngle(int cell) const {
         return kPiD / width * (cosine(cell / (2 * width)) - cosine(cell / (2 * width) + 1));
     }
-    /// interface.md: longitude from -Z towards +X, the image's centre at 0, the top row at +Y.
+    /// numerics.md, "Lights": longitude from -Z towards +X, the image's centre at 0, the top row at
+    /// +Y.
     Vec3 centre(int cell) const {
         const int row = cell / (2 * width), column = cell % (2 * width);
         const double turn = (column + 0.5) / (2 * width) - 0.5 + rotationDegrees / 360;
