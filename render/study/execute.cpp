@@ -1,5 +1,7 @@
 #include "render/study/execute.h"
 
+#include <filesystem>
+
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
@@ -29,6 +31,18 @@ void requireCropsInside(const Study& study, std::size_t s, const SceneFacts& fac
     }
 }
 
+bool rendersReference(const StudyScene& scene) {
+    return scene.recipe && !std::filesystem::exists(scene.reference);
+}
+
+/// Copies it to where the study's file wants it.
+void keepReference(const std::string& from, const std::string& to) {
+    std::error_code error;
+    std::filesystem::copy_file(from, to, error);
+    if (error)
+        throw RunError(to + ": expected to keep the reference here, found " + error.message());
+}
+
 /// Scenes and the references that are there first; then the references that take long.
 void findReferences(Results& results, const std::string& directory, const std::string& renderer,
                     const std::atomic<bool>& cancel, Progress& progress) {
@@ -40,16 +54,20 @@ void findReferences(Results& results, const std::string& directory, const std::s
             const StudyScene& scene = study.scenes[s];
             results.facts.push_back(inspectScene(scene, pool));
             requireCropsInside(study, s, results.facts[s]);
-            if (scene.recipe) continue;
+            if (rendersReference(scene)) continue;
             results.references[s] = openReference(scene.reference, results.facts[s], scene.crops);
         }
     }
     for (std::size_t s = 0; s < study.scenes.size(); ++s) {
-        if (!study.scenes[s].recipe) continue;
-        const std::string path =
-            renderReference(study.scenes[s], results.facts[s], study.threads,
-                            directory + "/references", renderer, cancel, progress);
-        results.references[s] = openReference(path, results.facts[s], study.scenes[s].crops);
+        const StudyScene& scene = study.scenes[s];
+        if (!rendersReference(scene)) continue;
+        std::string path = renderReference(scene, results.facts[s], study.threads,
+                                           directory + "/references", renderer, cancel, progress);
+        if (!scene.reference.empty()) {
+            keepReference(path, scene.reference);
+            path = scene.reference;
+        }
+        results.references[s] = openReference(path, results.facts[s], scene.crops);
     }
 }
 

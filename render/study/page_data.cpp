@@ -236,6 +236,7 @@ json pageData(const Results& results, const std::vector<Table>& tables) {
         colours.push_back(errorColour(kErrorMapLow * std::pow(kErrorMapHigh / kErrorMapLow, t)));
     }
     return {{"title", study.title},
+            {"about", study.about},
             {"file", study.file},
             {"machine", results.machine},
             {"version", LACUNA_VERSION},

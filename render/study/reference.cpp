@@ -7,6 +7,7 @@
 #include "libcore/base/error.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
+#include "libcore/methods/registry.h"
 #include "render/study/content_hash.h"
 #include "render/study/run_directory.h"
 
@@ -113,12 +114,19 @@ std::string renderReference(const StudyScene& scene, const SceneFacts& facts, in
     const ReferenceRecipe& recipe = *scene.recipe;
     std::vector<std::string> arguments{"--method", recipe.method, "--iterations",
                                        std::to_string(recipe.iterations)};
+    for (const std::string& assignment : recipe.assignments) {
+        arguments.insert(arguments.end(), {"--set", assignment});
+    }
     arguments.insert(arguments.end(), scene.options.begin(), scene.options.end());
     // Any version's picture converges to the same: no reason to begin anew with each build.
     const std::string folder =
         directory + "/" + recipe.method + "-" + runId(arguments, {facts.hash});
     if (threads > 0) {
         arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
+    }
+    // All parts share what their method prepares: nothing is timed here.
+    if (!findMethod(recipe.method).needs.empty()) {
+        arguments.insert(arguments.end(), {"--prepare", "--cache", folder + "/cache"});
     }
     Average average;
     LayeredImage combined;

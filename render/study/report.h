@@ -8,10 +8,16 @@
 
 namespace lacuna {
 
-/// Writes them into `directory`, each atomically; returns their paths. `json`: what the page shows
-/// goes to this file as well (empty: nowhere). Throws RunError, InputError for a run's image that
-/// cannot be read.
+/// Where a report goes besides the study's folder; empty: nowhere.
+struct ReportCopies {
+    std::string summary;  ///< file of the tables and how they were made, as in tables.md
+    std::string json;     ///< file of what the page shows
+};
+
+/// Writes them into `directory`, each atomically; returns their paths. `command` made the study.
+/// Throws RunError, InputError for a run's image that cannot be read.
 std::vector<std::string> writeReport(const Results& results, const std::string& directory,
-                                     const std::string& chartLibrary, const std::string& json);
+                                     const std::string& command, const std::string& chartLibrary,
+                                     const ReportCopies& copies);
 
 }  // namespace lacuna

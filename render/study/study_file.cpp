@@ -125,6 +125,25 @@ TechniqueRequest readTechniques(JsonObject object) {
     return request;
 }
 
+std::vector<std::string> readAssignments(JsonObject set) {
+    std::vector<std::string> assignments;
+    for (const auto& [key, value] : set.members().items()) {
+        requireScalar(set, key, value);
+        assignments.push_back(key + "=" + valueText(value));
+    }
+    return assignments;
+}
+
+ReferenceRecipe readRecipe(JsonObject& object) {
+    ReferenceRecipe recipe{object.text("method"), readAssignments(object.object("set")),
+                           object.integer("iterations", 2, 1'000'000'000),
+                           object.integer("parts", 1, 100'000)};
+    if (findMethod(recipe.method, "reference: method").biased) {
+        object.fail("method", "a method without bias");
+    }
+    return recipe;
+}
+
 StudyScene readScene(JsonObject& object, const Study& study) {
     StudyScene scene;
     scene.file = resolvePath(study.file, object.text("file"));
@@ -138,12 +157,8 @@ StudyScene readScene(JsonObject& object, const Study& study) {
         scene.reference = resolvePath(study.file, object.text("reference"));
     } else {
         JsonObject recipe = object.object("reference");
-        scene.recipe =
-            ReferenceRecipe{recipe.text("method"), recipe.integer("iterations", 2, 1'000'000'000),
-                            recipe.integer("parts", 1, 100'000)};
-        if (scene.recipe->method != "pt" && scene.recipe->method != "bpt") {
-            recipe.fail("method", "'pt' or 'bpt'");
-        }
+        if (recipe.has("file")) scene.reference = resolvePath(study.file, recipe.text("file"));
+        scene.recipe = readRecipe(recipe);
         recipe.finish();
     }
     if (object.has("bounds")) scene.bounds = readBounds(object.object("bounds"));
@@ -158,11 +173,7 @@ std::vector<StudyMethod> readMethod(JsonObject& object, const Study& study) {
     StudyMethod base;
     base.method = object.text("method");
     base.name = object.has("name") ? object.text("name") : base.method;
-    JsonObject set = object.object("set");
-    for (const auto& [key, value] : set.members().items()) {
-        requireScalar(set, key, value);
-        base.assignments.push_back(key + "=" + valueText(value));
-    }
+    base.assignments = readAssignments(object.object("set"));
     base.options = readOptions(object.object("options"), study.file);
     if (!object.has("vary")) {
         object.finish();
@@ -268,6 +279,10 @@ Study readStudy(const std::string& path, bool quick) {
     Study study;
     study.file = path;
     study.title = object.text("title");
+    if (object.has("about")) {
+        study.about = object.value("about").is_string() ? std::vector{object.text("about")}
+                                                        : object.texts("about");
+    }
     readSeeds(object, study);
     readEffort(object, study);
     if (object.has("threads")) study.threads = int(object.integer("threads", 1, 4096));
@@ -304,6 +319,12 @@ Study readStudy(const std::string& path, bool quick) {
     object.finish();
     for (const StudyScene& scene : study.scenes) {
         for (const StudyMethod& method : study.methods) requireRenderable(study, scene, method);
+        if (!scene.recipe) continue;
+        StudyMethod reference;
+        reference.name = "the reference's";
+        reference.method = scene.recipe->method;
+        reference.assignments = scene.recipe->assignments;
+        requireRenderable(study, scene, reference);
     }
     return study;
 }

@@ -14,8 +14,9 @@ namespace lacuna {
 /// A reference that the study renders itself: `parts` renders of different seeds, averaged. More
 /// parts continue an older reference.
 struct ReferenceRecipe {
-    std::string method;
-    std::int64_t iterations = 0;  ///< of each part
+    std::string method;                    ///< without bias
+    std::vector<std::string> assignments;  ///< --set
+    std::int64_t iterations = 0;           ///< of each part
     std::int64_t parts = 0;
 };
 
@@ -36,7 +37,9 @@ struct StudyScene {
     std::string name;
     std::string file;                  ///< path that can be opened
     std::vector<std::string> options;  ///< of lacuna-render: "--width", "192", ...
-    std::string reference;             ///< path; empty: by recipe
+    /// Path of the reference; where the recipe is there too, it makes this file when it is missing.
+    /// Empty: by recipe, kept among what the study writes.
+    std::string reference;
     std::optional<ReferenceRecipe> recipe;
     std::map<std::string, std::vector<double>> bounds;  ///< by measure
     std::vector<StudyCrop> crops;
@@ -56,6 +59,7 @@ struct StudyMethod {
 struct Study {
     std::string file;
     std::string title;
+    std::vector<std::string> about;  ///< which setting stands for which curve; one paragraph each
     std::vector<std::uint64_t> seeds;
     std::vector<std::string> effort;  ///< "--time", "6s", "--iterations", "64"
     int threads = 0;                  ///< 0: all

@@ -14,7 +14,7 @@ namespace lacuna {
 namespace {
 
 struct Options {
-    std::string study, output;
+    std::string study, output, summary;
     bool quick = false;
     CommonOptions common;
 };
@@ -27,6 +27,9 @@ void declare(CLI::App& app, Options& options) {
         ->type_name("DIR")
         ->required();
     app.add_flag("--quick", options.quick, "As the study's member \"quick\" changes it");
+    app.add_option("--summary", options.summary,
+                   "The tables, and how they were made, to this file as well")
+        ->type_name("FILE.md");
     addCommonOptions(app, options.common);
     app.footer(
         "Runs lacuna-render (the one beside this program) for every scene, method, setting and\n"
@@ -66,7 +69,8 @@ int runStudy(int argc, const char* const* argv) {
         execute(study, options.output, renderer, interrupt.requested(), progress);
     progress.phase("tables and page");
     const std::vector<std::string> written =
-        writeReport(execution.results, options.output, chartLibrary, options.common.json);
+        writeReport(execution.results, options.output, commandLineText(argc, argv), chartLibrary,
+                    {options.summary, options.common.json});
     std::printf("%zu runs, %zu of them rendered now\n", execution.results.runs.size(),
                 execution.rendered);
     for (const std::string& path : written) std::printf("%s\n", path.c_str());

@@ -20,10 +20,13 @@ std::string cellText(const Table::Cell& cell) {
     return spreadText(std::get<Spread>(cell));
 }
 
-std::string markdown(const Study& study, const std::vector<Table>& tables) {
-    std::string text = "# " + study.title + "\n\nMedian (lowest to highest) over " +
-                       std::to_string(study.seeds.size()) +
-                       (study.seeds.size() == 1 ? " seed.\n" : " seeds.\n");
+std::string markdown(const Study& study, const std::string& provenance,
+                     const std::vector<Table>& tables) {
+    std::string text = "# " + study.title + "\n";
+    for (const std::string& paragraph : study.about) text.append("\n").append(paragraph + "\n");
+    text += "\n" + provenance + "\nMedian (lowest to highest) over " +
+            std::to_string(study.seeds.size()) +
+            (study.seeds.size() == 1 ? " seed.\n" : " seeds.\n");
     for (const Table& table : tables) {
         text.append("\n## ").append(table.title).append("\n\n|");
         for (const std::string& column : table.columns)

@@ -31,7 +31,9 @@ double referenceMargin(Measure measure);
 std::vector<Table> makeTables(const Results& results);
 
 std::string cellText(const Table::Cell& cell);
-std::string markdown(const Study& study, const std::vector<Table>& tables);
+/// The whole page; `provenance` says how the results were made (provenance.h).
+std::string markdown(const Study& study, const std::string& provenance,
+                     const std::vector<Table>& tables);
 std::string csv(const Table& table);
 
 }  // namespace lacuna

@@ -91,6 +91,8 @@ class StudyPageSlow : public StudyTool {
                'a bound that was not reached is not said to be');
         expect(document.querySelectorAll('#runs tr').length === study.runs.length + 1, 'runs');
         expect(document.querySelector('h1').textContent === 'A study <of> tests', 'title');
+        expect([...document.querySelectorAll('#about p')].map(p => p.textContent).join('|') ===
+               'pt is <what> lvcbpt is not.|Twice.', 'what the study is about');
 
         expect(visible().length === study.methods.length + 1, 'pictures are not side by side');
         const shown = visible();

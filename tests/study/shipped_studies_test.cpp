@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "render/options.h"
@@ -30,6 +31,32 @@ TEST_P(ShippedStudies, CanBeRead) {
     const Study study = readStudy(path(), false);
     EXPECT_GE(study.methods.size(), 2u);
     EXPECT_GE(study.seeds.size(), 3u) << "medians with ranges";
+}
+
+/// As a word of its own: "bpt" is not in "lvcbpt".
+bool names(const std::string& text, const std::string& word) {
+    const auto inWord = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    };
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        const bool begins = at == 0 || !inWord(text[at - 1]);
+        if (begins && (end == text.size() || !inWord(text[end]))) return true;
+    }
+    return false;
+}
+
+TEST_P(ShippedStudies, SaysWhatEachSettingStandsFor) {
+    setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
+    for (const bool quick : {false, true}) {
+        const Study study = readStudy(path(), quick);
+        std::string about;
+        for (const std::string& paragraph : study.about) about += paragraph + "\n";
+        for (const StudyMethod& method : study.methods) {
+            const std::string& name = method.knob.empty() ? method.name : method.knobGroup;
+            EXPECT_TRUE(names(about, name)) << "about: expected the setting '" << name << "'";
+        }
+    }
 }
 
 TEST_P(ShippedStudies, QuickNeedsNoSceneOfOthersAndLittleTime) {

@@ -1,7 +1,9 @@
 // lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "tests/study/study_tool.h"
@@ -51,6 +53,64 @@ TEST_F(StudyRun, WritesTablesAndGoesOnWhereItStopped) {
     const Outcome grown = study();
     EXPECT_NE(grown.out.find("3 runs, 3 of them rendered now"), std::string::npos) << grown.out;
     EXPECT_NE(read("out/references.csv").find("bpt, 96 iterations"), std::string::npos);
+}
+
+TEST_F(StudyRun, SummarySaysHowItWasMade) {
+    writeStudy();
+    ASSERT_EQ(study("--threads 1 --summary @results.md").exitCode, 0);
+    const std::string page = read("results.md");
+    EXPECT_EQ(page, read("out/tables.md"));
+    EXPECT_TRUE(
+        page.starts_with("# A study <of> tests\n\npt is <what> lvcbpt is not.\n\nTwice.\n"));
+    const auto row = [&](const std::string& name) {
+        const std::size_t begin = page.find("\n| " + name + " | ") + name.size() + 6;
+        return page.substr(begin, page.find(" |\n", begin) - begin);
+    };
+    EXPECT_TRUE(std::regex_match(row("date"), std::regex("20[0-9]{2}-[01][0-9]-[0-3][0-9]")));
+    EXPECT_TRUE(std::regex_match(row("commit"), std::regex("unknown|[0-9a-f]{7,40}([+]changes)?")));
+    EXPECT_NE(row("machine").find(", 1 of them used"), std::string::npos) << row("machine");
+    EXPECT_NE(row("command").find("--threads 1 --summary " + path("results.md")), std::string::npos)
+        << row("command");
+    EXPECT_EQ(row("each run"), "`--iterations 6`");
+    EXPECT_EQ(row("lvcbpt candidates=50"), "lvcbpt | `candidates=50` | ");
+
+    // The scene's row adds up what its runs took.
+    double seconds = 0.0;
+    for (const auto& run : std::filesystem::directory_iterator(path("out/runs"))) {
+        seconds += json("out/runs/" + run.path().filename().string() + "/run.json")
+                       .at("seconds")
+                       .get<double>();
+    }
+    const std::string scene = row("room");
+    EXPECT_EQ(scene.substr(0, 14), "24 x 16 | 6 | ");
+    EXPECT_NEAR(std::stod(scene.substr(14)) / seconds, 1.0, 0.01) << "three digits";
+}
+
+TEST_F(StudyRun, AReferenceIsKeptWhereTheStudyWantsIt) {
+    const auto withReference = [](const std::string& recipe) {
+        return R"({"seeds": [1], "methods": [{"method": "pt"}], "scenes": [{"file": "room.gltf",
+                   "options": {"width": 24, "height": 16, "max-depth": 5},
+                   "reference": {"file": "kept.exr", "iterations": 4, "parts": 2, )" +
+               recipe + "}}]}";
+    };
+    const std::string spcbpt = R"("method": "spcbpt", "set": {"candidates": 50, "train.paths": 500,
+                                  "train.subspaces": 4, "train.light_paths": 500})";
+    writeStudy(withReference(spcbpt));
+    const Outcome made = study();
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_NE(read("out/references.csv").find("spcbpt, 8 iterations"), std::string::npos);
+    const std::string kept = read("kept.exr");
+
+    // It is there: nothing is rendered for it, whatever the folder of results holds.
+    std::filesystem::remove_all(path("out"));
+    ASSERT_EQ(study().exitCode, 0);
+    EXPECT_FALSE(exists("out/references"));
+    EXPECT_EQ(read("kept.exr"), kept);
+
+    writeStudy(withReference(R"("method": "risbpt-current")"));
+    expectFailure("@study.json -o @out --quiet", 3, "without bias");
+    writeStudy(withReference(R"("method": "bpt", "set": {"candidates": 7})"));
+    expectFailure("@study.json -o @out --quiet", 2, "candidates");
 }
 
 TEST_F(StudyRun, MethodsFollowEachOtherWithinASeed) {

@@ -13,7 +13,8 @@ class StudyTool : public RenderTool {
     /// into it (RFC 7386). Writes @study.json.
     void writeStudy(const std::string& changes = "{}") const {
         nlohmann::json study = nlohmann::json::parse(R"({
-            "title": "A study <of> tests", "iterations": 6, "seeds": [1, 2],
+            "title": "A study <of> tests", "about": ["pt is <what> lvcbpt is not.", "Twice."],
+            "iterations": 6, "seeds": [1, 2],
             "equal_iterations": [4], "bounds": {"mape": [10, 1e-6]},
             "scenes": [{"file": "room.gltf",
                         "options": {"width": 24, "height": 16, "max-depth": 5},

@@ -48,6 +48,7 @@ function showReference(view) {
 
 /// The parts of the page that no choice changes.
 function showFacts() {
+  for (const text of study.about) element('p', text, document.getElementById('about'));
   const count = (list, name) => `${list.length} ${name}${list.length > 1 ? 's' : ''}`;
   document.getElementById('summary').textContent = `${count(study.methods, 'setting')}, ` +
     `${count(study.scenes, 'scene')}, ${count(study.seeds, 'seed')}. ${study.machine}. ` +
