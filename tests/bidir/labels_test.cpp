@@ -84,7 +84,8 @@ TEST(Labels, areThoseOfAWalkThatCameThisWay) {
     for (std::uint64_t n = 0; n < 40; ++n) {
         Rng rng(61, 0, StreamKind::User, n);
         walker.traceLight(rng, tally, lightPath);
-        walker.traceEye({1.6f * float(n), 24.0f}, rng, tally, eyePath);
+        // Every other one by way of the lamp, from where it may go on.
+        walker.traceEye({1.6f * float(n), n % 2 == 0 ? 10.0f : 24.0f}, rng, tally, eyePath);
         counts[kHit].labelWalk(lightPath);
         counts[kHit].labelWalk(eyePath);
         const std::span<const PathVertex> lights(lightPath), eyes(eyePath);
