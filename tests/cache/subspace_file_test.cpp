@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -11,6 +10,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/rng.h"
+#include "tests/cache/example_subspaces.h"
 
 namespace lacuna::test {
 namespace {
@@ -47,28 +47,6 @@ class SubspaceFiles : public testing::Test {
   private:
     std::filesystem::path directory_;
 };
-
-SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
-    SubspaceFile file;
-    file.stamp = subspaceStamp("0123abc", {1000, light, 2000, 2});
-    Subspaces& s = file.subspaces;
-    s.lightCount = light;
-    s.eyeCount = eye;
-    s.cells = LightCells({{0, 1, 2}, {2}});
-    const auto leaf = [](std::uint32_t label) {
-        return DecisionTree::Node{0.0f, label << 4 | DecisionTree::kLeaf};
-    };
-    s.lightTree = DecisionTree({{0.5f, 1u << 4 | 3u}, leaf(3), leaf(light - 1)}, light);
-    s.eyeTree = DecisionTree({{-2.5f, 1u << 4 | 8u}, leaf(0), leaf(eye - 1)}, eye);
-    s.lightPaths = 2000;
-    for (std::uint32_t i = 0; i < light; ++i) {
-        s.q.push_back(0.25 * i);
-        s.population.push_back(0.5 * i);
-    }
-    s.gamma.assign(std::size_t(light) * eye, 1.0f / float(light));
-    file.contentHash = s.contentHash();
-    return file;
-}
 
 TEST_F(SubspaceFiles, comeBack) {
     const SubspaceFile written = example(5, 3);
@@ -147,18 +125,6 @@ TEST_F(SubspaceFiles, wrongOnesAreRefused) {
         s.eyeTree = DecisionTree({{0.0f, 9u << 4 | DecisionTree::kLeaf}}, 10);
     });
     refused("cells out of range", [](Subspaces& s) { s.cells = LightCells({{7, 1, 1}}); });
-}
-
-TEST_F(SubspaceFiles, areReadInMilliseconds) {
-    writeSubspaceFile(path(), example(1000, 1000));
-    using Clock = std::chrono::steady_clock;
-    double best = 1.0;
-    for (int n = 0; n < 5; ++n) {
-        const Clock::time_point start = Clock::now();
-        readSubspaceFile(path(), "0123abc", "train again");
-        best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count());
-    }
-    EXPECT_LT(best, 0.1);
 }
 
 }  // namespace

@@ -59,7 +59,9 @@ TEST_P(FiniteSpacePoolsSlow, meetsTheEnumeratedTruth) {
 }
 
 /// Every row as it is, with next event switched where it can be, with every other choice that a
-/// parameter offers, and where it has cache points with more of them than the space has states.
+/// parameter offers (where it has cache points that are weighted, also with several around an eye
+/// vertex, with and without a reserve), and where it has cache points with more of them than the
+/// space has states.
 std::vector<Case> everyRow() {
     std::vector<Case> cases;
     for (const MethodRow& row : allRows()) {
@@ -79,6 +81,13 @@ std::vector<Case> everyRow() {
             if (p.name == "cache_density") add("cache_density=2");
             if (p.name == "cache_points") add("cache_points=1");
             if (p.name == "second_candidates") add("second_candidates=3");
+            if (p.name != "points") continue;
+            for (const char* defensive : {"defensive=0", "defensive=0.5"}) {
+                add("points=weighted");
+                for (const char* more : {"cache_points=3", "cache_density=2", defensive}) {
+                    cases.back().settings.push_back(more);
+                }
+            }
         }
     }
     return cases;

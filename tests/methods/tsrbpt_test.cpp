@@ -11,24 +11,30 @@
 namespace lacuna::test {
 namespace {
 
-/// One eye path from above to a surface at the origin. Light vertices arrive with their throughput
-/// and one G, and are seen but for those next to the origin.
+/// One eye path from above to a surface at the origin. Light vertices arrive with a share of their
+/// throughput and one G, and are seen, or but for those next to the origin, or not at all.
 class OneSurface final : public FixedEyePath {
   public:
     static constexpr double kGeometry = 1e-3;  // less than any light vertex really has
+    enum class Sees { All, NotTheNearest, Nothing };
 
-    OneSurface() {
+    explicit OneSurface(Sees sees, float scattered = 1.0f) : sees_(sees), scattered_(scattered) {
         Bsdf::Parameters p;
         p.baseColor = Rgb(0.5f);
         addLens({0, 1, 2});
         addSurface({0, 0, 0}, p);
     }
     Arrival arrival(Subpath light, Subpath, bool) const override {
-        return {light.back().throughput, {}, kGeometry};
+        return {light.back().throughput * scattered_, {}, kGeometry};
     }
     bool visible(const PathVertex& light, const PathVertex&, RayTally&) const override {
-        return length(light.position) > 0.01f;
+        return sees_ == Sees::All ||
+               (sees_ == Sees::NotTheNearest && length(light.position) > 0.01f);
     }
+
+  private:
+    Sees sees_;
+    float scattered_;
 };
 
 // Where every iteration has the same pool and a cluster is a vertex, Q2 is this pool's, and what
@@ -41,7 +47,7 @@ TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
         y.position = i == 0 ? Vec3{0, 0, 1e-4f} : Vec3{0.4f * float(i), 0, 1.5f};
         y.throughput = Rgb(float(1 + i * i));
     });
-    const OneSurface space;
+    const OneSurface space(OneSurface::Sees::NotTheNearest);
     const ThreadPool threads(1);
     const MethodRow& row = findMethod("tsrbpt");
     for (const char* defensive : {"defensive=0.25", "defensive=0.7"}) {
@@ -60,6 +66,50 @@ TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
             EXPECT_NEAR(found[i].believed / found[i].picked, 1.0, 1e-4) << i;
         }
     }
+}
+
+/// The samples that a connection of throughput 2 counts as with a scatter of 3/4, under a pool of
+/// four subpaths of throughputs 1 to 4 that arrive with a scatter of 1/4.
+double believed(OneSurface::Sees sees, const char* clusters) {
+    const LightPool pool = poolOfPairs(4, [](int i, PathVertex& y) {
+        y.position = {0.4f * float(i), 0, 1.5f};
+        y.throughput = Rgb(float(1 + i));
+    });
+    const OneSurface space(sees, 0.25f);
+    const ThreadPool threads(1);
+    const MethodRow& row = findMethod("tsrbpt");
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 41, 1, statistics};
+    const std::vector<std::string> settings = {"candidates=4", "cache_density=1", "defensive=0.5",
+                                               "first_connections=2", clusters};
+    const auto method = row.create(resolve(row, settings));
+    const ConnectionDensity& density = settle(*method, pool, context, 3);
+    const Subpath eye = space.eye();
+    const Subpath light = pool.prefix(pool.connectable()[1]);
+    Connection c{};
+    c.eye = {&eye[1], &eye[0], 2, {}};
+    c.order = 1;
+    c.light = {&light[1], &light[0], 2, Rgb(0.75f)};
+    c.beta = Rgb(2.0f);
+    c.geometry = OneSurface::kGeometry;
+    return density.effectiveSamples(c);
+}
+
+// Two clusters: Q1 is G times 10/4 whatever they are, Q2 a quarter of that, so p/q1 = 2.5 / 2 and
+// p/q2 = 0.625 / 1.5. Of the two picks a half is in reserve, so the second stage leaves p/q2 as it
+// is; the first one has a share of 1/M2.
+TEST(TwoStageWeights, knowHowManyClustersThereAre) {
+    const double ratio1 = 1.25, ratio2 = 0.625 / 1.5;
+    EXPECT_NEAR(believed(OneSurface::Sees::All, "second_candidates=2"),
+                1.0 / (0.25 + 0.75 * (0.5 * ratio1 + 0.5 * ratio2)), 1e-5);
+    EXPECT_NEAR(believed(OneSurface::Sees::All, "second_candidates=4"),
+                1.0 / (0.25 + 0.75 * (0.25 * ratio1 + 0.75 * ratio2)), 1e-5);
+}
+
+// Where the point sees nothing only the first stage helps.
+TEST(TwoStageWeights, countOnTheFirstStageWhereNothingIsSeen) {
+    EXPECT_NEAR(believed(OneSurface::Sees::Nothing, "second_candidates=2"),
+                1.0 / (0.25 + 0.75 * 1.25), 1e-5);
 }
 
 }  // namespace

@@ -71,5 +71,12 @@ TEST(CachePmfs, ofZeroWeightsAreEmpty) {
     EXPECT_EQ(pmfs.pmf(1, 7), 1.0);
 }
 
+TEST(CachePmfs, keepNothingThatIsNeverPicked) {
+    std::vector<CachePmfs::Builder> all(1), picked(1);
+    all[0].add(std::vector<WeightedVertex>{{2, 0.0}, {3, 1.0}, {5, 1e-30}, {8, 0.0}});
+    picked[0].add(std::vector<WeightedVertex>{{3, 1.0}});
+    EXPECT_EQ(CachePmfs(all).bytes(), CachePmfs(picked).bytes());
+}
+
 }  // namespace
 }  // namespace lacuna::test

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
+#include "libcore/material/albedo_tables.h"
 
 namespace lacuna::test {
 namespace {
@@ -146,6 +147,80 @@ TEST(LightTree, cutsAreFineWhereLightIsNearAndBright) {
     std::size_t near = 0;
     for (const LightTree::Cluster c : cut) near += tree.candidates(c)[0] < 100;
     EXPECT_GE(near, 25u);
+}
+
+/// Two clusters of a hundred lamps each, and how many of a cut's 30 parts hold lamps of the first.
+/// `describe` makes a lamp of its place in a unit cube around the origin.
+template <class Describe>
+std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe) {
+    const ThreadPool threads(1);
+    LightPool pool;
+    pool.reset(200);
+    Rng rng(7, 0, StreamKind::User, 0);
+    for (int i = 0; i < 200; ++i) {
+        PathVertex v;
+        v.kind = VertexKind::LightSource;
+        const float x = rng.uniform(), y = rng.uniform(), z = rng.uniform();
+        v.position = Vec3{x - 0.5f, y - 0.5f, z - 0.5f};
+        v.throughput = Rgb(1.0f);
+        describe(i < 100, v);
+        pool.add({&v, 1}, 12);
+    }
+    const LightTree tree(pool, pool.connectable(), threads);
+    std::vector<LightTree::CutNode> heap;
+    std::vector<LightTree::Cluster> cut;
+    tree.cut(eye, 30, heap, cut);
+    EXPECT_EQ(cut.size(), 30u);
+    std::size_t first = 0;
+    for (const LightTree::Cluster c : cut) first += tree.candidates(c)[0] < 100;
+    return first;
+}
+
+/// Lamps that turn their back carry nothing: those that face the point are told apart.
+TEST(LightTree, cutsAreFineWhereLampsFaceThePoint) {
+    const PathVertex eye = someEye({}, {});
+    const auto facing = [](float turn) {
+        return [turn](bool first, PathVertex& v) {
+            v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
+            v.ng = {-turn, 0, 0};  // all the same way: towards the eye from one side alone
+        };
+    };
+    EXPECT_GE(partsOfTheFirst(eye, facing(1.0f)), 25u);
+    EXPECT_LE(partsOfTheFirst(eye, facing(-1.0f)), 5u);
+    // Vertices on surfaces face the side that their light came from.
+    const AlbedoTables none;
+    const Bsdf grey({.baseColor = Rgb(0.5f), .specular = 0.0f}, {1, 0, 0}, {1, 0, 0}, none);
+    const auto reflecting = [&](bool first, PathVertex& v) {
+        v.kind = VertexKind::Surface;
+        v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
+        v.ng = {1, 0, 0};
+        v.toPrevious = {-1, 0, 0};
+        v.bsdf = grey;
+    };
+    EXPECT_GE(partsOfTheFirst(eye, reflecting), 25u);
+}
+
+/// Nor does the point's surface see what is behind it, near or at infinity.
+TEST(LightTree, cutsAreFineWhereThePointFacesTheLamps) {
+    const auto around = [](bool first, PathVertex& v) {
+        v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
+    };
+    const auto sky = [](bool first, PathVertex& v) {
+        v.kind = VertexKind::Infinite;
+        v.position = normalize(v.position + Vec3{first ? 1.5f : -1.5f, 0, 0});
+    };
+    for (const float side : {1.0f, -1.0f}) {
+        SCOPED_TRACE(side);
+        // On either side of its surface is the side that its path came from.
+        PathVertex eye = someEye({}, {side, 0, 0});
+        for (const float normal : {1.0f, -1.0f}) {
+            eye.ng = {normal, 0, 0};
+            const std::size_t near = partsOfTheFirst(eye, around);
+            const std::size_t far = partsOfTheFirst(eye, sky);
+            EXPECT_GE(side > 0 ? near : 30 - near, 25u);
+            EXPECT_GE(side > 0 ? far : 30 - far, 25u);
+        }
+    }
 }
 
 }  // namespace

@@ -139,6 +139,17 @@ TEST(Environment, IntegralIsThatOfTheRadiance) {
     EXPECT_NEAR(grey.pdfW({0, 1, 0}), 0.25 / kPiD, 1e-7);
 }
 
+/// Texels near the poles are small: no direction of an even sky is likelier than another.
+TEST(Environment, DirectionsOfAnEvenSkyAreAllAlike) {
+    const Environment e(Image(16, 9, Rgb(0.5f, 3.0f, 1.0f)), 1, 40, "even");
+    Rng rng(4, 0, StreamKind::User, 0);
+    for (int i = 0; i < 500; ++i) {
+        EXPECT_NEAR(e.pdfW(randomDirection(rng)) * 4 * kPiD, 1, 1e-6);
+        const Environment::Sample s = e.sample(rng.uniformDouble(), rng.uniform(), rng.uniform());
+        EXPECT_NEAR(s.pdfW * 4 * kPiD, 1, 1e-6);
+    }
+}
+
 TEST(Environment, RefusesWhatIsNoRadiance) {
     Image image(4, 3, Rgb(1.0f));
     EXPECT_TRUE(Environment(Image(4, 3), 1, 0, "black").black());

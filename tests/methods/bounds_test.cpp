@@ -1,0 +1,110 @@
+// However many picks there are and however bright the vertex: a connection is never believed to
+// stand for more samples than there are light subpaths to pick from.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/methods/registry.h"
+#include "libcore/resampling/picks.h"
+#include "tests/fixtures/beliefs.h"
+#include "tests/fixtures/fixed_eye_path.h"
+#include "tests/fixtures/test_rows.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr int kSubpaths = 80;  // more than picks
+constexpr double kGeometry = 1e-3;
+
+/// A surface at the origin that all light vertices arrive at with their whole throughput.
+class OneSurface final : public FixedEyePath {
+  public:
+    OneSurface() {
+        Bsdf::Parameters grey;
+        grey.baseColor = Rgb(0.5f);
+        addLens({0, 1, 2});
+        addSurface({0, 0, 0}, grey);
+    }
+    Arrival arrival(Subpath light, Subpath, bool) const override {
+        const Rgb all = light.back().throughput;
+        return {all, all, kGeometry};
+    }
+};
+
+/// The samples that connections with a y_1 of these throughputs are believed to stand for, with as
+/// many picks as can be asked for.
+std::vector<double> believed(const MethodRow& row, const std::vector<std::string>& more,
+                             const std::vector<float>& throughputs, Label light) {
+    const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
+        y.position = {0.1f * float(i % 9), 0.1f * float(i / 9), 1.5f};
+        y.throughput = Rgb(1.0f + 0.1f * float(i));
+    });
+    const OneSurface space;
+    const ThreadPool threads(1);
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 43, 1, statistics};
+    std::vector<std::string> settings = {"candidates=" + std::to_string(kSubpaths),
+                                         "connections=" + std::to_string(Picks::kMost)};
+    for (const Option& o : row.options) {
+        if (o.name == "cache_density" || o.name == "record_density") {
+            settings.push_back(o.name + "=1");
+        }
+    }
+    settings.insert(settings.end(), more.begin(), more.end());
+    const auto method = row.create(resolve(row, settings));
+    const ConnectionDensity& density = settle(*method, pool, context, 3);
+    const Subpath eye = space.eye();
+    const Subpath y = pool.prefix(pool.connectable()[1]);
+    std::vector<double> result;
+    for (const float throughput : throughputs) {
+        Connection c{};
+        c.eye = {&eye[1], &eye[0], 2, Rgb(1.0f), 0};
+        c.order = 2;  // `connections` picks, not those of the first eye vertex
+        c.light = {&y[1], &y[0], 2, Rgb(1.0f), light};
+        c.beta = Rgb(throughput);
+        c.geometry = kGeometry;
+        result.push_back(density.effectiveSamples(c));
+    }
+    return result;
+}
+
+TEST(Beliefs, neverExceedTheLightSubpaths) {
+    const std::vector<float> throughputs = {1e-6f, 1e-2f, 1.0f, 1e2f, 1e6f, 1e12f};
+    const std::pair<MethodRow, std::vector<std::string>> cases[] = {
+        {findMethod("risbpt"), {"eye_share=0"}},
+        {findMethod("tsrbpt"), {"eye_share=0"}},
+        {findMethod("tsrbpt"), {"eye_share=0", "points=weighted", "cache_points=3"}},
+        {findMethod("icbpt"), {"eye_share=0"}},
+        {findMethod("skelbpt"), {}},
+        {findMethod("spcbpt"), {}},
+    };
+    for (const auto& [row, settings] : cases) {
+        SCOPED_TRACE(row.name);
+        const std::vector<double> n = believed(row, settings, throughputs, kNone);
+        for (std::size_t i = 0; i < n.size(); ++i) {
+            EXPECT_GT(n[i], 0.0) << throughputs[i];
+            EXPECT_LE(n[i], kSubpaths * (1.0 + 1e-9)) << throughputs[i];
+            EXPECT_GE(n[i], n[i > 0 ? i - 1 : 0]) << "brighter is picked more often";
+        }
+    }
+}
+
+/// Subspaces keep the vertices of W whole iterations: the bound is M W, and the brightest reach it
+/// but for Gamma: N picks of which a share goes to the subspace are N Gamma, each M W at most.
+TEST(Beliefs, neverExceedTheLightSubpathsThatAreKept) {
+    const MethodRow row = mappedSubspaceRow();
+    // Vertices per subpath: 0.1, 0.5, 0 and 0.01; M W reaches M_0 = 400, W 32 at most.
+    const double windows[] = {32, 10, 32, 32};
+    for (Label i = 0; i < 4; ++i) {
+        SCOPED_TRACE(i);
+        const std::vector<double> n =
+            believed(row, {"reuse=400", "weights=ris"}, {1e-6f, 1.0f, 1e6f, 1e30f}, i);
+        const double bound = kSubpaths * windows[i];
+        for (const double samples : n) EXPECT_LE(samples, bound * (1.0 + 1e-9));
+        EXPECT_GT(n.back(), 0.8 * bound);
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test

@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""Puts faults into the program, one at a time, and tells which tests notice.
+
+    python3 tests/mutants/run.py --list
+    python3 tests/mutants/run.py film-variance-by-squares light-without-pmf
+    python3 tests/mutants/run.py --all            all of them: hours
+    python3 tests/mutants/run.py --quick NAME     by all quick tests, not only those that should notice
+    python3 tests/mutants/run.py --write NAME     and put what notices into the table of tests/README.md
+    python3 tests/mutants/run.py --check          whether faults.py and the table in tests/README.md are
+                                                  up to date with the sources; nothing is built
+
+The faults are put into a copy of the sources, build-mutants/, which is kept for the next time. With
+--build DIR they are put into these sources, whose build DIR is, and taken out again.
+
+Exit 0: every fault was noticed (or costs quality alone, as faults.py says).
+"""
+
+import argparse
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from faults import FAULTS
+
+ROOT = Path(__file__).resolve().parents[2]
+SECONDS = 900  # for one fault's tests: one that does not end is noticed, too
+
+
+README = ROOT / "tests" / "README.md"
+HEAD = "| name | fault | noticed by |\n|---|---|---|\n"
+
+
+def fail(text):
+    sys.exit(f"run.py: {text}")
+
+
+def tests_in(folder):
+    """Suite.name of every test in a folder; of parametrised ones with .* behind."""
+    names = set()
+    for source in (ROOT / "tests" / folder).glob("*.cpp"):
+        for kind, suite, name in re.findall(r"^TEST(_F|_P|)\((\w+),\s*(\w+)\)", source.read_text(), re.M):
+            names.add(f"{suite}.{name}")
+    return names
+
+
+def check():
+    wrong = []
+    for name in {f.name for f in FAULTS}:
+        if sum(f.name == name for f in FAULTS) > 1:
+            wrong.append(f"{name}: expected a name of its own")
+    for f in FAULTS:
+        source = ROOT / f.file
+        times = source.read_text().count(f.old) if source.exists() else 0
+        if times != 1:
+            wrong.append(f"{f.name}: expected its old text once in {f.file}, found it {times} times")
+        if f.new == f.old:
+            wrong.append(f"{f.name}: expected a change, found none")
+        for folder, patterns in f.tests.items():
+            known = tests_in(folder)
+            for pattern in patterns.split(":"):
+                suite, _, name = pattern.partition(".")
+                found = [t for t in known if "*" in pattern and t.startswith(suite.rstrip("*")) or t == pattern]
+                if not found:
+                    wrong.append(f"{f.name}: expected a test {pattern} in tests/{folder}, found none")
+    missing = [f.name for f in FAULTS if f.name not in table_rows()[1]]
+    if missing or README.read_text() != readme_with({}):
+        wrong.append("tests/README.md: expected a table of all faults, in order, and of no others; missing: "
+                     f"{', '.join(missing) or 'none'}; use --write")
+    if wrong:
+        print("\n".join(wrong))
+        sys.exit(1)
+    print(f"{len(FAULTS)} faults can be put in")
+
+
+def table_rows():
+    """The table of tests/README.md: what stands before it, what notices each fault, what stands behind it."""
+    before, _, rest = README.read_text().partition(HEAD)
+    rows = re.match(r"(?:\|.*\n)*", rest)[0]
+    return before, dict(re.findall(r"^\| `(.+?)` \| .+ \| (.+?) \|$", rows, re.M)), rest[len(rows):]
+
+
+def readme_with(results):
+    """tests/README.md with these results in its table."""
+    before, noticed, behind = table_rows()
+    for name, found in results.items():
+        more = f" and {len(found) - 2} more" if len(found) > 2 else ""
+        noticed[name] = ", ".join(found[:2]) + more or "nobody"
+    rows = [f"| `{f.name}` | {f.breaks} | {noticed[f.name]} |\n" for f in FAULTS if f.name in noticed]
+    return before + HEAD + "".join(rows) + behind
+
+
+def copy_sources(to):
+    """Those that git knows or would add; files that are the same keep their times."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout.split("\n")
+    for name in filter(None, listed):
+        source, target = ROOT / name, to / name
+        if not source.is_file():
+            continue
+        content = source.read_bytes()
+        if target.exists() and target.read_bytes() == content:
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)
+        shutil.copymode(source, target)
+
+
+def run(command, cwd, seconds=None):
+    """The output, and the exit code: none where it did not end in time."""
+    process = subprocess.Popen([str(c) for c in command], cwd=cwd, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, errors="replace")
+    try:
+        output, _ = process.communicate(timeout=seconds)
+        return output, process.returncode
+    except BaseException as e:
+        process.kill()
+        output, _ = process.communicate()
+        if isinstance(e, subprocess.TimeoutExpired):
+            return output, None
+        raise
+
+
+def failed_tests(output, code, program):
+    """Names of the tests that failed; what else went wrong in brackets."""
+    names = sorted(set(re.findall(r"\[  FAILED  \] ([\w/]+\.\w[\w/]*)", output)))
+    if code is None:
+        return names + [f"[{program} did not end]"]
+    if code != 0 and not names:
+        return [f"[{program} ended with {code}]"]
+    return names
+
+
+class Build:
+    def __init__(self, directory, jobs):
+        self.jobs = jobs
+        if directory:
+            self.sources, self.directory = ROOT, Path(directory).resolve()
+            return
+        self.sources = ROOT / "build-mutants"
+        self.directory = self.sources / "build"
+        copy_sources(self.sources)
+        output, code = run(["cmake", "--preset", "release", "-DLACUNA_TESTS=ON", "-DLACUNA_BENCHMARKS=OFF"],
+                           self.sources)
+        if code != 0:
+            fail("the copy cannot be configured:\n" + output)
+
+    def make(self, targets):
+        return run(["cmake", "--build", self.directory, "--parallel", self.jobs,
+                    *(["--target", *targets] if targets else [])], self.sources)
+
+    def noticed(self, fault, quick):
+        """What notices the fault."""
+        targets = [] if quick else [f"test_{folder}" for folder in fault.tests]
+        output, code = self.make(targets)
+        if code != 0:
+            fail(f"{fault.name} does not build:\n" + "\n".join(output.split("\n")[-30:]))
+        if quick:
+            output, _ = run(["ctest", "--test-dir", self.directory, "-LE", "slow"], self.sources)
+            return re.findall(r"^\s+\d+ - (\S+) \(", output, re.M)
+        found = []
+        for folder, patterns in fault.tests.items():
+            program = self.directory / "tests" / f"test_{folder}"
+            output, code = run([program, f"--gtest_filter={patterns}", "--gtest_brief=1"], self.directory, SECONDS)
+            found += failed_tests(output, code, program.name)
+        return found
+
+    def try_fault(self, fault, quick):
+        source = self.sources / fault.file
+        original = source.read_text()
+        try:
+            source.write_text(original.replace(fault.old, fault.new))
+            return self.noticed(fault, quick)
+        finally:
+            source.write_text(original)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("--build", metavar="DIR")
+    parser.add_argument("--jobs", type=int, default=2)
+    options = parser.parse_args()
+    if options.list:
+        width = max(len(f.name) for f in FAULTS)
+        for f in FAULTS:
+            print(f"{f.name:{width}}  {f.breaks}")
+        return
+    if options.check:
+        check()
+        return
+    by_name = {f.name: f for f in FAULTS}
+    unknown = [n for n in options.names if n not in by_name]
+    if unknown:
+        fail(f"expected a name that --list shows, found {unknown[0]}")
+    chosen = FAULTS if options.all else [by_name[n] for n in options.names]
+    if not chosen:
+        parser.error("expected --all, --list, --check or names")
+
+    # An interrupt takes the fault out again.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    build = Build(options.build, options.jobs)
+    unnoticed = 0
+    for fault in chosen:
+        found = build.try_fault(fault, options.quick)
+        unnoticed += not found and bool(fault.tests)
+        print(f"{fault.name}: {', '.join(found) or 'nobody'}", flush=True)
+        if options.write:
+            README.write_text(readme_with({fault.name: found}))
+    if unnoticed:
+        fail(f"{unnoticed} of {len(chosen)} faults were not noticed")
+
+
+if __name__ == "__main__":
+    main()
