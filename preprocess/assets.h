@@ -6,10 +6,12 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "libcore/bidir/asset_set.h"
+#include "libcore/bidir/film.h"
 #include "libcore/cache/cache_name.h"
 #include "libcore/image/image.h"
 #include "libcore/tool/scene_stage.h"

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "libcore/base/parallel.h"
+#include "libcore/bidir/film.h"
 #include "libcore/image/image.h"
 #include "libcore/scene/scene.h"
 

@@ -45,13 +45,12 @@ class SubspaceAsset final : public Asset {
 }  // namespace
 
 std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
-    TrainSettings settings;
-    static_cast<TrainingSettings&>(settings) = trainingOptions().read(r.settings, r.prefix);
+    const TrainSettings settings{trainingOptions().read(r.settings, r.prefix)};
     const CacheStamp stamp = subspaceStamp(r.stage.sceneInputs, r.stage.viewInputs, settings);
-    const std::string remedy = "add --prepare, or run lacuna-train" +
-                               optionArguments(changedValues(trainingOptions(), settings)) +
-                               sceneArguments(r.options) + viewArguments(r.options) + " " +
-                               shellQuoted(r.options.scene);
+    const std::string remedy =
+        "add --prepare, or run lacuna-train" +
+        optionArguments(changedValues<TrainingSettings>(trainingOptions(), settings)) +
+        sceneArguments(r.options) + viewArguments(r.options) + " " + shellQuoted(r.options.scene);
     std::optional<SubspaceFile> file;
     r.phases.run("read subspaces", [&] {
         file = readCache<SubspaceFile>(r, stamp, "subspaces", remedy, readSubspaceFile);

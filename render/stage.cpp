@@ -13,7 +13,7 @@ double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-PixelRect chooseCrop(const SceneOptions& options, Camera::Film film) {
+PixelRect chooseCrop(const RenderOptions& options, Camera::Film film) {
     if (!options.crop) return {0, film.width, 0, film.height};
     if (options.crop->x1 > film.width || options.crop->y1 > film.height) {
         throw UsageError("--crop: expected a part of " + std::to_string(film.width) + " x " +

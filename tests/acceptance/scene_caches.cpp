@@ -14,7 +14,7 @@ std::shared_ptr<const Skeleton> skeletonOf(const Scene& scene, const ThreadPool&
     Phases phases;
     VoxelSettings settings;
     settings.resolution = 24;
-    const Voxelized voxels = voxelizeScene(scene, settings, pool, never, phases);
+    const Voxelized voxels = voxelizeScene(scene, settings, {}, pool, never, phases);
     Skeletonized made = skeletonize(scene, voxels.file, pool, never, phases);
     return std::make_shared<const Skeleton>(std::move(made.file.skeleton));
 }
@@ -26,8 +26,10 @@ std::shared_ptr<const Subspaces> subspacesOf(const Scene& scene, const ThreadPoo
     settings.subspaces = 40;
     settings.lightPaths = 20000;
     settings.epochs = 4;
+    const TrainingView view =
+        trainingView(scene.makeCamera("", {16, 9}, {}), 16.0 / 9.0, WalkLimits{}, settings.paths);
     return std::make_shared<const Subspaces>(
-        std::move(train(scene, settings, pool, never, phases).file.subspaces));
+        std::move(train(scene, view, settings, {}, pool, never, phases).file.subspaces));
 }
 
 }  // namespace

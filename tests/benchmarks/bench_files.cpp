@@ -13,7 +13,7 @@ void readSubspaces(benchmark::State& state) {
         std::filesystem::temp_directory_path() / "lacuna-bench.subspaces";
     writeSubspaceFile(file.string(), test::example(1000, 1000));
     for (auto _ : state) {
-        benchmark::DoNotOptimize(readSubspaceFile(file.string(), "0123abc", "train again"));
+        benchmark::DoNotOptimize(readSubspaceFile(file.string(), test::kStamp, "train again"));
     }
     std::filesystem::remove(file);
 }

@@ -5,10 +5,13 @@
 
 namespace lacuna::test {
 
-/// Of scene 0123abc, with so many subspaces on the light's side and on the eye's.
+/// What the example says that it was made of.
+inline const CacheStamp kStamp{{{"scene", "0123abc"}, {"camera", "1 Cam"}, {"paths", "1000"}}};
+
+/// With so many subspaces on the light's side and on the eye's.
 inline SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
     SubspaceFile file;
-    file.stamp = subspaceStamp("0123abc", {1000, light, 2000, 2});
+    file.stamp = kStamp;
     Subspaces& s = file.subspaces;
     s.lightCount = light;
     s.eyeCount = eye;

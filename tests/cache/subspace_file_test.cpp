@@ -34,9 +34,9 @@ class SubspaceFiles : public testing::Test {
     void replace(const std::string& bytes) const {
         std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
     }
-    void expectRefused(const std::string& what, const std::string& scene = "0123abc") const {
+    void expectRefused(const std::string& what, const CacheStamp& expected = kStamp) const {
         try {
-            readSubspaceFile(path(), scene, "train again");
+            readSubspaceFile(path(), expected, "train again");
             ADD_FAILURE() << what << " was accepted";
         } catch (const InputError& e) {
             EXPECT_NE(std::string(e.what()).find("train again"), std::string::npos) << e.what();
@@ -51,7 +51,7 @@ class SubspaceFiles : public testing::Test {
 TEST_F(SubspaceFiles, comeBack) {
     const SubspaceFile written = example(5, 3);
     writeSubspaceFile(path(), written);
-    const SubspaceFile read = readSubspaceFile(path(), "0123abc", "train again");
+    const SubspaceFile read = readSubspaceFile(path(), kStamp, "train again");
     EXPECT_EQ(read.subspaces.contentHash(), written.subspaces.contentHash());
     EXPECT_EQ(read.contentHash, written.contentHash);
     EXPECT_EQ(read.stamp, written.stamp);
@@ -78,33 +78,30 @@ TEST_F(SubspaceFiles, damagedOnesAreRefused) {
     replace(good + std::string(8, '\0'));
     expectRefused("a longer file");
     replace(good);
-    readSubspaceFile(path(), "0123abc", "train again");
+    readSubspaceFile(path(), kStamp, "train again");
     std::filesystem::remove(path());
     expectRefused("no file");
 }
 
+/// And what differs is said.
 TEST_F(SubspaceFiles, foreignOnesAreRefused) {
     writeSubspaceFile(path(), example(5, 3));
-    expectRefused("another scene's", "another");
-}
-
-/// Every setting is part of the name, and of the command that makes the cache anew.
-TEST(SubspaceSettings, settingsTellFilesApart) {
-    const TrainingSettings base;
-    std::vector<TrainingSettings> others(5, base);
-    others[0].paths = 7;
-    others[1].subspaces = 7;
-    others[2].lightPaths = 7;
-    others[3].epochs = 7;
-    others[4].borrow = false;
-    std::set<std::string> names{cacheFile("d", subspaceStamp("a", base), "x")};
-    for (const TrainingSettings& s : others) {
-        EXPECT_TRUE(names.insert(cacheFile("d", subspaceStamp("a", s), "x")).second);
-        EXPECT_NE(trainOptions(s), trainOptions(base));
+    CacheStamp other = kStamp;
+    other.inputs["scene"] = "456def";
+    expectRefused("another scene's", other);
+    other = kStamp;
+    other.inputs["camera"] = "2 Hall";
+    try {
+        readSubspaceFile(path(), other, "train again");
+        ADD_FAILURE();
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("camera (there '1 Cam', here '2 Hall')"),
+                  std::string::npos)
+            << e.what();
+        EXPECT_EQ(std::string(e.what()).find("paths"), std::string::npos) << e.what();
     }
-    EXPECT_EQ(trainOptions(base),
-              "--paths 1000000 --subspaces 1000 --light-paths 2000000 --epochs 20 "
-              "--borrow on");
+    // A tool that is given a file may leave inputs open.
+    EXPECT_EQ(readSubspaceFile(path(), {{{"scene", "0123abc"}}}, "").stamp, kStamp);
 }
 
 /// A good checksum over numbers that do not fit together.

@@ -1,4 +1,4 @@
-// --set effects.NAME=on|off: what is forced on changes no picture, what is forced off is missing
+// --effect NAME=on|off: what is forced on changes no picture, what is forced off is missing
 // and said to be.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -14,19 +14,16 @@
 namespace lacuna::test {
 namespace {
 
-TEST(EffectSwitches, AreTakenOutOfTheAssignments) {
-    std::vector<std::string> assignments = {"effects.hits=off", "light_paths=7",
-                                            "effects.textures=off", "effects.textures=on"};
-    const auto switches = takeEffectSwitches(assignments);
-    EXPECT_EQ(assignments, std::vector<std::string>{"light_paths=7"});
+TEST(EffectSwitches, LaterOnesWin) {
+    const std::vector<std::string> texts = {"hits=off", "textures=off", "textures=on"};
+    const auto switches = parseEffectSwitches(texts);
     ASSERT_EQ(switches.size(), 2u);
     EXPECT_EQ(switches[0].name, "hits");
     EXPECT_FALSE(switches[0].on);
     EXPECT_EQ(switches[1].name, "textures");
-    EXPECT_TRUE(switches[1].on);  // the later one
-    for (const char* wrong : {"effects.hits", "effects.hits=", "effects.hits=maybe"}) {
-        assignments = {wrong};
-        EXPECT_THROW(takeEffectSwitches(assignments), UsageError) << wrong;
+    EXPECT_TRUE(switches[1].on);
+    for (const std::string wrong : {"hits", "hits=", "hits=maybe", "=on", ""}) {
+        EXPECT_THROW(parseEffectSwitches(std::span(&wrong, 1)), UsageError) << wrong;
     }
 }
 
@@ -102,7 +99,7 @@ TEST(EffectSwitches, OffIsGoneAndSaid) {
         for (const Effect& e : effects) {
             if (e.name != name) continue;
             EXPECT_FALSE(e.simulated);
-            EXPECT_TRUE(e.reason.starts_with("off by --set")) << e.reason;
+            EXPECT_TRUE(e.reason.starts_with("off by --effect")) << e.reason;
         }
         // Once more is no news.
         EXPECT_TRUE(forceEffects(off, {scene, lens, &techniques}, effects).empty());
@@ -130,7 +127,7 @@ using RenderEffects = RenderTool;
 TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
     const auto switches = [](std::initializer_list<const char*> names) {
         std::string text;
-        for (const char* name : names) text += std::string(" --set effects.") + name + "=on";
+        for (const char* name : names) text += std::string(" --effect ") + name + "=on";
         return text;
     };
     for (const MethodRow& row : methods()) {
@@ -163,21 +160,23 @@ TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
 }
 
 TEST_F(RenderEffects, ForcedOffThePictureAndItsHeaderLackIt) {
-    const Outcome o = run(quick("bpt", "--json @o.json --set effects.area_lights=off"));
+    const Outcome o = run(quick("bpt", "--json @o.json --effect area_lights=off"));
     ASSERT_EQ(o.exitCode, 0) << o.err;
     EXPECT_NE(o.err.find("warning: "), std::string::npos);
     EXPECT_NE(o.err.find("area_lights is off though the scene calls for it"), std::string::npos);
     for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
     EXPECT_TRUE(json("o.json")["effects"]["reasons"]["area_lights"].get<std::string>().starts_with(
-        "off by --set"));
+        "off by --effect"));
     // Without its connections bpt still has hits and splats.
-    ASSERT_EQ(run(quick("bpt", "--quiet --set effects.connections=off")).exitCode, 0);
+    ASSERT_EQ(run(quick("bpt", "--quiet --effect connections=off")).exitCode, 0);
     double sum = 0.0;
     for (const Rgb& p : readImage(path("out.exr")).pixels) sum += mean(p);
     EXPECT_GT(sum, 0.0);
-    expectFailure(quick("bpt", "--set effects.fog=off"), 2, "effects.fog");
-    expectFailure(quick("bpt", "--set effects.hits=maybe"), 2, "on or off");
-    expectFailure(quick("pt", "--set effects.splats=on"), 2, "t = 1");
+    expectFailure(quick("bpt", "--effect fog=off"), 2, "--effect fog");
+    expectFailure(quick("bpt", "--effect hits=maybe"), 2, "NAME=on or NAME=off");
+    // The spelling of before.
+    expectFailure(quick("bpt", "--set effects.hits=off"), 2, "--effect hits=off");
+    expectFailure(quick("pt", "--effect splats=on"), 2, "t = 1");
 }
 
 }  // namespace

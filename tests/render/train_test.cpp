@@ -2,18 +2,29 @@
 #include <signal.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
 
+#include "libcore/image/image_io.h"
 #include "tests/render/render_tool.h"
 
 namespace lacuna::test {
 namespace {
 
+/// An environment of one radiance.
+void writeSky(const std::string& path, float radiance) {
+    LayeredImage sky(8, 4);
+    for (const char* channel : {"R", "G", "B"}) std::ranges::fill(sky.channel(channel), radiance);
+    writeImage(path, sky);
+}
+
 class TrainTool : public RenderTool {
   protected:
-    static constexpr const char* kSmall = " --paths 5000 --subspaces 50 --light-paths 5000";
+    /// With the shape of the picture, which training looks at.
+    static constexpr const char* kSmall =
+        " --paths 5000 --subspaces 50 --light-paths 5000 --width 24 --height 16";
     static constexpr const char* kSameSmall =
         "--set train.paths=5000 --set train.subspaces=50 --set train.light_paths=5000";
 
@@ -147,6 +158,106 @@ TEST_F(TrainTool, CachesThatAreNotThisScenesExitWith3) {
 
     EXPECT_EQ(run(render() + " --quiet --prepare").exitCode, 0);
     EXPECT_EQ(run(render() + " --quiet").exitCode, 0);
+}
+
+/// A cache is of what training saw: the environment, what is simulated, the camera, its lens, the
+/// longest paths. Each is a case where a foreign one was taken before.
+TEST_F(TrainTool, CachesOfOtherInputsAreRefusedByName) {
+    ASSERT_EQ(run(render() + " --quiet --prepare").exitCode, 0);
+    ASSERT_EQ(run(render() + " --quiet").exitCode, 0);
+    writeSky(path("sky.exr"), 1.0f);
+    const std::pair<const char*, const char*> cases[] = {
+        {" --env @sky.exr", "environment (there 'none', here one)"},
+        {" --effect area_lights=off",
+         "effects (there 'as the scene calls for', here 'area_lights=off')"},
+        {" --aperture 0.01 --focus 2", "lens (there 'pinhole', here 'radius"},
+        {" --max-depth 5", "max depth (there '12', here '5')"},
+        {" --rr-depth 2", "roulette depth (there '3', here '2')"},
+        {" --tolerance 0.01", "tolerance (there '0', here '0.01')"},
+        {" --set train.epochs=3", "epochs (there '20', here '3')"},
+    };
+    for (const auto& [options, difference] : cases) {
+        SCOPED_TRACE(options);
+        const Outcome o = run(render() + options + " --quiet");
+        EXPECT_EQ(o.exitCode, 3) << o.err;
+        EXPECT_NE(o.err.find(difference), std::string::npos) << o.err;
+        EXPECT_NE(o.err.find("lacuna-train"), std::string::npos) << o.err;
+        EXPECT_EQ(run(render() + options + " --quiet --prepare").exitCode, 0);
+        EXPECT_EQ(run(render() + options + " --quiet").exitCode, 0);
+    }
+    // Another content under the same name, another scale of it.
+    ASSERT_EQ(run(render() + " --env @sky.exr --quiet").exitCode, 0);
+    expectFailure(render() + " --env @sky.exr --env-scale 2 --quiet", 3, "environment scale");
+    writeSky(path("sky.exr"), 2.0f);
+    expectFailure(render() + " --env @sky.exr --quiet", 3, "environment (");
+}
+
+/// The empty space and its skeleton depend on the scene alone, not on the camera.
+TEST_F(TrainTool, SkeletonsOfOtherScenesAreRefusedByName) {
+    const std::string skelbpt =
+        "@room.gltf -o @out.exr --method skelbpt --iterations 1 --cache @cache --quiet --set "
+        "candidates=100 --set voxels.resolution=16 --width 24 --height 16";
+    ASSERT_EQ(run(skelbpt + " --prepare").exitCode, 0);
+    for (const char* same : {" --max-depth 5", " --aperture 0.01 --focus 2", " --seed 3"}) {
+        EXPECT_EQ(run(skelbpt + same).exitCode, 0) << same;
+    }
+    for (const auto& [options, difference] :
+         {std::pair(" --effect area_lights=off", "effects (there"),
+          std::pair(" --set voxels.resolution=17", "resolution (there '16', here '17')"),
+          std::pair(" --tolerance 0.01", "tolerance (there '0', here '0.01')")}) {
+        const Outcome o = run(skelbpt + options);
+        EXPECT_EQ(o.exitCode, 3) << options;
+        EXPECT_NE(o.err.find(difference), std::string::npos) << o.err;
+        EXPECT_NE(o.err.find("lacuna-skeletonize"), std::string::npos) << o.err;
+    }
+}
+
+/// The command that the refusal names makes what is missing. A picture's size in pixels is no
+/// input, its shape is.
+TEST_F(TrainTool, TheNamedCommandMakesTheCache) {
+    const std::string small = " --paths 5000 --subspaces 50 --light-paths 5000";
+    const Outcome refused = run(render() + " --max-depth 4 --quiet");
+    ASSERT_EQ(refused.exitCode, 3);
+    const std::size_t begin = refused.err.find("run lacuna-train");
+    ASSERT_NE(begin, std::string::npos) << refused.err;
+    std::string command = refused.err.substr(begin + std::string("run lacuna-train").size());
+    command.resize(command.find_last_not_of(" \n") + 1);
+    for (const char* part : {"--paths 5000", "--max-depth 4", "--width 24", "--height 16"}) {
+        EXPECT_NE(command.find(part), std::string::npos) << command;
+    }
+    EXPECT_EQ(command.find("--epochs"), std::string::npos) << command;  // the default
+    ASSERT_EQ(train(command + " --quiet --cache @cache").exitCode, 0);
+    EXPECT_EQ(run(render() + " --max-depth 4 --quiet").exitCode, 0);
+    std::string twice = render() + " --max-depth 4 --quiet";
+    twice.replace(twice.find("--width 24 --height 16"), 22, "--width 48 --height 32");
+    EXPECT_EQ(run(twice).exitCode, 0);
+    twice.replace(twice.find("--height 32"), 11, "--height 24");
+    expectFailure(twice, 3, "aspect");
+}
+
+/// Training looks through the camera that is rendered.
+TEST_F(TrainTool, TrainingLooksThroughTheChosenCamera) {
+    TinyScene two;
+    nlohmann::json scene = nlohmann::json::parse(two.text());
+    std::size_t node = 0;
+    while (!scene["nodes"][node].contains("camera")) ++node;
+    scene["cameras"][0]["name"] = "front";
+    nlohmann::json other = scene["cameras"][0];
+    other["name"] = "close";
+    scene["cameras"].push_back(other);
+    nlohmann::json place = scene["nodes"][node];
+    place["camera"] = 1;
+    place["translation"] = {0.0, 0.0, 1.0};
+    scene["nodes"].push_back(place);
+    scene["scenes"][0]["nodes"].push_back(scene["nodes"].size() - 1);
+    write("room.gltf", scene.dump());
+    std::set<std::string> hashes;
+    for (const char* camera : {"", " --camera front", " --camera close"}) {
+        const Outcome o = run(render() + camera + " --quiet --prepare --json @out.json");
+        ASSERT_EQ(o.exitCode, 0) << o.err;
+        hashes.insert(json("out.json").at("cache_hashes").at("subspaces"));
+    }
+    EXPECT_EQ(hashes.size(), 2u);  // the first is the default
 }
 
 TEST_F(TrainTool, InterruptWritesNothing) {

@@ -19,7 +19,10 @@ Trained trained(const Scene& scene) {
     settings.lightPaths = 3000;
     settings.epochs = 5;
     Phases phases;
-    return train(scene, settings, pool(), never, phases);
+    const double aspect = 16.0 / 9.0;
+    const TrainingView view =
+        trainingView(scene.makeCamera("", {16, 9}, {}), aspect, WalkLimits{}, settings.paths);
+    return train(scene, view, settings, {}, pool(), never, phases);
 }
 
 /// A room with a block, as large as asked for; one lamp of each radiance.

@@ -14,7 +14,7 @@ const std::atomic<bool> kNever{false};
 
 Voxelized voxelized(const Scene& scene, int resolution, const std::string& domain = {}) {
     Phases phases;
-    return voxelizeScene(scene, {resolution, domain}, pool(), kNever, phases);
+    return voxelizeScene(scene, {resolution, domain}, {}, pool(), kNever, phases);
 }
 
 Skeletonized skeletonOf(const Scene& scene, const Voxelized& voxels) {
