@@ -8,7 +8,7 @@
 //   the light's end. f is the same function of (toEye, toLight) whichever walk asks, so the
 //   asymmetries (refraction's eta^2, shading normals) need no transport mode.
 // * f is taken against the PROJECTED SOLID ANGLE ABOUT THE GEOMETRIC NORMAL:
-//       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach 5.3.2]
+//       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach97 5.3.2]
 //   with f_ns the BSDF about the shading normal, in the radiance convention: refraction carries
 //   (eta_eye / eta_light)^2 of the radiance on the eye's side.
 //   A step of either walk multiplies its throughput by f |to . ng| / pdfW(to).
@@ -18,19 +18,12 @@
 //       pdfW = pmf eta_to^2 |to . ns|,    f_ns = coefficient eta_eye^2,
 //   where eta_to (eta_eye) is the index of refraction on the side `to` (the eye) lies on; for a
 //   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
+// * Directions with |to . ng| or |to . ns| below kMinCosine, or whose geometric and shading sides
+//   disagree, scatter nothing and have density zero: in evaluate and sample alike.
 // * ng is the geometric normal by the winding (front side = outside of a solid); ns lies on the
-//   same side as ng. Nothing is one-sided: back faces reflect like front faces; a solid's inside
-//   is the back.
-// * ng alone says on which side of the surface a direction lies. ns may say otherwise near the
-//   horizon; then plane mirrors bring directions back. With M_n v = v - 2 (v . n) n:
-//       a diffuse base asks ns about toLight alone: it is equally bright from everywhere above ng;
-//       all other lobes see the eye at M_ns toEye where toEye lies below the plane of ns,
-//       and what they send below the plane of ng leaves the surface along M_ng of that.
-//   Mirroring keeps angles: every lobe keeps its energy and delta events their form, the rule is
-//   one function of the pair of directions, and a smooth mirror's picture has no edges. Without
-//   it, silhouettes under a normal map are black.
-// * Directions with |to . ng| or |to . ns| below kMinCosine, and those of light on different sides
-//   of ng and ns, scatter nothing and have density zero: in evaluate and sample alike.
+// same
+//   side as ng. Nothing is one-sided: back faces reflect like front faces; a solid's inside is
+//   the back.
 #pragma once
 
 #include <cmath>
@@ -178,35 +171,27 @@ class Bsdf {
     static float through(const Choice& eye, const Choice& light) {
         return eye.under < light.under ? eye.under : light.under;
     }
-    /// A pair of directions seen from both normals: signed cosines about ns, and about ng.
+    /// A pair of directions seen from both normals; signed cosines about ns.
     struct Pair {
         float eye, light;
-        float eyeG, lightG;
         float adjoint;  ///< |toLight . ns| / |toLight . ng|
         float eyeAbs() const { return eye < 0 ? -eye : eye; }
         float lightAbs() const { return light < 0 ? -light : light; }
-        bool reflects() const { return (eyeG > 0) == (lightG > 0); }
-    };
-    /// What the lobes may see as toLight: it, and its image in the plane of ng where ns puts that
-    /// on the same side. The light's walk picks one with probability pmf.
-    struct LightImages {
-        int count = 1;
-        float cosine[2];  ///< signed, about ns
-        float pmf[2] = {1, 0};
+        bool reflects() const { return (eye > 0) == (light > 0); }
     };
 
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
-    /// False where the pair scatters nothing: grazing, or light on different sides of ng and ns.
+    /// False where the pair scatters nothing: grazing, or on different sides of ng and ns.
     bool makePair(const Vec3& toEye, const Vec3& toLight, Pair& pair) const {
-        pair.eyeG = dot(toEye, ng_);
-        pair.lightG = dot(toLight, ng_);
+        const float eyeG = dot(toEye, ng_);
+        const float lightG = dot(toLight, ng_);
         pair.eye = dot(toEye, ns_);
         pair.light = dot(toLight, ns_);
-        pair.adjoint = pair.light / pair.lightG;
+        pair.adjoint = pair.light / lightG;
         // Bitwise: one branch. NaN fails every comparison.
-        return (std::abs(pair.eyeG) >= kMinCosine) & (std::abs(pair.lightG) >= kMinCosine) &
+        return (std::abs(eyeG) >= kMinCosine) & (std::abs(lightG) >= kMinCosine) &
                (std::abs(pair.eye) >= kMinCosine) & (std::abs(pair.light) >= kMinCosine) &
-               (pair.lightG * pair.light > 0.0f);
+               (eyeG * pair.eye > 0.0f) & (lightG * pair.light > 0.0f);
     }
     /// evaluate() of a diffuse lobe alone, where most of the time goes: inline.
     BsdfEvaluation lambert(const Vec3& toEye, const Vec3& toLight) const {
@@ -215,27 +200,9 @@ class Bsdf {
         if (!makePair(toEye, toLight, pair) || !pair.reflects()) return out;
         out.f = baseColor_ * (diffuseScale_ * pair.adjoint);
         out.pdfWToLight = pair.lightAbs() * kInvPi;
-        out.pdfWToEye = std::abs(pair.eyeG) * kInvPi;
+        out.pdfWToEye = pair.eyeAbs() * kInvPi;
         return out;
     }
-    /// Cosine about one normal of a direction's image in the other normal's plane, from the
-    /// direction's own two cosines.
-    float imageCosine(float about, float mirror) const {
-        return about - 2.0f * dot(ng_, ns_) * mirror;
-    }
-    /// Whether the lobes see toEye where they see its image in the plane of ns too: both lie above
-    /// ng, and the light's walk leaves along either. So wherever toEye is below the plane of ns.
-    bool hasEyeImage(float eye, float eyeG) const { return imageCosine(eyeG, eye) * eyeG > 0.0f; }
-    /// Whether the lobes reach toLight also by way of its image in the plane of ng.
-    bool hasLightImage(float light, float lightG) const {
-        return imageCosine(light, lightG) * lightG > 0.0f;
-    }
-    LightImages lightImages(float light, float lightG) const;
-    void see(Side side, float fromG, Vec3& from, float& cosine, float& uLobe) const;
-    bool leave(Side side, bool image, Vec3& to) const;
-    bool seeDelta(const Vec3& toEye, ScatterEvent event, Pair& pair, float& pmfToEye) const;
-    Vec3 smoothDirection(const Vec3& from, bool front, float cosine, bool transmits) const;
-    BsdfEvaluation evaluateImages(const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
     BsdfEvaluation evaluateLobes(const Vec3& toEye, const Vec3& toLight) const;
     float coatAlbedo(float mu) const;
     float clearcoatAlbedo(float mu) const;
@@ -247,10 +214,6 @@ class Bsdf {
     /// Transmitted over incident index for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
 
-    void addReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
-                       const Choice& light, BsdfEvaluation& out) const;
-    void addTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
-                         BsdfEvaluation& out) const;
     void addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                             const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
     void addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,

@@ -51,11 +51,14 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
     if (!connectable() || !makePair(toEye, toLight, pair)) {
         return out;
     }
-    if (hasEyeImage(pair.eye, pair.eyeG) || hasLightImage(pair.light, pair.lightG)) {
-        return evaluateImages(toEye, toLight, pair);
-    }
     if (!pair.reflects()) {
-        addTransmission(toEye, toLight, pair, out);
+        if (has(kRoughGlass)) {
+            if (has(kThin)) {
+                addRoughThinTransmission(toEye, toLight, pair, out);
+            } else {
+                addRoughRefraction(toEye, toLight, pair, out);
+            }
+        }
         return out;
     }
     const Choice eye = choose(pair.eyeAbs());
@@ -64,85 +67,15 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
         out.f = baseColor_ *
                 (diffuseScale_ * eye.open * eye.under * light.open * light.under * pair.adjoint);
         out.pdfWToLight = eye.diffuse * pair.lightAbs() * kInvPi;
-        out.pdfWToEye = light.diffuse * std::abs(pair.eyeG) * kInvPi;
+        out.pdfWToEye = light.diffuse * pair.eyeAbs() * kInvPi;
     }
-    addReflection(toEye, toLight, pair, eye, light, out);
-    return out;
-}
-
-/// What the lobes may see as toLight, whose sides agree. Each image is picked in proportion to what
-/// it brings a white mirror.
-Bsdf::LightImages Bsdf::lightImages(float light, float lightG) const {
-    LightImages out;
-    out.cosine[0] = light;
-    out.cosine[1] = imageCosine(light, lightG);
-    if (hasLightImage(light, lightG) && std::abs(out.cosine[1]) >= kMinCosine) {
-        out.count = 2;
-        out.pmf[1] = out.cosine[1] / (light + out.cosine[1]);
-        out.pmf[0] = 1.0f - out.pmf[1];
-    }
-    return out;
-}
-
-/// evaluateLobes() where the eye or the light has an image: the sum over the light's images.
-BsdfEvaluation Bsdf::evaluateImages(const Vec3& toEye, const Vec3& toLight,
-                                    const Pair& pair) const {
-    BsdfEvaluation out;
-    const bool below = pair.eye * pair.eyeG < 0.0f;
-    const Vec3 seenEye = below ? mirrored(toEye, ns_, pair.eye) : toEye;
-    const float pmfToEye = hasEyeImage(pair.eye, pair.eyeG) ? 0.5f : 1.0f;
-    const Choice eye = choose(pair.eyeAbs());
-    const LightImages images = lightImages(pair.light, pair.lightG);
-    Pair seen = pair;
-    seen.eye = below ? -pair.eye : pair.eye;
-    for (int i = 0; i < images.count; ++i) {
-        seen.light = images.cosine[i];
-        seen.adjoint = seen.light / pair.lightG;
-        const Vec3 seenLight = i == 0 ? toLight : mirrored(toLight, ng_, pair.lightG);
-        BsdfEvaluation part;
-        if (!pair.reflects()) {
-            addTransmission(seenEye, seenLight, seen, part);
-            part.pdfWToEye *= pmfToEye;
-        } else {
-            const Choice light = choose(seen.lightAbs());
-            addReflection(seenEye, seenLight, seen, eye, light, part);
-            part.pdfWToEye *= pmfToEye;
-            if (has(kDiffuse)) {
-                part.pdfWToEye += light.diffuse * std::abs(pair.eyeG) * kInvPi;
-                if (i == 0) {
-                    part.f += baseColor_ * (diffuseScale_ * eye.open * eye.under * light.open *
-                                            light.under * seen.adjoint);
-                    part.pdfWToLight += eye.diffuse * seen.lightAbs() * kInvPi;
-                }
-            }
-        }
-        out.f += part.f;
-        out.pdfWToLight += part.pdfWToLight;
-        out.pdfWToEye += images.pmf[i] * part.pdfWToEye;
-    }
-    return out;
-}
-
-/// All lobes with a density but the diffuse base.
-inline void Bsdf::addReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
-                                const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
     if (has(kRoughLayers | kRoughGlass)) {
         addRoughReflection(toEye, toLight, pair, eye, light, out);
     }
     if (clearcoatAlpha_ > 0.0f) {
         addRoughClearcoat(toEye, toLight, pair, eye, light, out);
     }
-}
-
-inline void Bsdf::addTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
-                                  BsdfEvaluation& out) const {
-    if (has(kRoughGlass)) {
-        if (has(kThin)) {
-            addRoughThinTransmission(toEye, toLight, pair, out);
-        } else {
-            addRoughRefraction(toEye, toLight, pair, out);
-        }
-    }
+    return out;
 }
 
 void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
@@ -223,37 +156,12 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
     out.pdfWToEye = light.glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
 }
 
-/// Makes of the pair what smooth lobes see of it: the eye's image where it lies below the plane of
-/// ns, and the one of the light's images that the event leads to. False where it leads to none.
-/// pmfToEye: with what probability the light's walk picks these images.
-bool Bsdf::seeDelta(const Vec3& toEye, ScatterEvent event, Pair& pair, float& pmfToEye) const {
-    const bool below = pair.eye * pair.eyeG < 0.0f;
-    const Vec3 seenEye = below ? mirrored(toEye, ns_, pair.eye) : toEye;
-    const Vec3 sent = smoothDirection(seenEye, pair.eyeG > 0.0f, pair.eyeAbs(),
-                                      event == ScatterEvent::DeltaTransmission);
-    const LightImages images = lightImages(pair.light, pair.lightG);
-    const int i = dot(sent, ng_) * pair.lightG > 0.0f ? 0 : 1;
-    if (i == images.count) {
-        return false;
-    }
-    pmfToEye = images.pmf[i] * (hasEyeImage(pair.eye, pair.eyeG) ? 0.5f : 1.0f);
-    pair.eye = below ? -pair.eye : pair.eye;
-    pair.light = images.cosine[i];
-    pair.adjoint = pair.light / pair.lightG;
-    return true;
-}
-
 BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
                                    ScatterEvent event) const {
     BsdfEvaluation out;
     Pair pair;
     if (event == ScatterEvent::Smooth || !makePair(toEye, toLight, pair) ||
         pair.reflects() != (event == ScatterEvent::DeltaReflection)) {
-        return out;
-    }
-    float pmfToEye = 1.0f;
-    if ((hasEyeImage(pair.eye, pair.eyeG) || hasLightImage(pair.light, pair.lightG)) &&
-        !seeDelta(toEye, event, pair, pmfToEye)) {
         return out;
     }
     const bool deltaLayers = has(kLayers) && !has(kRoughLayers);
@@ -275,7 +183,7 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         out.f = baseColor_ *
                 (glass() * transmit * through(eye, light) * etaEye * etaEye * pair.adjoint);
         out.pdfWToLight = eye.glass * transmit * etaLight * etaLight * cl;
-        out.pdfWToEye = pmfToEye * light.glass * transmit * etaEye * etaEye * ce;
+        out.pdfWToEye = light.glass * transmit * etaEye * etaEye * ce;
         return out;
     }
     if (!deltaLayers && !deltaGlass && !deltaClearcoat) {
@@ -302,7 +210,7 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
     }
     out.f = reflectance * pair.adjoint;
     out.pdfWToLight = pmfEye * cl;
-    out.pdfWToEye = pmfToEye * pmfLight * ce;
+    out.pdfWToEye = pmfLight * ce;
     return out;
 }
 

@@ -11,33 +11,6 @@
 
 namespace lacuna {
 
-/// `n` on the side of `from`; cosine = from.n.
-inline Vec3 reflected(Vec3 from, Vec3 n, float cosine) {
-    return n * (2.0f * cosine) - from;
-}
-
-/// The image of v in the plane of n; cosine = v.n.
-inline Vec3 mirrored(Vec3 v, Vec3 n, float cosine) {
-    return v - n * (2.0f * cosine);
-}
-
-/// Refraction; eta = transmitted over incident index. Call it only where Fresnel's reflectance is
-/// < 1.
-inline Vec3 refracted(Vec3 from, Vec3 n, float cosine, float eta) {
-    const float inverse = 1.0f / eta;
-    const float sine2 = std::max(0.0f, 1.0f - cosine * cosine) * inverse * inverse;
-    const float cosineT = std::sqrt(std::max(0.0f, 1.0f - sine2));
-    return n * (cosine * inverse - cosineT) - from * inverse;
-}
-
-/// Where smooth lobes send what they see at `from`, on that side and at that cosine.
-inline Vec3 Bsdf::smoothDirection(const Vec3& from, bool front, float cosine,
-                                  bool transmits) const {
-    const Vec3 n = front ? ns_ : -ns_;
-    if (!transmits) return reflected(from, n, cosine);
-    return has(kThin) ? -from : refracted(from, n, cosine, relativeIndex(front));
-}
-
 /// E(mu) of the dielectric layer's brightest channel with specular factor 1.
 inline float Bsdf::coatAlbedo(float mu) const {
     return table_ ? table_->directional({rowIndex_, rowFraction_}, mu)

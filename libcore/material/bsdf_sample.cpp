@@ -1,9 +1,7 @@
 // Sampling: a lobe by Bsdf::choose, a direction by that lobe, then the evaluation of the whole
-// event. Both walks use the same lobes given what these see of `from`; the roles differ, and the
-// images that a tilted ns makes of either.
+// event. Both walks use the same density of `to` given `from`; only the roles differ.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "libcore/base/sampling.h"
 #include "libcore/material/bsdf.h"
@@ -13,6 +11,20 @@
 
 namespace lacuna {
 namespace {
+
+/// `n` on the side of `from`; cosine = from.n.
+Vec3 reflected(Vec3 from, Vec3 n, float cosine) {
+    return n * (2.0f * cosine) - from;
+}
+
+/// Refraction; eta = transmitted over incident index. Call it only where Fresnel's reflectance is
+/// < 1.
+Vec3 refracted(Vec3 from, Vec3 n, float cosine, float eta) {
+    const float inverse = 1.0f / eta;
+    const float sine2 = std::max(0.0f, 1.0f - cosine * cosine) * inverse * inverse;
+    const float cosineT = std::sqrt(std::max(0.0f, 1.0f - sine2));
+    return n * (cosine * inverse - cosineT) - from * inverse;
+}
 
 /// A visible normal of the GGX lobe about `n`, seen from `from`.
 Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float u2) {
@@ -28,54 +40,14 @@ Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float
 
 }  // namespace
 
-/// Makes of the direction from which a walk comes the one that the lobes see, one of two by uLobe,
-/// which becomes uniform again. cosine: about ns, of either.
-inline void Bsdf::see(Side side, float fromG, Vec3& from, float& cosine, float& uLobe) const {
-    if (side == Side::Eye) {
-        if (cosine * fromG < 0.0f) {
-            from = mirrored(from, ns_, cosine);
-            cosine = -cosine;
-        }
-        return;
-    }
-    const LightImages images = lightImages(cosine, fromG);
-    if (uLobe < images.pmf[0]) {
-        uLobe /= images.pmf[0];
-        return;
-    }
-    from = mirrored(from, ng_, fromG);
-    cosine = images.cosine[1];
-    uLobe = (uLobe - images.pmf[0]) / images.pmf[1];
-}
-
-/// Makes of the direction in which the lobes send a walk the one that leaves the surface. False
-/// where none does.
-inline bool Bsdf::leave(Side side, bool image, Vec3& to) const {
-    const float toS = dot(to, ns_), toG = dot(to, ng_);
-    const bool intoSurface = toS * toG < 0.0f;
-    if (side == Side::Eye) {
-        if (intoSurface) to = mirrored(to, ng_, toG);
-        return true;
-    }
-    if (image && hasEyeImage(toS, toG)) to = mirrored(to, ns_, toS);
-    return !intoSurface;  // no eye is there, nor at its image
-}
-
 std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe, float u1,
                                        float u2) const {
     std::optional<BsdfSample> result;
-    const float fromG = dot(from, ng_);
-    float fromS = dot(from, ns_);
-    if (isBlack() || !((std::abs(fromS) >= kMinCosine) & (std::abs(fromG) >= kMinCosine)) ||
-        (side == Side::Light && fromS * fromG < 0.0f)) {
+    const float fromS = dot(from, ns_);
+    if (isBlack() || !(std::abs(fromS) >= kMinCosine)) {
         return result;
     }
-    // The last of uLobe's 24 bits decides between the eye's images, and nothing else.
-    const bool image = (std::uint32_t(uLobe * 0x1p24f) & 1u) != 0;
-    const bool bent = ns_ != ng_;
-    Vec3 seen = from;
-    if (bent) see(side, fromG, seen, fromS, uLobe);
-    const bool front = fromG > 0.0f;
+    const bool front = fromS > 0.0f;
     const Vec3 n = front ? ns_ : -ns_;
     const float cosine = std::min(1.0f, std::abs(fromS));
     const Choice choice = choose(cosine);
@@ -86,16 +58,14 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
     const bool clearcoat = uLobe < choice.clearcoat;
     const float uBase = uLobe - choice.clearcoat;
     if (!clearcoat && (uBase < choice.diffuse || !has(kLayers | kGlass))) {
-        // A diffuse base is equally bright from everywhere above ng.
-        const Vec3 up = side == Side::Eye ? n : front ? ng_ : -ng_;
-        to = Frame(up).toWorld(cosineHemisphere(u1, u2));
+        to = Frame(n).toWorld(cosineHemisphere(u1, u2));
     } else {
         const bool glass = !clearcoat && has(kGlass) && !(uBase < choice.diffuse + choice.layers);
         const float alpha = clearcoat ? clearcoatAlpha_ : alpha_;
         const bool rough =
             clearcoat ? clearcoatAlpha_ > 0.0f : has(glass ? kRoughGlass : kRoughLayers);
-        const Vec3 h = rough ? visibleNormal(seen, n, cosine, alpha, u1, u2) : n;
-        const float hCosine = rough ? std::min(1.0f, dot(seen, h)) : cosine;
+        const Vec3 h = rough ? visibleNormal(from, n, cosine, alpha, u1, u2) : n;
+        const float hCosine = rough ? std::min(1.0f, dot(from, h)) : cosine;
         if (!(hCosine > 0.0f)) {
             return result;
         }
@@ -107,24 +77,20 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             const float fresnel = fresnelDielectric(hCosine, relativeIndex(front));
             transmits = !(u < fresnel) && fresnel < 1.0f;
         }
-        if (!rough) {
-            to = smoothDirection(seen, front, cosine, transmits);
-            event = transmits ? ScatterEvent::DeltaTransmission : ScatterEvent::DeltaReflection;
+        if (!transmits) {
+            to = reflected(from, h, hCosine);
+        } else if (!has(kThin)) {
+            to = refracted(from, h, hCosine, relativeIndex(front));
+        } else if (rough) {
+            const Vec3 mirrored = reflected(from, h, hCosine);
+            to = mirrored - n * (2.0f * dot(mirrored, n));
         } else {
-            if (!transmits) {
-                to = reflected(seen, h, hCosine);
-            } else if (!has(kThin)) {
-                to = refracted(seen, h, hCosine, relativeIndex(front));
-            } else {
-                const Vec3 through = reflected(seen, h, hCosine);
-                to = mirrored(through, n, dot(through, n));
-            }
-            if (transmits != (dot(to, n) < 0.0f)) {
-                return result;  // reflected below the horizon, or refracted above it
-            }
+            to = -from;
         }
-        if (bent && !leave(side, image, to)) {
-            return result;
+        if (!rough) {
+            event = transmits ? ScatterEvent::DeltaTransmission : ScatterEvent::DeltaReflection;
+        } else if (transmits != (dot(to, n) < 0.0f)) {
+            return result;  // reflected below the horizon, or refracted above it
         }
     }
     BsdfSample& s = result.emplace();

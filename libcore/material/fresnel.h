@@ -35,8 +35,8 @@ inline Rgb schlick(const Rgb& f0, float cosine) {
     return f0 + (Rgb(1.0f) - f0) * schlickWeight(cosine);
 }
 
-/// Cosine-weighted mean 2 int F(mu) mu dmu of fresnelDielectric for n >= 1 [Walsh 1926; Duntley
-/// 1942].
+/// Cosine-weighted mean 2 int F(mu) mu dmu of fresnelDielectric for n >= 1 [Walsh 1926,
+/// Duntley 1942].
 inline double fresnelAverage(double n) {
     const double d = n - 1;
     if (d < 1e-6) {

@@ -1,4 +1,4 @@
-// What holds exactly, or to rounding, for every pair of directions (bsdf.h).
+// What holds exactly, or to rounding, for every pair of directions (numerics.md, "BSDFs").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,27 +40,22 @@ TEST(BsdfContract, SampleEvaluationIsEvaluateBitForBit) {
             ASSERT_EQ(e.pdfWToLight, s->evaluation.pdfWToLight) << c.name;
             ASSERT_EQ(e.pdfWToEye, s->evaluation.pdfWToEye) << c.name;
             ASSERT_NEAR(length(s->to), 1, 1e-6) << c.name;
-            // Rules of bsdf.h: grazing, and the side of light.
+            // Rules of bsdf.h: grazing and side.
             const float g = dot(s->to, c.bsdf.ng()), n = dot(s->to, c.bsdf.ns());
             ASSERT_GE(std::min(std::abs(g), std::abs(n)), kMinCosine);
-            if (c.side == Side::Eye) {
-                ASSERT_GT(g * n, 0) << c.name;
-            }
+            ASSERT_GT(g * n, 0);
         }
     }
     EXPECT_GT(drawn, 50000);
     stabilityCase("bsdf-contract", drawn, "samples, each as evaluated");
 }
 
-// Where the normals agree, f / eta_eye^2 is symmetric, and a density is the same number whichever
-// role its direction plays.
+// f_ns / eta_eye^2 is symmetric, and a density is the same number whichever role its direction
+// plays.
 TEST(BsdfContract, ReciprocityAndSwappedRoles) {
     Random random(12);
     int compared = 0;
     for (const Case& c : grid()) {
-        if (c.tilted) {
-            continue;
-        }
         for (int i = 0; i < 20; ++i) {
             const float u0 = random.next(), u1 = random.next(), u2 = random.next();
             const auto s = c.bsdf.sample(c.side, c.from, u0, u1, u2);
@@ -80,78 +75,15 @@ TEST(BsdfContract, ReciprocityAndSwappedRoles) {
             const auto symmetric = [&](const BsdfEvaluation& e, Vec3 toEye, Vec3 toLight) {
                 const bool transmits = dot(toEye, c.bsdf.ns()) * dot(toLight, c.bsdf.ns()) < 0;
                 const float eta = transmits ? float(c.indexOn(dot(toEye, c.bsdf.ng()) > 0)) : 1.0f;
-                return e.f.r / (eta * eta);
+                return e.f.r * std::abs(dot(toLight, c.bsdf.ng()) / dot(toLight, c.bsdf.ns())) /
+                       (eta * eta);
             };
             expectClose(symmetric(ab, a, b), symmetric(ba, b, a), tolerance + 1e-6f, "f ");
             compared += ab.pdfWToLight > 0;
         }
     }
-    EXPECT_GT(compared, 30000);
+    EXPECT_GT(compared, 50000);
     stabilityCase("bsdf-contract", compared, "pairs of directions, each symmetric");
-}
-
-// What ns != ng makes of values and of the eye walk's density, composed by hand from the same
-// material where both normals are ns: the eye's image, the light's image, the adjoint factor; a
-// diffuse base takes no image.
-TEST(BsdfContract, TiltedNormalsMirrorWhatTheyHide) {
-    Random random(16);
-    int below = 0, twoLights = 0;
-    for (const Case& c : grid()) {
-        // At roughness 0.01, an image's rounding is of the width of the lobe.
-        if (!c.tilted || (c.parameters.roughness > 0 && c.parameters.roughness < 0.05f)) {
-            continue;
-        }
-        const Vec3 ng = c.bsdf.ng(), ns = c.bsdf.ns();
-        const Bsdf flat = c.bsdf.at(ns, ns);
-        const bool lambert = c.parameters.specular == 0 && c.parameters.transmission == 0 &&
-                             c.parameters.metallic == 0 && c.parameters.clearcoat == 0;
-        for (int i = 0; i < 20; ++i) {
-            const float u0 = random.next(), u1 = random.next(), u2 = random.next();
-            const auto s = c.bsdf.sample(c.side, c.from, u0, u1, u2);
-            if (s && isDelta(s->event)) {
-                continue;
-            }
-            const Vec3 to = s ? s->to : uniformDirection(random);
-            const Vec3 eye = c.side == Side::Eye ? c.from : to;
-            const Vec3 light = c.side == Side::Eye ? to : c.from;
-            const BsdfEvaluation e = c.bsdf.evaluate(eye, light);
-            const double lightG = double(dot(light, ng));
-            if (double(dot(light, ns)) * lightG <= 0) {
-                ASSERT_EQ(e.f, Rgb(0.0f)) << c.name;
-                continue;
-            }
-            const bool isBelow = dot(eye, ns) * dot(eye, ng) < 0;
-            const Vec3 seen =
-                isBelow ? Vec3(Vec3d(eye) - Vec3d(ns) * (2 * dot(Vec3d(eye), Vec3d(ns)))) : eye;
-            const Vec3 image = Vec3(Vec3d(light) - Vec3d(ng) * (2 * dot(Vec3d(light), Vec3d(ng))));
-            const bool hasImage = double(dot(image, ns)) * lightG > 0;
-            if (hasImage && !lambert) {
-                // Of a base under coats nothing tells the lobes apart from outside.
-                if (c.parameters.metallic < 1 && c.parameters.transmission < 1) {
-                    continue;
-                }
-            }
-            double f = 0, pdf = 0;
-            for (const Vec3& l : {light, image}) {
-                if (l == image && (!hasImage || lambert)) {
-                    continue;
-                }
-                const BsdfEvaluation part = flat.evaluate(seen, l);
-                f += double(part.f.g) * std::abs(double(dot(l, ns)) / lightG);
-                pdf += double(part.pdfWToLight);
-            }
-            // Ditto, less so.
-            const float tolerance = c.parameters.roughness < 0.2f ? 0.02f : 1e-3f;
-            SCOPED_TRACE(c.name);
-            expectClose(e.f.g, float(f), tolerance, "f ");
-            expectClose(e.pdfWToLight, float(pdf), tolerance, "pdf ");
-            below += isBelow && f > 0;
-            twoLights += hasImage && f > 0;
-        }
-    }
-    EXPECT_GT(below, 1000);
-    EXPECT_GT(twoLights, 200);
-    stabilityCase("bsdf-contract", below + twoLights, "pairs of directions with an image");
 }
 
 // Both walks estimate the same integral over pairs of directions (adjointness): what each

@@ -1,5 +1,5 @@
 // Against the textbook: the published formulas in double, local coordinates, separate from the
-// renderer's arrangement of them; and the delta events as limits of narrow lobes (numerics.md 2).
+// renderer's arrangement of them; and the delta events as limits of narrow lobes (numerics.md, "Deltas").
 #include <gtest/gtest.h>
 
 #include <algorithm>
