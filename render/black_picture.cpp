@@ -167,7 +167,7 @@ std::string cause(const Stage& stage, const MethodRow& method, const ThreadPool&
 
 std::string whyBlack(const Stage& stage, const MethodRow& method, const ThreadPool& pool) {
     return "every pixel is black: " + cause(stage, method, pool) +
-           " (more under 'Why is my picture black?' in README.md)";
+           " (more under 'Why is my picture black?' in render/README.md)";
 }
 
 }  // namespace lacuna

@@ -20,10 +20,10 @@
 //   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
 // * Directions with |to . ng| or |to . ns| below kMinCosine, or whose geometric and shading sides
 //   disagree, scatter nothing and have density zero: in evaluate and sample alike.
-// * ng is the geometric normal by the winding (front side = outside of a solid); ns lies on the
-// same
-//   side as ng. Nothing is one-sided: back faces reflect like front faces; a solid's inside is
-//   the back.
+// * ng is the geometric normal by the winding (front side = outside of a solid).
+//   ns lies on the same side as ng.
+//   Nothing is one-sided: back faces reflect like front faces; a solid's inside
+//   is the back.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Values and densities. With e = toEye, l = toLight, c = |cos| about ns, S(c) = c sqrt(1 + a^2
-// tan^2):
+// Values and densities. With e = toEye, l = toLight, c = |cos| about ns,
+// S(c) = c sqrt(1 + a^2 tan^2):
 //
 //     G1 / c = 2 / (c + S),   G2 / (c_e c_l) = 2 / (S_e c_l + S_l c_e)        (microfacet.h)
 //     K = D(h) |dw_h / dw_to| |v.h| without the index of the side `to` lies on:

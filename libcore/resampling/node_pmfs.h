@@ -7,8 +7,8 @@
 //   pmfs      over L_s, per node and s:  V ∝ w_n V(n, y) [eq 6],  U ∝ w_n [eq 7],
 //             C = 1 / |L_s| [eq 8]
 //             combined by the maximum heuristic, one of them chosen evenly            [4.3]
-//   accepted  nodes that more than `acceptance` times the mean of all nodes' eye vertices are
-//   mapped
+//   accepted  nodes that more than `acceptance` times the mean of all
+//             nodes' eye vertices are mapped
 //             to [4.4]; the others have no pmfs. Counted by eye subpaths of their own over the
 //             whole film before the first iteration, not by those of earlier iterations: a crop
 //             sees the same nodes, and the first iteration has pmfs as well

@@ -25,8 +25,8 @@
 // subspaces borrow as well, from the 4 nearest, as they have shares of m^0. kappa is the one of a
 // few under which the start has the lowest held-out loss. In the optimisation the virtual paths are
 // worth as much as the column's own on average:
-//     + sum_j lambda_j sum_i m_ij^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij) at the
-//     start.
+//     + sum_j lambda_j sum_i m_ij^2 / E_ij,   lambda_j = kappa / n_j sum_i E_ij (-d_ij)
+//     at the start.
 // This is least at E_j = m_j, convex, and one more -d_ij in the step above.
 #pragma once
 

@@ -1,10 +1,10 @@
 // --tolerance E: what is there, but adds provably no more than E, is left out as well.
 //
 //   layers, lobes  a clearcoat, a dielectric layer, metal or glass in a mixture, each where its
-//   factor
-//                  w is at most E (textures can only lower it). What a surface scatters of the
-//                  light from any one direction changes by at most w of that light: the part itself
-//                  holds no more, and what is under it or beside it gets no more than that back.
+//                  factor w is at most E (textures can only lower it). What a surface scatters of
+//                  the light from any one direction changes by at most w of that light: the part
+//                  itself holds no more, and what is under it or beside it gets no more than that
+//                  back.
 //   lights         the weakest ones, as long as all of them together emit, in each channel, at most
 //                  E of what those that stay do. Their powers are taken from above, the others'
 //                  from below (a texture's emission: at most the factor, at least none;

@@ -50,7 +50,7 @@ class RenderBlack : public RenderTool {
         EXPECT_TRUE(isPictureBlack());
         EXPECT_NE(warning.find("every pixel is black: "), std::string::npos) << warning;
         EXPECT_NE(warning.find(part), std::string::npos) << warning;
-        EXPECT_NE(warning.find("'Why is my picture black?' in README.md"), std::string::npos)
+        EXPECT_NE(warning.find("'Why is my picture black?' in render/README.md"), std::string::npos)
             << warning;
         for (const char* other :
              {"black, which is no light", "joins surfaces with the camera alone",
