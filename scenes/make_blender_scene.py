@@ -224,7 +224,7 @@ def main():
     arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     out = Path(arguments[0]) if arguments else Path(__file__).with_name("blender-still-life.glb")
     build()
-    # ../README.md, "From Blender". COMPAT is what the exporter's panel calls Unitless.
+    # ../render/README.md, "From Blender". COMPAT is what the exporter's panel calls Unitless.
     bpy.ops.export_scene.gltf(filepath=str(out.resolve()), export_format="GLB", export_cameras=True, export_lights=True,
                               export_extras=True, convert_lighting_mode="COMPAT", export_tangents=True,
                               export_original_specular=True, export_animations=False)
