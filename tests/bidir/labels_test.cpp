@@ -81,11 +81,11 @@ TEST(Labels, areThoseOfAWalkThatCameThisWay) {
     std::vector<PathVertex> lightPath, eyePath;
     FullPath path;
     RayTally tally;
-    for (std::uint64_t n = 0; n < 40; ++n) {
+    for (std::uint64_t n = 0; n < 400; ++n) {
         Rng rng(61, 0, StreamKind::User, n);
         walker.traceLight(rng, tally, lightPath);
         // Every other one by way of the lamp, from where it may go on.
-        walker.traceEye({1.6f * float(n), n % 2 == 0 ? 10.0f : 24.0f}, rng, tally, eyePath);
+        walker.traceEye({0.16f * float(n), n % 2 == 0 ? 10.0f : 24.0f}, rng, tally, eyePath);
         counts[kHit].labelWalk(lightPath);
         counts[kHit].labelWalk(eyePath);
         const std::span<const PathVertex> lights(lightPath), eyes(eyePath);

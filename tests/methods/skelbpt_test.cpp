@@ -12,6 +12,7 @@
 #include "libcore/skeleton/node_map.h"
 #include "tests/fixtures/beliefs.h"
 #include "tests/fixtures/finite_space.h"
+#include "tests/fixtures/fixed_eye_path.h"
 #include "tests/fixtures/test_rows.h"
 
 namespace lacuna::test {
@@ -56,6 +57,51 @@ double oftenness(double samples, int subpaths) {
 // it owns (that sum is Z), and the selector takes each of k that own anything alike. So what a
 // vertex is believed to be picked is m k / Z = m k / sum m of what it is: alike for all that one
 // pmf owns, and k on average over the k pmfs.
+void expectThePicks(const std::vector<Belief>& found, std::size_t leastOwners) {
+    std::map<std::uint32_t, double> ratio;  // by the pmf that owns the vertex
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_GT(found[i].picked, 0.0) << i;
+        const int subpaths = int(found.size());
+        const double r =
+            oftenness(found[i].believed, subpaths) / oftenness(found[i].picked, subpaths);
+        const auto [owned, first] = ratio.try_emplace(found[i].label, r);
+        EXPECT_NEAR(r / owned->second, 1.0, 1e-6) << i << " of pmf " << found[i].label;
+    }
+    EXPECT_GE(ratio.size(), leastOwners);
+    double sum = 0.0;
+    for (const auto& [owner, r] : ratio) sum += r;
+    EXPECT_NEAR(sum / double(ratio.size()), 1.0, 1e-6);
+}
+
+/// An eye path that comes to a wall at z = 0 from above, and then to the same wall from below.
+/// Nothing is in anything's way.
+class WallFromBothSides final : public FixedEyePath {
+  public:
+    WallFromBothSides() {
+        Bsdf::Parameters p;
+        p.baseColor = Rgb(0.5f);
+        addLens({0, 0, 2});
+        addSurface({0, 0, -0.2f}, p);
+        addSurface({1, 0, 0.2f}, p);
+    }
+    float reach(const Vec3&, const Vec3&, RayTally&) const override {
+        return std::numeric_limits<float>::infinity();
+    }
+};
+
+/// Five layers of voxels along z, the middle one the wall; a node above, a node below.
+std::shared_ptr<const Skeleton> nodeOnEitherSide() {
+    auto skeleton = std::make_shared<Skeleton>();
+    skeleton->nodes = {{{0, 0, 1.5}, 1}, {{0, 0, -1.5}, 1}};
+    const VoxelShape shape{{3, 3, 5}, {-1.5, -1.5, -2.5}, 1};
+    std::vector<std::uint16_t> entries;
+    for (const std::uint16_t layer : {1, 1, NodeMap::kSolid | 1, 0, 0}) {
+        entries.insert(entries.end(), 9, layer);
+    }
+    skeleton->map = NodeMap(shape, std::move(entries));
+    return skeleton;
+}
+
 TEST(SkeletonBeliefs, areThePicksButForTheEvenChoice) {
     constexpr int kSubpaths = 6;
     const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
@@ -82,18 +128,42 @@ TEST(SkeletonBeliefs, areThePicksButForTheEvenChoice) {
     const auto found =
         beliefs(*method, density, {eye.data(), 2}, kSubpaths, 1.0,
                 [](const PathVertex& y) { return std::size_t(std::lround(y.position.y / 0.4f)); });
-    std::map<std::uint32_t, double> ratio;  // by the pmf that owns the vertex
-    for (std::size_t i = 0; i < kSubpaths; ++i) {
-        ASSERT_GT(found[i].picked, 0.0) << i;
-        const double r =
-            oftenness(found[i].believed, kSubpaths) / oftenness(found[i].picked, kSubpaths);
-        const auto [owned, first] = ratio.try_emplace(found[i].label, r);
-        EXPECT_NEAR(r / owned->second, 1.0, 1e-6) << i << " of pmf " << found[i].label;
+    expectThePicks(found, 2);
+}
+
+// The two nodes want other light vertices: what one is next to is far from the other.
+TEST(SkeletonBeliefs, areThoseOfThePathsSide) {
+    constexpr int kSubpaths = 6;
+    const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
+        y.position = {0.3f, 0.4f * float(i), i % 2 == 0 ? 1.5f : -1.5f};
+        y.throughput = Rgb(1.0f);
+    });
+    const WallFromBothSides space;
+    const ThreadPool threads(1);
+    const MethodRow& row = findMethod("skelbpt");
+    const std::vector<std::string> settings = {"candidates=6", "node_acceptance=0"};
+    IterationStatistics statistics;
+    IterationContext context{space, threads, 41, 1000, statistics};
+    const auto method = row.create(resolve(row, settings));
+    give(*method, nodeOnEitherSide());
+    const ConnectionDensity& density = settle(*method, pool, context, 2);
+
+    // Without labels, when the node is looked up on the way, and with those of a walk.
+    std::vector<PathVertex> eye(space.eye().begin(), space.eye().end());
+    for (const bool labelled : {false, true}) {
+        if (labelled) density.labelWalk(eye);
+        std::vector<Belief> found[2];
+        for (const std::size_t t : {2, 3}) {
+            found[t - 2] = beliefs(
+                *method, density, Subpath(eye).first(t), kSubpaths, 1.0,
+                [](const PathVertex& y) { return std::size_t(std::lround(y.position.y / 0.4f)); });
+            SCOPED_TRACE(t);
+            expectThePicks(found[t - 2], 1);
+        }
+        // The nodes disagree: believing the other one's could not pass.
+        EXPECT_GT(found[0][0].picked, 1.5 * found[0][1].picked);
+        EXPECT_GT(found[1][1].picked, 1.5 * found[1][0].picked);
     }
-    EXPECT_GE(ratio.size(), 2u);
-    double sum = 0.0;
-    for (const auto& [owner, r] : ratio) sum += r;
-    EXPECT_NEAR(sum / double(ratio.size()), 1.0, 1e-6);
 }
 
 }  // namespace
