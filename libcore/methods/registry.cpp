@@ -59,8 +59,10 @@ std::vector<Option> allOptions(const MethodRow& row, std::vector<Option> own) {
         }
     }
     if (!row.paper.empty()) {
-        Option preset{kPreset, Option::Kind::Choice,
-                      "defaults that measured best, or the paper's; single parameters override it"};
+        Option preset{
+            kPreset, Option::Kind::Choice,
+            "our defaults, which measured best, or the paper's values; parameters that are given "
+            "override it"};
         preset.choices = {"measured", "paper"};
         preset.standard = "measured";
         all.push_back(std::move(preset));

@@ -209,8 +209,8 @@ MethodRow skelbptRow() {
     table.include("", &Options::picks, pickOptions(Options{}.picks));
     table.real(
         "node_acceptance", [](auto& o) -> auto& { return o.nodes.acceptance; }, 0, 1e6, "",
-        "nodes with at most so many times the mean number of eye vertices get no "
-        "distributions");
+        "a node has distributions where more than so many times the mean number of eye "
+        "vertices belong to it");
     table.choice<Set>(
         "distributions", [](auto& o) -> auto& { return o.nodes.set; },
         {{"vuc", Set::Vuc}, {"uc", Set::Uc}, {"vc", Set::Vc}, {"c", Set::C}},

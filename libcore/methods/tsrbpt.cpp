@@ -373,11 +373,11 @@ MethodRow tsrbptRow() {
     table.include("", &Options::picks, pickOptions(Options{}.picks));
     table.integer("second_candidates", &Options::clusters, 1, 1e6, "clusters", "of a cut, M2");
     addCachePoints(table, &Options::cacheDensity, &Options::cachePoints);
-    table.choice<Points>("points", &Options::points,
-                         {{"even", Points::Even}, {"weighted", Points::Weighted}},
-                         "how the cache points around an eye vertex share its picks: evenly, each "
-                         "with its own pmf; or together with one that picks evenly from the pool, "
-                         "by what the weights believe of each (the paper)");
+    table.choice<Points>(
+        "points", &Options::points, {{"even", Points::Even}, {"weighted", Points::Weighted}},
+        "how the cache points around an eye vertex share its picks: each alike; or by "
+        "what the weights believe of each, together with one more that picks "
+        "evenly from the pool (the paper)");
     table.real("defensive", &Options::defensive, 0, 0.99, "share",
                "of the second stage that goes by power and distance alone; 0 only with "
                "points=weighted");

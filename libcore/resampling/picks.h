@@ -45,8 +45,8 @@ template <class Record, class Field>
 void addEyeShare(OptionTable<Record>& table, Field field) {
     table.real(
         "eye_share", field, 0, 1, "share",
-        "of the variance of connections, what all picks at one eye vertex have in common, as "
-        "the weights believe of all but the first eye vertex; 0: nothing (the paper)");
+        "of the variance that all picks at one eye vertex have in common; the weights believe it "
+        "of all but the first eye vertex; 0: none (the paper)");
 }
 
 /// n r where picks differ in their light subpath alone: a share of a connection's variance is that

@@ -23,11 +23,11 @@ inline OptionTable<TrainingSettings> trainingOptions() {
         .integer("subspaces", &TrainingSettings::subspaces, 1, 4000, "subspaces",
                  "of light and of eye subpaths")
         .integer("light_paths", &TrainingSettings::lightPaths, 1, 1e9, "light subpaths", "for Q")
-        .integer("epochs", &TrainingSettings::epochs, 0, 10'000, "epochs",
-                 "passes over the paths to optimise Gamma")
+        .integer("epochs", &TrainingSettings::epochs, 0, 10'000, "passes",
+                 "over the paths to optimise Gamma")
         .onOff("borrow", &TrainingSettings::borrow,
-               "columns of Gamma that few paths speak for borrow from those around them; off, with "
-               "epochs=0: the full-contribution Gamma as it was counted (the paper's Gamma^full)");
+               "columns of Gamma that few paths speak for borrow from their neighbours; off, with "
+               "epochs=0: Gamma^full as the paper counts it");
 }
 
 }  // namespace lacuna
