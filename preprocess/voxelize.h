@@ -15,7 +15,7 @@ VoxelBox parseDomain(const std::string& text);
 
 struct Voxelized {
     VoxelFile file;
-    Parts parts;
+    PartCounts parts;
 };
 
 /// What voxels and the skeleton of them are made of.

@@ -99,7 +99,8 @@ VoxelBox defaultDomain(const Reach& reach, const VoxelBox& scene) {
     return box;
 }
 
-Parts keepReachedParts(const Reach& reach, const VoxelShape& shape, std::span<VoxelState> state) {
+PartCounts keepReachedParts(const Reach& reach, const VoxelShape& shape,
+                            std::span<VoxelState> state) {
     const Components parts(shape, state, {}, Connectivity::Corners);
     std::vector<bool> reached(parts.count(), reach.camera.empty() && reach.lamps.empty());
     for (const auto* segments : {&reach.camera, &reach.lamps}) {
@@ -112,7 +113,7 @@ Parts keepReachedParts(const Reach& reach, const VoxelShape& shape, std::span<Vo
             }
         }
     }
-    Parts result{parts.count(), 0};
+    PartCounts result{parts.count(), 0};
     for (const bool r : reached) result.reached += r ? 1 : 0;
     for (std::size_t i = 0; i < state.size(); ++i) {
         if (state[i] == VoxelState::Solid) continue;

@@ -31,9 +31,10 @@ VoxelBox defaultDomain(const Reach& reach, const VoxelBox& scene);
 /// Turns the empty voxels of parts (26-connected) that no segment passes through from Empty into
 /// Unreached. Without any segment all parts count as reached. Returns how many parts there are and
 /// how many are reached.
-struct Parts {
+struct PartCounts {
     std::size_t total = 0, reached = 0;
 };
-Parts keepReachedParts(const Reach& reach, const VoxelShape& shape, std::span<VoxelState> state);
+PartCounts keepReachedParts(const Reach& reach, const VoxelShape& shape,
+                            std::span<VoxelState> state);
 
 }  // namespace lacuna

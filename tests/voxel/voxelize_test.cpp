@@ -149,7 +149,7 @@ TEST(Domain, aLargeGroundDoesNotEatTheResolution) {
     const VoxelShape shape = latticeOver(domain, 48);
     std::vector<VoxelState> state(shape.count(), VoxelState::Empty);
     voxelize(triangles, shape, state, pool, kNever);
-    const Parts parts = keepReachedParts(reach, shape, state);
+    const PartCounts parts = keepReachedParts(reach, shape, state);
     EXPECT_GE(parts.total, 2u);
     EXPECT_EQ(parts.reached, 1u);
 }
