@@ -62,6 +62,12 @@ FAULTS = [
           {"cache": "SubspaceFiles.damagedOnesAreRefused:Cache.damagedFilesAreRefused"}),
 
     # Materials
+    Fault("sample-tilted-near-the-normal", "samples of a view 3 to 8 degrees from the normal are tilted by up to 1e-2",
+          "libcore/material/bsdf_sample.cpp",
+          "s.to = renormalize(to);",
+          "const float fromN = std::abs(dot(from, ns_));\n"
+          "    s.to = renormalize(to + from * (fromN > 0.99f && fromN < 0.999f ? 0.01f : 0.0f));",
+          {"material": "BsdfSampling.SamplesFollowTheDensity"}),
     Fault("no-adjoint", "no adjoint factor at shading normals",
           "libcore/material/bsdf.h",
           "pair.adjoint = pair.light / lightG;", "pair.adjoint = 1.0f;",
