@@ -8,34 +8,32 @@ namespace lacuna {
 
 namespace {
 
-/// x_0 .. x_{s-1} from the light subpath, as its walk left them.
+/// x_i as its walk left it, but for the densities, which walks have the other way round.
+void fillVertex(FullPath& path, std::size_t i, const PathVertex& v) {
+    path.vertex[i] = &v;
+    path.survival[i] = v.survival;
+    path.delta[i] = isDelta(v.event);
+    path.scatter[i] = v.scatter;
+    path.asLight[i] = v.asLight;
+    path.asEye[i] = v.asEye;
+}
+
+/// x_0 .. x_{s-1} from the light subpath.
 void fillLightPart(FullPath& path, Subpath light) {
     for (std::size_t i = 0; i < light.size(); ++i) {
-        const PathVertex& y = light[i];
-        path.vertex[i] = &y;
-        path.lightPdfA[i] = y.pdfA;
-        path.eyePdfA[i] = y.pdfReverseA;
-        path.survival[i] = y.survival;
-        path.delta[i] = isDelta(y.event);
-        path.scatter[i] = y.scatter;
-        path.asLight[i] = y.asLight;
-        path.asEye[i] = y.asEye;
+        fillVertex(path, i, light[i]);
+        path.lightPdfA[i] = light[i].pdfA;
+        path.eyePdfA[i] = light[i].pdfReverseA;
     }
 }
 
 /// x_k .. x_{k-t+1} from the eye subpath.
 void fillEyePart(FullPath& path, Subpath eye) {
     for (std::size_t j = 0; j < eye.size(); ++j) {
-        const PathVertex& z = eye[j];
         const std::size_t i = std::size_t(path.edges) - j;
-        path.vertex[i] = &z;
-        path.lightPdfA[i] = z.pdfReverseA;
-        path.eyePdfA[i] = z.pdfA;
-        path.survival[i] = z.survival;
-        path.delta[i] = isDelta(z.event);
-        path.scatter[i] = z.scatter;
-        path.asLight[i] = z.asLight;
-        path.asEye[i] = z.asEye;
+        fillVertex(path, i, eye[j]);
+        path.lightPdfA[i] = eye[j].pdfReverseA;
+        path.eyePdfA[i] = eye[j].pdfA;
     }
 }
 

@@ -19,17 +19,15 @@ namespace lacuna {
 
 namespace {
 
-enum class Weights { Credit, Aware };
-
 struct Options {
     ImportanceRecords::Options records;
     PickOptions picks = {.connections = 1, .first = 8};
-    Weights weights = Weights::Aware;
+    Believed weights = Believed::Aware;
     Lengths lengths = Lengths::Share;
     double eyeShare = 0.25;
     bool nextEvent = false;
 
-    bool aware() const { return weights == Weights::Aware; }
+    bool aware() const { return weights == Believed::Aware; }
     double credit() const { return double(records.subpaths); }
 };
 
@@ -120,10 +118,7 @@ MethodRow icbptRow() {
                "that leave importance records");
     table.integer("records", records(&Records::records), 1, 16, "records",
                   "that serve an eye vertex");
-    table.choice<Weights>("weights", &Options::weights,
-                          {{"credit", Weights::Credit}, {"aware", Weights::Aware}},
-                          "what the weights believe: M samples per connection (the paper), or the "
-                          "resampling");
+    addBelieved(table, &Options::weights);
     addLengths(table, &Options::lengths);
     addEyeShare(table, &Options::eyeShare);
     addNextEvent(table, &Options::nextEvent);

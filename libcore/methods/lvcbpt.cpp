@@ -30,18 +30,13 @@ class LightVertexCache final : public Method {
     PoolRequest pool() const override { return {subpaths_}; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
-        // Any positive Vbar is unbiased: one vertex stands in where the warm-up saw none.
-        density_ =
-            PicksDensity(picks_, nextEvent_, double(subpaths_) / std::max(expectedVertices_, 1.0));
+        density_ = PicksDensity(picks_, nextEvent_, double(subpaths_) / expected_.value());
         return density_;
     }
 
     void prepare(const LightPool& pool, IterationContext&) override {
         pool_ = &pool;
-        candidates_.clear();
-        for (const LightPool::Entry& e : pool.connectable()) {
-            if (!nextEvent_ || e.count > 1) candidates_.push_back(e);
-        }
+        takePickable(pool, !nextEvent_, candidates_);
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
@@ -57,7 +52,7 @@ class LightVertexCache final : public Method {
 
     void observe(const LightPool&, IterationContext&) override {
         if (warm_) return;
-        expectedVertices_ = double(candidates_.size());
+        expected_.add(candidates_.size());
         warm_ = true;
     }
 
@@ -66,7 +61,7 @@ class LightVertexCache final : public Method {
     Picks picks_;
     bool nextEvent_;
     bool warm_ = false;
-    double expectedVertices_ = 0.0;
+    ExpectedVertices expected_;
     PicksDensity density_;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;

@@ -23,17 +23,15 @@ namespace lacuna {
 
 namespace {
 
-enum class Weights { Credit, Aware };
-
 struct Options {
     std::uint64_t subpaths = 1024;  ///< M
     PickOptions picks = {.connections = 1, .first = 8};
     NodePmfs::Options nodes;
-    Weights weights = Weights::Aware;
+    Believed weights = Believed::Aware;
     Lengths lengths = Lengths::Share;
     bool nextEvent = false;
 
-    bool aware() const { return weights == Weights::Aware; }
+    bool aware() const { return weights == Believed::Aware; }
     double credit() const { return double(subpaths); }
 };
 
@@ -215,10 +213,7 @@ MethodRow skelbptRow() {
         "distributions", [](auto& o) -> auto& { return o.nodes.set; },
         {{"vuc", Set::Vuc}, {"uc", Set::Uc}, {"vc", Set::Vc}, {"c", Set::C}},
         "which of visible (v), unoccluded (u) and uniform (c) there are at a node");
-    table.choice<Weights>("weights", &Options::weights,
-                          {{"credit", Weights::Credit}, {"aware", Weights::Aware}},
-                          "what the weights believe: M samples per connection (the paper), or the "
-                          "resampling");
+    addBelieved(table, &Options::weights);
     addLengths(table, &Options::lengths);
     addNextEvent(table, &Options::nextEvent);
     return methodRow(

@@ -142,18 +142,14 @@ class TwoStageResampling final : public Method {
     bool learns() const override { return true; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
-        const double expected = pools_ ? double(vertices_) / double(pools_) : 0.0;
-        density_.freeze(points_, q_, std::max(expected, 1.0));
+        density_.freeze(points_, q_, expected_.value());
         if (options_.weights == Weights::Plain) return plain_;
         return density_;
     }
 
     void prepare(const LightPool& pool, IterationContext& context) override {
         pool_ = &pool;
-        candidates_.clear();
-        for (const LightPool::Entry& e : pool.connectable()) {
-            if (!options_.nextEvent || e.count > 1) candidates_.push_back(e);
-        }
+        takePickable(pool, !options_.nextEvent, candidates_);
         {
             PhaseTimer timer(context.statistics, "light tree");
             tree_ = LightTree(pool, candidates_, context.threads);
@@ -210,8 +206,7 @@ class TwoStageResampling final : public Method {
     }
 
     void observe(const LightPool&, IterationContext& context) override {
-        vertices_ += candidates_.size();
-        ++pools_;
+        expected_.add(candidates_.size());
         PhaseTimer timer(context.statistics, "cache points");
         CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
         earlier_.add(std::move(points_), std::move(sums_));
@@ -354,7 +349,7 @@ class TwoStageResampling final : public Method {
     CachePoints points_;     // of this iteration
     std::vector<double> q_;  // Q1, Q2 by point, from earlier iterations
     EarlierValues earlier_;
-    std::uint64_t vertices_ = 0, pools_ = 0;
+    ExpectedVertices expected_;
     std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;

@@ -70,18 +70,13 @@ class CacheResampling final : public Method {
 
     const ConnectionDensity& freeze(std::uint32_t) override {
         if (!aware()) return plain_;
-        const double expected = pools_ ? double(vertices_) / double(pools_) : 0.0;
-        // Any positive number is unbiased: one vertex stands in where none was seen.
-        density_.freeze(points_, q_, std::max(expected, 1.0));
+        density_.freeze(points_, q_, expected_.value());
         return density_;
     }
 
     void prepare(const LightPool& pool, IterationContext& context) override {
         pool_ = &pool;
-        candidates_.clear();
-        for (const LightPool::Entry& e : pool.connectable()) {
-            if (!options_.nextEvent || e.count > 1) candidates_.push_back(e);
-        }
+        takePickable(pool, !options_.nextEvent, candidates_);
         flow_.assign(points_.size(), 0.0);
         std::vector<CachePmfs::Builder> rows((points_.size() + kPointsPerChunk - 1) /
                                              kPointsPerChunk);
@@ -135,8 +130,7 @@ class CacheResampling final : public Method {
     }
 
     void observe(const LightPool&, IterationContext& context) override {
-        vertices_ += candidates_.size();
-        ++pools_;
+        expected_.add(candidates_.size());
         PhaseTimer timer(context.statistics, "cache points");
         CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
         if (aware()) {
@@ -176,7 +170,7 @@ class CacheResampling final : public Method {
     CachePoints points_;     // of this iteration
     std::vector<double> q_;  // by point, from earlier iterations
     EarlierValues earlier_;
-    std::uint64_t vertices_ = 0, pools_ = 0;
+    ExpectedVertices expected_;
     std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;

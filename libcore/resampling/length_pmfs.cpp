@@ -7,8 +7,7 @@ namespace lacuna {
 
 void VerticesByLength::assign(const LightPool& pool, bool direct) {
     pool_ = &pool;
-    entries_.assign(pool.connectable().begin(), pool.connectable().end());
-    if (!direct) std::erase_if(entries_, [](const auto& e) { return e.count == 1; });
+    takePickable(pool, direct, entries_);
     std::stable_sort(entries_.begin(), entries_.end(),
                      [](const auto& a, const auto& b) { return a.count < b.count; });
     const std::size_t longest = entries_.empty() ? 0 : entries_.back().count;

@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-/// The connectable vertices of a pool, those of one s together.
+/// What picks choose from in a pool (takePickable), those of one s together.
 class VerticesByLength {
   public:
     /// `direct`: with those on the lights themselves (s = 1).
@@ -94,6 +94,20 @@ void addLengths(OptionTable<Record>& table, Field field) {
         "lengths", field, {{"every", Lengths::Every}, {"share", Lengths::Share}},
         "for which s a vertex is picked: every one (the paper), or with a probability that follows "
         "the share of light subpaths that are so long");
+}
+
+/// What the weights believe of a connection.
+enum class Believed {
+    Credit,  ///< M samples: the papers' constant
+    Aware,   ///< what the resampling makes of it
+};
+
+/// `weights`: which of the two.
+template <class Record, class Field>
+void addBelieved(OptionTable<Record>& table, Field field) {
+    table.template choice<Believed>(
+        "weights", field, {{"credit", Believed::Credit}, {"aware", Believed::Aware}},
+        "what the weights believe: M samples per connection (the paper), or the resampling");
 }
 
 /// One pmf out of several over the same outcomes, by the maximum heuristic [Veach97 9.2.3]

@@ -22,6 +22,11 @@ double withEyeShare(double samples, int order, double share) {
     return samples / (share * samples + (1.0 - share));
 }
 
+void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Entry>& entries) {
+    entries.assign(pool.connectable().begin(), pool.connectable().end());
+    if (!direct) std::erase_if(entries, [](const auto& e) { return e.count == 1; });
+}
+
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {
     PathVertex& y0 = sink.newVertex();
     if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0, 0});

@@ -2,6 +2,10 @@
 // have in common. (theory.md, "Picks")
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "libcore/base/options.h"
 #include "libcore/bidir/method.h"
 
@@ -54,6 +58,26 @@ void addEyeShare(OptionTable<Record>& table, Field field) {
 /// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at the
 /// first eye vertex (Connection::order), which the pixel determines. (theory.md, "Eye subpaths")
 double withEyeShare(double samples, int order, double share);
+
+/// Replaces `entries` by what picks choose from: the pool's connectable vertices, with those on the
+/// lights themselves (s = 1) where `direct`.
+void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Entry>& entries);
+
+/// Mean number of vertices that pools had to pick from. At least one: any positive number is
+/// unbiased, and one stands in where none was seen.
+class ExpectedVertices {
+  public:
+    void add(std::size_t vertices) {
+        vertices_ += vertices;
+        ++pools_;
+    }
+    double value() const {
+        return pools_ ? std::max(1.0, double(vertices_) / double(pools_)) : 1.0;
+    }
+
+  private:
+    std::uint64_t vertices_ = 0, pools_ = 0;
+};
 
 /// Proposes one fresh light point: next event (s = 1, r = 1).
 void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);

@@ -25,7 +25,6 @@ class Camera {
     Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens);
 
     Film film() const { return film_; }
-    Lens lens() const { return lens_; }
     /// The same camera with another film: the vertical angle stays.
     Camera withFilm(Film film) const;
     Vec3 forward() const { return forward_; }
