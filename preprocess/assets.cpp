@@ -8,6 +8,14 @@
 
 namespace lacuna {
 
+std::string AssetRequest::directory() const {
+    return cacheDirectory(options.scene, options.common.cacheDirectory);
+}
+
+std::string AssetRequest::file(const CacheStamp& stamp, const std::string& kind) const {
+    return cacheFile(directory(), stamp, kind);
+}
+
 std::span<const AssetRow> assetRows() {
     static const AssetRow rows[] = {
         {"skeleton", acquireSkeleton},

@@ -42,6 +42,10 @@ struct AssetRequest {
     const std::atomic<bool>& cancel;
     Phases& phases;
     std::function<void(const std::string& path)> built;  ///< called with each file that is written
+
+    std::string directory() const;
+    /// The path of the file of that stamp and kind ("subspaces"), whether it is there or not.
+    std::string file(const CacheStamp& stamp, const std::string& kind) const;
 };
 
 struct AssetRow {

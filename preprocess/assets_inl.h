@@ -33,15 +33,15 @@ template <class File, class ReadFile>
 std::optional<File> readCache(const AssetRequest& request, const CacheStamp& stamp,
                               const std::string& kind, const std::string& remedy,
                               const ReadFile& readFile) {
-    const std::string directory =
-        cacheDirectory(request.options.scene, request.options.common.cacheDirectory);
-    const std::string path = cacheFile(directory, stamp, kind);
+    const std::string path = request.file(stamp, kind);
     std::optional<File> file;
     try {
         request.pool.run([&] {
             const bool missing = !std::filesystem::exists(path);
             const std::string similar =
-                missing && !request.build ? mostSimilarCache(directory, stamp, kind, readFile) : "";
+                missing && !request.build
+                    ? mostSimilarCache(request.directory(), stamp, kind, readFile)
+                    : "";
             file = readFile(path, stamp, similar.empty() ? remedy : similar + "; " + remedy);
         });
     } catch (const InputError&) {

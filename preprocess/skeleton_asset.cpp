@@ -40,8 +40,7 @@ class SkeletonAsset final : public Asset {
 std::unique_ptr<Asset> acquireSkeleton(const AssetRequest& r) {
     const Scene& scene = *r.stage.scene;
     const VoxelSettings settings = voxelOptions().read(r.settings, r.prefix);
-    const CacheStamp stamp = voxelStamp(r.stage.sceneInputs, settings);
-    const std::string directory = cacheDirectory(r.options.scene, r.options.common.cacheDirectory);
+    const CacheStamp stamp = voxelStamp(sceneInputs(r.stage), settings);
     const std::string arguments = optionArguments(changedValues(voxelOptions(), settings)) +
                                   sceneArguments(r.options) + " " + shellQuoted(r.options.scene);
     const std::string remedy = "add --prepare, or run lacuna-voxelize" + arguments +
@@ -55,8 +54,8 @@ std::unique_ptr<Asset> acquireSkeleton(const AssetRequest& r) {
             });
     });
     if (!file) {
-        const std::string path = cacheFile(directory, stamp, "skeleton.vdb");
-        const std::string voxelPath = cacheFile(directory, stamp, "voxels.vdb");
+        const std::string path = r.file(stamp, "skeleton.vdb");
+        const std::string voxelPath = r.file(stamp, "voxels.vdb");
         makeCacheDirectory(path);
         std::optional<VoxelFile> voxels;
         r.phases.run("read voxels", [&] {

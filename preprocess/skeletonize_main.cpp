@@ -52,15 +52,17 @@ int skeletonizeTool(int argc, const char* const* argv) {
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
         // Voxels of any resolution may be named, but of this scene.
-        CacheStamp expected{stage.sceneInputs};
+        const Settings inputs = sceneInputs(stage);
+        CacheStamp expected{inputs};
         if (voxelPath.empty()) {
-            expected = voxelStamp(stage.sceneInputs, settings);
+            expected = voxelStamp(inputs, settings);
             voxelPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
                                   expected, "voxels.vdb");
         }
         VoxelFile voxelFile;
         phases.run("read", [&] {
-            const std::string remedy = "run lacuna-voxelize" + optionArguments(voxels.changed()) +
+            const std::string remedy = "run lacuna-voxelize" +
+                                       optionArguments(changedValues(voxelOptions(), settings)) +
                                        sceneArguments(options) + " " + shellQuoted(options.scene);
             pool.run([&] {
                 voxelFile = readVoxelFile(voxelPath, expected, stage.scene->centre(), remedy);

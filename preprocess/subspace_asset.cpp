@@ -46,7 +46,7 @@ class SubspaceAsset final : public Asset {
 
 std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
     const TrainSettings settings{trainingOptions().read(r.settings, r.prefix)};
-    const CacheStamp stamp = subspaceStamp(r.stage.sceneInputs, r.stage.viewInputs, settings);
+    const CacheStamp stamp = subspaceStamp(sceneInputs(r.stage), r.stage.viewInputs, settings);
     const std::string remedy =
         "add --prepare, or run lacuna-train" +
         optionArguments(changedValues<TrainingSettings>(trainingOptions(), settings)) +
@@ -56,8 +56,7 @@ std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
         file = readCache<SubspaceFile>(r, stamp, "subspaces", remedy, readSubspaceFile);
     });
     if (!file) {
-        const std::string path = cacheFile(
-            cacheDirectory(r.options.scene, r.options.common.cacheDirectory), stamp, "subspaces");
+        const std::string path = r.file(stamp, "subspaces");
         makeCacheDirectory(path);
         const TrainingView view =
             trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);

@@ -85,7 +85,7 @@ int trainTool(int argc, const char* const* argv) {
     std::string path;
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, Look::Camera, pool, progress); });
-        const CacheStamp stamp = subspaceStamp(stage.sceneInputs, stage.viewInputs, settings);
+        const CacheStamp stamp = subspaceStamp(sceneInputs(stage), stage.viewInputs, settings);
         path = resultFile(options, stamp, "subspaces");
         const TrainingView view =
             trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);

@@ -39,7 +39,7 @@ int voxelizeTool(int argc, const char* const* argv) {
     std::string path;
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
-        const CacheStamp stamp = voxelStamp(stage.sceneInputs, settings);
+        const CacheStamp stamp = voxelStamp(sceneInputs(stage), settings);
         path = resultFile(options, stamp, "voxels.vdb");
         result = voxelizeScene(*stage.scene, settings, stamp, pool, interrupt.requested(), phases);
         phases.run("write", [&] {

@@ -36,9 +36,8 @@ std::string methodHelp(const MethodRow& row) {
     std::size_t width = 0;
     for (const Option& o : row.options) width = std::max(width, o.name.size());
     for (const Option& o : row.options) {
-        text += "  " + padded(o.name, width + 2) + (o.unit.empty() ? "" : o.unit + " ") + o.help +
-                "\n" + std::string(width + 4, ' ') + o.range() + "; default " +
-                (o.standardText.empty() ? o.standard : o.standardText) + "\n";
+        text += "  " + padded(o.name, width + 2) + o.meaning() + "\n" +
+                std::string(width + 4, ' ') + o.range() + "; default " + o.shownDefault() + "\n";
     }
     return text;
 }

@@ -5,7 +5,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
-#include "libcore/tool/tolerance.h"
+#include "libcore/tool/scene_stage.h"
 #include "render/method_help.h"
 #include "render/options.h"
 #include "render/replay.h"
@@ -24,20 +24,14 @@ int printEffects(const RenderOptions& options) {
     SceneDescription scene;
     pool.run([&] { scene = describeScene(options); });
     double radius = lensRadius(options, scene);
-    std::vector<std::string> warnings;
-    std::vector<Effect> effects = effectsWithin(options.tolerance, scene, radius, row, warnings);
-    Techniques techniques = row ? row->techniques : Techniques{};
-    for (std::string& text : forceEffects(options.effectSwitches,
-                                          {scene, radius, row ? &techniques : nullptr}, effects)) {
-        warnings.push_back(std::move(text));
-    }
-    for (const std::string& text : warnings) {
+    const SceneEffects effects = chooseEffects(options, scene, radius, row);
+    for (const std::string& text : effects.warnings) {
         std::fprintf(stderr, "warning: %s: %s\n", options.scene.c_str(), text.c_str());
     }
     if (!options.common.json.empty()) {
-        writeJson(options.common.json, {{"effects", effectsJson(effects)}});
+        writeJson(options.common.json, {{"effects", effectsJson(effects.rows)}});
     }
-    std::fputs(effectsText(effects).c_str(), stdout);
+    std::fputs(effectsText(effects.rows).c_str(), stdout);
     return 0;
 }
 

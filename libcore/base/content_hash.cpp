@@ -2,7 +2,12 @@
 
 #include <xxhash.h>
 
+#include <fstream>
+#include <istream>
 #include <new>
+#include <vector>
+
+#include "libcore/base/error.h"
 
 namespace lacuna {
 
@@ -22,6 +27,14 @@ void ContentHash::add(std::span<const std::byte> bytes) {
     if (!bytes.empty()) XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
 }
 
+void ContentHash::addStream(std::istream& stream) {
+    std::vector<char> block(1u << 20);
+    while (stream) {
+        stream.read(block.data(), std::streamsize(block.size()));
+        addValues(std::span<const char>(block.data(), std::size_t(stream.gcount())));
+    }
+}
+
 std::array<std::uint64_t, 2> ContentHash::digest() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
     return {hash.low64, hash.high64};
@@ -36,6 +49,15 @@ std::string ContentHash::hex() const {
         }
     }
     return text;
+}
+
+std::string hashOfFile(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    ContentHash hash;
+    hash.addStream(stream);
+    if (!stream.eof())
+        throw InputError(path + ": expected a file that can be read, found none; check the name");
+    return hash.hex();
 }
 
 }  // namespace lacuna

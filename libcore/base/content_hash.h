@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,6 +30,9 @@ class ContentHash {
         addValues(std::span(&value, 1));
     }
 
+    /// All that is left of a stream. At its end the stream is at its end, or failed to read.
+    void addStream(std::istream& stream);
+
     /// Low half first.
     std::array<std::uint64_t, 2> digest() const;
     /// 32 hexadecimal digits, high half first.
@@ -38,5 +42,8 @@ class ContentHash {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// ContentHash::hex() of a file. Throws InputError if it cannot be read.
+std::string hashOfFile(const std::string& path);
 
 }  // namespace lacuna

@@ -33,6 +33,12 @@ struct Option {
 
     /// "an integer from 1 to 100", "one of ris plain"
     std::string range() const;
+    /// Unit and help: "light subpaths in the pool, M"
+    std::string meaning() const { return unit.empty() ? help : unit + " " + help; }
+    /// The default as help shows it.
+    const std::string& shownDefault() const {
+        return standardText.empty() ? standard : standardText;
+    }
     /// The value in its shortest form. Throws UsageError: `title`: expected .., found ..
     std::string checked(std::string_view value, const std::string& title) const;
 };

@@ -96,11 +96,7 @@ void hashFile(const fs::path& path, ContentHash& hash, const std::string& askedB
     const std::string by = byClause(askedBy);
     regularFileSize(path, by);
     std::ifstream stream = openFile(path, by);
-    std::vector<std::uint8_t> block(1u << 20);
-    while (stream) {
-        stream.read(reinterpret_cast<char*>(block.data()), std::streamsize(block.size()));
-        hash.addValues(std::span<const std::uint8_t>(block.data(), std::size_t(stream.gcount())));
-    }
+    hash.addStream(stream);
     if (!stream.eof()) {
         refuse(path.string(), "", "a readable file" + by, "a read error", "copy the file again");
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 
 #include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
@@ -86,34 +85,6 @@ Camera::Lens chooseLens(const SceneOptions& options, const SceneDescription& sce
     return lens;
 }
 
-std::string hashOfFile(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    ContentHash hash;
-    std::vector<char> block(1 << 20);
-    while (in.read(block.data(), std::streamsize(block.size())), in.gcount() > 0) {
-        hash.addValues(std::span<const char>(block.data(), std::size_t(in.gcount())));
-    }
-    return hash.hex();
-}
-
-Settings sceneInputsOf(const SceneDescription& scene, const std::vector<Effect>& effects,
-                       double tolerance) {
-    Settings inputs{{"scene", scene.contentHash}, {"tolerance", numberText(tolerance)}};
-    inputs["environment"] = "none";
-    if (scene.environment) {
-        inputs["environment"] = hashOfFile(scene.environment->file);
-        inputs["environment scale"] = numberText(scene.environment->scale);
-        inputs["environment angle"] = numberText(scene.environment->rotationDegrees);
-    }
-    std::string forced;
-    for (const Effect& e : effects) {
-        if (!e.forced || !e.ofScene) continue;
-        forced += (forced.empty() ? "" : " ") + e.name + (e.simulated ? "=on" : "=off");
-    }
-    inputs["effects"] = forced.empty() ? "as the scene calls for" : forced;
-    return inputs;
-}
-
 /// `camera` by its place in the file, because names need not differ.
 Settings viewInputsOf(const SceneDescription& scene, const CameraDescription& camera, double aspect,
                       Camera::Lens lens, const WalkLimits& limits) {
@@ -130,6 +101,24 @@ Settings viewInputsOf(const SceneDescription& scene, const CameraDescription& ca
 }
 
 }  // namespace
+
+Settings sceneInputs(const SceneStage& stage) {
+    const SceneDescription& scene = stage.scene->description();
+    Settings inputs{{"scene", scene.contentHash}, {"tolerance", numberText(stage.tolerance)}};
+    inputs["environment"] = "none";
+    if (scene.environment) {
+        inputs["environment"] = hashOfFile(scene.environment->file);
+        inputs["environment scale"] = numberText(scene.environment->scale);
+        inputs["environment angle"] = numberText(scene.environment->rotationDegrees);
+    }
+    std::string forced;
+    for (const Effect& e : stage.effects) {
+        if (!e.forced || !e.ofScene) continue;
+        forced += (forced.empty() ? "" : " ") + e.name + (e.simulated ? "=on" : "=off");
+    }
+    inputs["effects"] = forced.empty() ? "as the scene calls for" : forced;
+    return inputs;
+}
 
 SceneDescription describeScene(const SceneOptions& options) {
     SceneDescription scene = loadGltf(options.scene);
@@ -156,6 +145,19 @@ double lensRadius(const SceneOptions& options, const SceneDescription& scene) {
     return options.aperture ? *options.aperture : scene.aperture.value_or(0.0);
 }
 
+SceneEffects chooseEffects(const SceneOptions& options, SceneDescription& scene, double& radius,
+                           const MethodRow* method) {
+    SceneEffects effects;
+    effects.rows = effectsWithin(options.tolerance, scene, radius, method, effects.warnings);
+    if (method) effects.techniques = method->techniques;
+    for (std::string& text :
+         forceEffects(options.effectSwitches,
+                      {scene, radius, method ? &effects.techniques : nullptr}, effects.rows)) {
+        effects.warnings.push_back(std::move(text));
+    }
+    return effects;
+}
+
 SceneStage buildStage(SceneDescription description, const SceneOptions& options, Look look,
                       const MethodRow* method, const ThreadPool& pool, Progress& progress) {
     SceneStage stage;
@@ -171,15 +173,11 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
     const Camera::Film film = looks ? filmOf(options, description) : Camera::Film{};
     Camera::Lens lens = looks ? chooseLens(options, description) : Camera::Lens{};
     double radius = looks ? double(lens.radius) : lensRadius(options, description);
-    std::vector<std::string> leftOut;
-    stage.effects = effectsWithin(options.tolerance, description, radius, method, leftOut);
-    for (const std::string& text : leftOut) warn(text);
-    if (method) stage.techniques = method->techniques;
-    for (const std::string& text :
-         forceEffects(options.effectSwitches,
-                      {description, radius, method ? &stage.techniques : nullptr}, stage.effects)) {
-        warn(text);
-    }
+    SceneEffects effects = chooseEffects(options, description, radius, method);
+    for (const std::string& text : effects.warnings) warn(text);
+    stage.effects = std::move(effects.rows);
+    stage.techniques = effects.techniques;
+    stage.tolerance = options.tolerance;
     lens.radius = float(radius);
     WalkLimits& limits = stage.limits;
     if (options.maxDepth) {
@@ -193,7 +191,6 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
     }
     if (options.rouletteDepth) limits.rouletteDepth = int(*options.rouletteDepth);
 
-    stage.sceneInputs = sceneInputsOf(description, stage.effects, options.tolerance);
     if (looks) {
         const CameraDescription& camera = chosenCamera(description, options.camera);
         stage.aspect = chooseAspect(options, description, camera);

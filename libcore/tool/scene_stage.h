@@ -24,6 +24,7 @@ enum class Look : std::uint8_t {
 
 struct SceneStage {
     std::vector<Effect> effects;
+    double tolerance = 0.0;
     Techniques techniques;  ///< the method's, as far as effects were not forced
     std::unique_ptr<Scene> scene;
     std::unique_ptr<Camera> camera;  ///< null where only the scene is looked at
@@ -32,13 +33,15 @@ struct SceneStage {
     std::map<std::string, double> phaseSeconds;
     std::vector<std::string> warnings;
 
-    /// What a cache of the scene is made of, by name: the content of the scene's files and of the
-    /// environment, with its scale and angle, effects that are forced, the tolerance.
-    Settings sceneInputs;
-    /// What a cache that is made through the camera depends on besides: camera, shape of the
-    /// picture, lens, depths. Empty where only the scene is looked at.
+    /// What a cache that is made through the camera depends on besides sceneInputs():
+    /// camera, shape of the picture, lens, depths. Empty where only the scene is looked at.
     Settings viewInputs;
 };
+
+/// What a cache of the scene is made of, by name: the content of the scene's files and of the
+/// environment, with its scale and angle, effects that are forced, the tolerance. Reads the
+/// environment's file; throws InputError if it cannot.
+Settings sceneInputs(const SceneStage& stage);
 
 /// The file with the options' environment put into it. Throws InputError, UsageError.
 SceneDescription describeScene(const SceneOptions& options);
@@ -49,6 +52,17 @@ Camera::Film filmOf(const SceneOptions& options, const SceneDescription& scene);
 
 /// The lens radius that options and extras ask for.
 double lensRadius(const SceneOptions& options, const SceneDescription& scene);
+
+/// A scene's effects as a method renders them.
+struct SceneEffects {
+    std::vector<Effect> rows;
+    Techniques techniques;  ///< the method's, as far as effects were not forced
+    std::vector<std::string> warnings;
+};
+/// After --tolerance and --effect, which change the scene and the lens radius. `method` may be
+/// null. Throws UsageError for an effect that is unknown or cannot be forced.
+SceneEffects chooseEffects(const SceneOptions& options, SceneDescription& scene, double& lensRadius,
+                           const MethodRow* method);
 
 /// Applies the options to what describeScene() gave, and builds. `method` may be null. Warnings go
 /// to `progress` as well. Throws InputError, UsageError, RunError.

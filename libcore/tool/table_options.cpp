@@ -32,15 +32,6 @@ std::string optionName(const std::string& name) {
     return text;
 }
 
-Settings changedSettings(std::span<const Option> options, const Settings& settings) {
-    Settings changed;
-    for (const Option& o : options) {
-        const auto found = settings.find(o.name);
-        if (found != settings.end() && found->second != o.standard) changed.insert(*found);
-    }
-    return changed;
-}
-
 std::string optionArguments(const Settings& settings) {
     std::string text;
     for (const auto& [name, value] : settings) {
@@ -52,11 +43,10 @@ std::string optionArguments(const Settings& settings) {
 OptionTexts::OptionTexts(CLI::App& app, std::vector<Option> options)
     : options_(std::move(options)) {
     for (const Option& o : options_) {
-        const std::string standard = o.standardText.empty() ? o.standard : o.standardText;
-        std::string help = o.unit.empty() ? o.help : o.unit + " " + o.help;
+        std::string help = o.meaning();
         help[0] = char(std::toupper(static_cast<unsigned char>(help[0])));
         app.add_option(optionName(o.name), texts_.emplace_back(o.standard),
-                       help + " (" + o.range() + "; default: " + standard + ")")
+                       help + " (" + o.range() + "; default: " + o.shownDefault() + ")")
             ->type_name(typeName(o.kind));
     }
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,6 @@ class OptionTexts {
 
     /// Complete and checked. Throws UsageError that names the option with its dashes.
     Settings settings() const;
-    std::span<const Option> options() const { return options_; }
 
   private:
     std::vector<Option> options_;
@@ -32,13 +30,15 @@ class OptionTexts {
 /// "--light-paths"
 std::string optionName(const std::string& name);
 
-/// Those of `settings` that are not their options' defaults.
-Settings changedSettings(std::span<const Option> options, const Settings& settings);
 /// A record's values that are not the defaults.
 template <class Record>
 Settings changedValues(const OptionTable<Record>& table, const Record& record) {
-    const auto values = table.values(record);
-    return changedSettings(table.options(), Settings(values.begin(), values.end()));
+    Settings changed;
+    for (const auto& row : table.rows()) {
+        const std::string value = row.get(record);
+        if (value != row.option.standard) changed[row.option.name] = value;
+    }
+    return changed;
 }
 /// Settings as a shell takes them: " --light-paths 1000", or nothing.
 std::string optionArguments(const Settings& settings);
@@ -51,8 +51,6 @@ class TableOptions {
         : table_(std::move(table)), texts_(app, table_.options()) {}
     /// Throws UsageError.
     Record read() const { return table_.read(texts_.settings()); }
-    /// What was given and is not the default. Throws UsageError.
-    Settings changed() const { return changedSettings(texts_.options(), texts_.settings()); }
 
   private:
     OptionTable<Record> table_;

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
-#include "render/study/content_hash.h"
 #include "render/study/machine.h"
 #include "render/study/run_directory.h"
 
@@ -129,7 +129,7 @@ Execution execute(const Study& study, const std::string& directory, const std::s
     Results& results = execution.results;
     results.study = study;
     results.machine = machineText();
-    results.rendererHash = fileHash(renderer);
+    results.rendererHash = hashOfFile(renderer);
     findReferences(results, directory, renderer, cancel, progress);
     std::vector<std::string> referenceHashes;
     for (const Reference& r : results.references) referenceHashes.push_back(r.hash);

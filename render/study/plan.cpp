@@ -1,9 +1,9 @@
 #include "render/study/plan.h"
 
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/methods/registry.h"
 #include "render/stage.h"
-#include "render/study/content_hash.h"
 
 namespace lacuna {
 
@@ -17,7 +17,7 @@ SceneFacts inspectScene(const StudyScene& scene, const ThreadPool& pool) {
     SceneFacts facts;
     facts.contentHash = description.contentHash;
     facts.hash = description.contentHash;
-    if (description.environment) facts.hash += fileHash(description.environment->file);
+    if (description.environment) facts.hash += hashOfFile(description.environment->file);
     const Camera::Film film = filmOf(options, description);
     facts.width = film.width;
     facts.height = film.height;
@@ -34,7 +34,9 @@ std::string runId(const std::vector<std::string>& arguments,
         for (const std::string& part : *list) text += part + '\0';
         text += '\n';
     }
-    return contentHash(text).substr(0, 16);
+    ContentHash hash;
+    hash.addValues(std::span<const char>(text));
+    return hash.hex().substr(0, 16);
 }
 
 namespace {

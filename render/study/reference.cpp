@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
-#include "render/study/content_hash.h"
 #include "render/study/run_directory.h"
 
 namespace lacuna {
@@ -208,7 +208,7 @@ Reference openReference(const std::string& path, const SceneFacts& facts,
         }
         reference.crops.push_back(std::move(part));
     }
-    reference.hash = fileHash(path);
+    reference.hash = hashOfFile(path);
     const std::string method = attributeText(image, "method");
     const std::string iterations = attributeText(image, "iterations");
     reference.origin =
