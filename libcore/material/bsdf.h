@@ -18,12 +18,23 @@
 //       pdfW = pmf eta_to^2 |to . ns|,    f_ns = coefficient eta_eye^2,
 //   where eta_to (eta_eye) is the index of refraction on the side `to` (the eye) lies on; for a
 //   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
-// * Directions with |to . ng| or |to . ns| below kMinCosine, or whose geometric and shading sides
-//   disagree, scatter nothing and have density zero: in evaluate and sample alike.
 // * ng is the geometric normal by the winding (front side = outside of a solid).
 //   ns lies on the same side as ng.
 //   Nothing is one-sided: back faces reflect like front faces; a solid's inside
 //   is the back.
+// * ng alone says on which side of the surface a direction lies. Lobes about ns have nothing for an
+//   eye whose mirror direction about ns lies inside the surface: silhouettes under a normal map
+//   would be black. There the lobes turn about ng instead:
+//       f = (1 - w) f_ns + w f_ng,   w = clamp(5 - 8 (ns . ng) (toEye . ns) / (toEye . ng), 0, 1),
+//   which is 0 where ns = ng, and 1 from where that mirror direction touches the surface. w is of
+//   toEye alone: seen from anywhere, the mixture reflects no more than its parts. A diffuse base
+//   does not ask where the eye is: it keeps ns, and is equally bright from everywhere above ng.
+// * A walk picks one of the two normals, then a lobe about it: an eye walk ng with probability w, a
+//   light walk by what it knows of toLight (lightShare). What the light walk draws about a normal
+//   that the eye there does not see at all is thrown away, and not in its density.
+// * Directions with |to . ng| below kMinCosine scatter nothing and have density zero, in evaluate
+//   and sample alike; so do toLight with |toLight . ns| below it, or on different sides of ng and
+//   ns, in everything but the lobes about ng.
 #pragma once
 
 #include <cmath>
@@ -113,8 +124,7 @@ class Bsdf {
 
     /// Value and densities of the Smooth event (all lobes with a density together).
     BsdfEvaluation evaluate(const Vec3& toEye, const Vec3& toLight) const {
-        return has(kDiffuse) && has(kOneLobe) ? lambert(toEye, toLight)
-                                              : evaluateLobes(toEye, toLight);
+        return isLambert() ? lambert(toEye, toLight) : evaluateLobes(toEye, toLight);
     }
     /// Generalised value and densities of one delta event; `toLight` must be the direction that the
     /// event leads to from `toEye` (not checked). Zero for Smooth.
@@ -171,39 +181,58 @@ class Bsdf {
     static float through(const Choice& eye, const Choice& light) {
         return eye.under < light.under ? eye.under : light.under;
     }
-    /// A pair of directions seen from both normals; signed cosines about ns.
+    /// A pair of directions: signed cosines about both normals.
+    struct Cosines {
+        float eyeG, lightG, eyeS, lightS;
+        bool reflects() const { return (eyeG > 0) == (lightG > 0); }
+        /// Whether ns sees light here: not grazing, and on the side that ng says.
+        bool lightSeen() const {
+            return (std::abs(lightS) >= kMinCosine) & (lightG * lightS > 0.0f);
+        }
+    };
+    /// A pair of directions as lobes about the normal n see it.
     struct Pair {
-        float eye, light;
-        float adjoint;  ///< |toLight . ns| / |toLight . ng|
+        Vec3 n;
+        float eye, light;  ///< signed cosines about n
+        float adjoint;     ///< |toLight . n| / |toLight . ng|
         float eyeAbs() const { return eye < 0 ? -eye : eye; }
         float lightAbs() const { return light < 0 ? -light : light; }
-        bool reflects() const { return (eye > 0) == (light > 0); }
     };
+    Pair aboutNs(const Cosines& c) const { return {ns_, c.eyeS, c.lightS, c.lightS / c.lightG}; }
+    Pair aboutNg(const Cosines& c) const { return {ng_, c.eyeG, c.lightG, 1.0f}; }
 
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
-    /// False where the pair scatters nothing: grazing, or on different sides of ng and ns.
-    bool makePair(const Vec3& toEye, const Vec3& toLight, Pair& pair) const {
-        const float eyeG = dot(toEye, ng_);
-        const float lightG = dot(toLight, ng_);
-        pair.eye = dot(toEye, ns_);
-        pair.light = dot(toLight, ns_);
-        pair.adjoint = pair.light / lightG;
+    /// Diffuse and nothing else: there are no lobes to turn about ng.
+    bool isLambert() const { return has(kDiffuse) && has(kOneLobe); }
+    /// False where the pair scatters nothing, because it is grazing.
+    bool makeCosines(const Vec3& toEye, const Vec3& toLight, Cosines& c) const {
+        c.eyeG = dot(toEye, ng_);
+        c.lightG = dot(toLight, ng_);
+        // By the difference of the normals: exactly the same where they are.
+        const Vec3 tilt = ns_ - ng_;
+        c.eyeS = c.eyeG + dot(toEye, tilt);
+        c.lightS = c.lightG + dot(toLight, tilt);
         // Bitwise: one branch. NaN fails every comparison.
-        return (std::abs(eyeG) >= kMinCosine) & (std::abs(lightG) >= kMinCosine) &
-               (std::abs(pair.eye) >= kMinCosine) & (std::abs(pair.light) >= kMinCosine) &
-               (eyeG * pair.eye > 0.0f) & (lightG * pair.light > 0.0f);
+        return (std::abs(c.eyeG) >= kMinCosine) & (std::abs(c.lightG) >= kMinCosine);
     }
     /// evaluate() of a diffuse lobe alone, where most of the time goes: inline.
     BsdfEvaluation lambert(const Vec3& toEye, const Vec3& toLight) const {
         BsdfEvaluation out;
-        Pair pair;
-        if (!makePair(toEye, toLight, pair) || !pair.reflects()) return out;
-        out.f = baseColor_ * (diffuseScale_ * pair.adjoint);
-        out.pdfWToLight = pair.lightAbs() * kInvPi;
-        out.pdfWToEye = pair.eyeAbs() * kInvPi;
+        Cosines c;
+        if (!makeCosines(toEye, toLight, c) || !c.lightSeen() || !c.reflects()) return out;
+        out.f = baseColor_ * (diffuseScale_ * (c.lightS / c.lightG));
+        out.pdfWToLight = std::abs(c.lightS) * kInvPi;
+        out.pdfWToEye = std::abs(c.eyeG) * kInvPi;
         return out;
     }
+    float eyeShare(float eyeS, float eyeG) const;
+    float lightShare(float lightS, float lightG) const;
+    static void addPart(const BsdfEvaluation& part, float share, float pickedByLight,
+                        BsdfEvaluation& out);
     BsdfEvaluation evaluateLobes(const Vec3& toEye, const Vec3& toLight) const;
+    BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
+                              const Cosines& c) const;
+    BsdfEvaluation deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const;
     float coatAlbedo(float mu) const;
     float clearcoatAlbedo(float mu) const;
     float openAverage(float coatAverage) const;

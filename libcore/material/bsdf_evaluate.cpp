@@ -1,10 +1,10 @@
-// Values and densities. With e = toEye, l = toLight, c = |cos| about ns,
+// Values and densities. With e = toEye, l = toLight, c = |cos| about the normal n,
 // S(c) = c sqrt(1 + a^2 tan^2):
 //
 //     G1 / c = 2 / (c + S),   G2 / (c_e c_l) = 2 / (S_e c_l + S_l c_e)        (microfacet.h)
 //     K = D(h) |dw_h / dw_to| |v.h| without the index of the side `to` lies on:
 //         reflection  D / 4,   refraction  D |e.h| |l.h| / |H|^2,   H = eta_e e + eta_l l
-//     f_ns   = R eta_eye^2 K G2 / (c_e c_l)             [Walter07 eq 20, 21]
+//     f_n    = R eta_eye^2 K G2 / (c_e c_l)             [Walter07 eq 20, 21]
 //     pdfW   = pmf eta_to^2 K G1(from) / c_from         [Heitz18; Walter07 eq 14, 17]
 //
 // R: reflectance or transmittance at h; pmf: probability of the lobe given `from`, times F or 1 - F
@@ -31,10 +31,10 @@ struct Lobe {
     float g1Eye, g1Light;  ///< G1 / c_e, G1 / c_l
 };
 
-/// From H = e + l, of any length, and both |cosines| about ns.
-inline Lobe lobeOf(Vec3 h, Vec3 ns, float ce, float cl, float alpha) {
+/// From H = e + l, of any length, and both |cosines| about n.
+inline Lobe lobeOf(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
     const float hn = ce + cl;
-    const float cross2 = lengthSquared(cross(h, ns));
+    const float cross2 = lengthSquared(cross(h, n));
     const float se = ggx::smithS(ce, alpha * alpha);
     const float sl = ggx::smithS(cl, alpha * alpha);
     return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2)),  // |H| / 2
@@ -44,14 +44,38 @@ inline Lobe lobeOf(Vec3 h, Vec3 ns, float ce, float cl, float alpha) {
 
 }  // namespace
 
-// One result variable per function, filled in place: a copy of it would wait for its parts' stores.
+/// One normal's part of the mixture; `share` of what the eye sees.
+inline void Bsdf::addPart(const BsdfEvaluation& part, float share, float pickedByLight,
+                          BsdfEvaluation& out) {
+    out.f += part.f * share;
+    out.pdfWToLight += part.pdfWToLight * share;
+    out.pdfWToEye += part.pdfWToEye * pickedByLight;
+}
+
 BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const {
     BsdfEvaluation out;
-    Pair pair;
-    if (!connectable() || !makePair(toEye, toLight, pair)) {
+    Cosines c;
+    if (!connectable() || !makeCosines(toEye, toLight, c)) {
         return out;
     }
-    if (!pair.reflects()) {
+    const float eyeNg = eyeShare(c.eyeS, c.eyeG);
+    const float lightNg = lightShare(c.lightS, c.lightG);
+    if (eyeNg < 1.0f && c.lightSeen()) {
+        addPart(lobesAbout(aboutNs(c), toEye, toLight, c), 1.0f - eyeNg, 1.0f - lightNg, out);
+    }
+    if (eyeNg > 0.0f) {
+        addPart(lobesAbout(aboutNg(c), toEye, toLight, c), eyeNg, lightNg, out);
+    }
+    return out;
+}
+
+/// All lobes that have a density, those of layers and glass about pair.n. The diffuse base keeps ns
+/// for the light, and ng for the eye.
+// One result variable per function, filled in place: a copy of it would wait for its parts' stores.
+BsdfEvaluation Bsdf::lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
+                                const Cosines& c) const {
+    BsdfEvaluation out;
+    if (!c.reflects()) {
         if (has(kRoughGlass)) {
             if (has(kThin)) {
                 addRoughThinTransmission(toEye, toLight, pair, out);
@@ -64,10 +88,15 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
     const Choice eye = choose(pair.eyeAbs());
     const Choice light = choose(pair.lightAbs());
     if (has(kDiffuse)) {
-        out.f = baseColor_ *
-                (diffuseScale_ * eye.open * eye.under * light.open * light.under * pair.adjoint);
-        out.pdfWToLight = eye.diffuse * pair.lightAbs() * kInvPi;
-        out.pdfWToEye = light.diffuse * pair.eyeAbs() * kInvPi;
+        // Light that ns does not see is scattered into nothing, but a walk from there may draw it.
+        out.pdfWToEye = light.diffuse * std::abs(c.eyeG) * kInvPi;
+        if (c.lightSeen()) {
+            const float lightS = std::abs(c.lightS);
+            const Choice base = lightS == pair.lightAbs() ? light : choose(lightS);
+            out.f = baseColor_ * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
+                                  (c.lightS / c.lightG));
+            out.pdfWToLight = eye.diffuse * lightS * kInvPi;
+        }
     }
     if (has(kRoughLayers | kRoughGlass)) {
         addRoughReflection(toEye, toLight, pair, eye, light, out);
@@ -80,7 +109,7 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
 
 void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                               const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
-    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
+    const Lobe lobe = lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), alpha_);
 
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;  // given toEye, given toLight
@@ -103,7 +132,8 @@ void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair
 
 void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                              const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
-    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
+    const Lobe lobe =
+        lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
     const float reflectance = clearcoat_ * fresnelDielectric(lobe.cosine, kClearcoatIor);
     out.f += Rgb(reflectance * lobe.k * lobe.g2 * pair.adjoint);
     out.pdfWToLight += eye.clearcoat * lobe.k * lobe.g1Eye;
@@ -111,10 +141,10 @@ void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair&
 }
 
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
-// Mirroring toLight about ns leaves its tangential part, hence H x n, as it is.
+// Mirroring toLight about n leaves its tangential part, hence H x n, as it is.
 void Bsdf::addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                                     BsdfEvaluation& out) const {
-    const Lobe lobe = lobeOf(toEye + toLight, ns_, pair.eyeAbs(), pair.lightAbs(), alpha_);
+    const Lobe lobe = lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), alpha_);
     const float transmit = 1.0f - fresnelDielectric(lobe.cosine, ior_);
     const Choice eye = choose(pair.eyeAbs()), light = choose(pair.lightAbs());
     out.f =
@@ -138,7 +168,7 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
     if (!(hn > 0.0f && oh > 0.0f && ih < 0.0f)) {
         return;  // no microfacet refracts one into the other
     }
-    const float cross2 = lengthSquared(cross(o + i * ior_, ns_));
+    const float cross2 = lengthSquared(cross(o + i * ior_, pair.n));
     const float h2 = hn * hn + cross2;
     const float cosine = std::min(1.0f, oh / std::sqrt(h2));
     // |eta_o o.h + eta_i i.h| = |H|: K = D |o.h| |i.h| / |H|^2 = D oh |ih| / |H|^4.
@@ -159,11 +189,33 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
 BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
                                    ScatterEvent event) const {
     BsdfEvaluation out;
-    Pair pair;
-    if (event == ScatterEvent::Smooth || !makePair(toEye, toLight, pair) ||
-        pair.reflects() != (event == ScatterEvent::DeltaReflection)) {
+    Cosines c;
+    if (event == ScatterEvent::Smooth || !makeCosines(toEye, toLight, c) ||
+        c.reflects() != (event == ScatterEvent::DeltaReflection)) {
         return out;
     }
+    const float eyeNg = eyeShare(c.eyeS, c.eyeG);
+    const float lightNg = lightShare(c.lightS, c.lightG);
+    bool byNs = eyeNg<1.0f, byNg = eyeNg> 0.0f;
+    const bool straight = event == ScatterEvent::DeltaTransmission && has(kThin);
+    if (byNs && byNg && !straight) {
+        // Each normal has an event of its own here: the directions say which this one is of.
+        const Vec3 h = c.reflects() ? toEye + toLight
+                                    : toEye * indexOn(c.eyeG > 0) + toLight * indexOn(c.lightG > 0);
+        byNg = lengthSquared(cross(h, ng_)) < lengthSquared(cross(h, ns_));
+        byNs = !byNg;
+    }
+    if (byNs && c.lightSeen()) {
+        addPart(deltaAbout(aboutNs(c), c, event), 1.0f - eyeNg, 1.0f - lightNg, out);
+    }
+    if (byNg) {
+        addPart(deltaAbout(aboutNg(c), c, event), eyeNg, lightNg, out);
+    }
+    return out;
+}
+
+BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const {
+    BsdfEvaluation out;
     const bool deltaLayers = has(kLayers) && !has(kRoughLayers);
     const bool deltaGlass = has(kGlass) && !has(kRoughGlass);
     const bool deltaClearcoat = clearcoat_ > 0.0f && !(clearcoatAlpha_ > 0.0f);
@@ -178,10 +230,17 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         }
         // From the outside, where there is no total internal reflection; thin: both sides are.
         const float transmit = 1.0f - fresnelDielectric(front || has(kThin) ? ce : cl, ior_);
+        const Rgb coefficient = baseColor_ * (glass() * transmit * through(eye, light));
+        if (has(kThin)) {
+            // Straight on whatever the normal: both normals' parts drop one delta, that about ng.
+            out.f = coefficient;
+            out.pdfWToLight = eye.glass * transmit * std::abs(c.lightG);
+            out.pdfWToEye = light.glass * transmit * std::abs(c.eyeG);
+            return out;
+        }
         const float etaEye = indexOn(front);
         const float etaLight = indexOn(!front);
-        out.f = baseColor_ *
-                (glass() * transmit * through(eye, light) * etaEye * etaEye * pair.adjoint);
+        out.f = coefficient * (etaEye * etaEye * pair.adjoint);
         out.pdfWToLight = eye.glass * transmit * etaLight * etaLight * cl;
         out.pdfWToEye = light.glass * transmit * etaEye * etaEye * ce;
         return out;

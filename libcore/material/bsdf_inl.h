@@ -24,6 +24,24 @@ inline float Bsdf::clearcoatAlbedo(float mu) const {
                : fresnelDielectric(mu, kClearcoatIor);
 }
 
+/// w: how much of what an eye sees is of the lobes about ng (bsdf.h). With m the cosine between ng
+/// and the eye's mirror direction about ns, it is 1 - 4 m / |toEye . ng|.
+inline float Bsdf::eyeShare(float eyeS, float eyeG) const {
+    // Exactly 1 where the normals are equal.
+    const float cosine = 1.0f - 0.5f * lengthSquared(ns_ - ng_);
+    return std::clamp(5.0f - 8.0f * cosine * (eyeS / eyeG), 0.0f, 1.0f);
+}
+
+/// The probability that a light walk picks ng: always where ns sees no light; as often as not where
+/// the mirror direction about ng leads to an eye that sees lobes about it; else seldom: such eyes
+/// then fill about the square of the normals' angle.
+inline float Bsdf::lightShare(float lightS, float lightG) const {
+    if (!(lightS * lightG > 0.0f)) return 1.0f;
+    const float tilt2 = lengthSquared(ns_ - ng_);
+    const float mirroredS = (2.0f - tilt2) * lightG - lightS;
+    return std::max(std::min(0.125f, tilt2), 0.5f * eyeShare(mirroredS, lightG));
+}
+
 /// Lobe probabilities: the lobes' albedos, channels averaged, as far as they are known without
 /// effort. A function of the material and of the one known direction: sampling and density use this
 /// and nothing else.

@@ -43,22 +43,36 @@ Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float
 std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe, float u1,
                                        float u2) const {
     std::optional<BsdfSample> result;
-    const float fromS = dot(from, ns_);
-    if (isBlack() || !(std::abs(fromS) >= kMinCosine)) {
+    const float fromG = dot(from, ng_), fromS = fromG + dot(from, ns_ - ng_);
+    if (isBlack() || !(std::abs(fromG) >= kMinCosine)) {
         return result;
     }
-    const bool front = fromS > 0.0f;
-    const Vec3 n = front ? ns_ : -ns_;
-    const float cosine = std::min(1.0f, std::abs(fromS));
+    // The normal, by uLobe, which is uniform again then.
+    float shareNg = 0.0f;
+    if (!isLambert()) {
+        shareNg = side == Side::Eye ? eyeShare(fromS, fromG) : lightShare(fromS, fromG);
+    }
+    const bool byNg = uLobe < shareNg;
+    const float u =
+        byNg ? uLobe / shareNg : std::min((uLobe - shareNg) / (1.0f - shareNg), 0x1.fffffep-1f);
+    const bool front = fromG > 0.0f;
+    const float sign = front ? 1.0f : -1.0f;
+    const Vec3 n = (byNg ? ng_ : ns_) * sign;
+    const float fromN = (byNg ? fromG : fromS) * sign;
+    if (!(fromN >= kMinCosine) && !isLambert()) {
+        return result;
+    }
+    const float cosine = std::min(1.0f, fromN);
     const Choice choice = choose(cosine);
 
     Vec3 to;
     ScatterEvent event = ScatterEvent::Smooth;
+    bool transmits = false;
     // The probabilities add up to 1 but for rounding: the last lobe that exists takes the rest.
-    const bool clearcoat = uLobe < choice.clearcoat;
-    const float uBase = uLobe - choice.clearcoat;
+    const bool clearcoat = u < choice.clearcoat;
+    const float uBase = u - choice.clearcoat;
     if (!clearcoat && (uBase < choice.diffuse || !has(kLayers | kGlass))) {
-        to = Frame(n).toWorld(cosineHemisphere(u1, u2));
+        to = Frame((side == Side::Eye ? ns_ : ng_) * sign).toWorld(cosineHemisphere(u1, u2));
     } else {
         const bool glass = !clearcoat && has(kGlass) && !(uBase < choice.diffuse + choice.layers);
         const float alpha = clearcoat ? clearcoatAlpha_ : alpha_;
@@ -69,13 +83,12 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
         if (!(hCosine > 0.0f)) {
             return result;
         }
-        bool transmits = false;
         if (glass) {
             // What is left of uBase decides between reflection (F) and transmission (1 - F).
-            const float u = (uBase - choice.diffuse - choice.layers) / choice.glass;
-            // Never transmission where F is 1, though rounding may bring u up to 1.
+            const float uGlass = (uBase - choice.diffuse - choice.layers) / choice.glass;
+            // Never transmission where F is 1, though rounding may bring uGlass up to 1.
             const float fresnel = fresnelDielectric(hCosine, relativeIndex(front));
-            transmits = !(u < fresnel) && fresnel < 1.0f;
+            transmits = !(uGlass < fresnel) && fresnel < 1.0f;
         }
         if (!transmits) {
             to = reflected(from, h, hCosine);
@@ -93,8 +106,19 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             return result;  // reflected below the horizon, or refracted above it
         }
     }
+    to = renormalize(to);
+    const float toG = dot(to, ng_);
+    if (transmits != (toG * sign < 0.0f)) {
+        return result;  // on another side of the surface than the lobe about ns sent it to
+    }
+    if (side == Side::Light && !isLambert()) {
+        const float eyeNg = eyeShare(toG + dot(to, ns_ - ng_), toG);
+        if (byNg ? !(eyeNg > 0.0f) : !(eyeNg < 1.0f)) {
+            return result;  // no eye there sees lobes about this normal
+        }
+    }
     BsdfSample& s = result.emplace();
-    s.to = renormalize(to);
+    s.to = to;
     s.event = event;
     // By reference: a copy would wait for its parts' stores.
     const Vec3& toEye = side == Side::Eye ? from : s.to;

@@ -52,6 +52,17 @@ void addQuadLight(SceneBuilder& b) {
     b.add(quad({-0.4f, 2, 0.2f}, {0.8f, 0, 0}, {0, 0.1f, 0.7f}, b.add(emitter(Rgb(4.0f)))));
 }
 
+Texture strongBumps() {
+    Texture bumps;
+    bumps.width = bumps.height = 4;
+    for (int i = 0; i < 16; ++i) {
+        const std::uint8_t texel[] = {std::uint8_t(48 + 160 * (i % 2)),
+                                      std::uint8_t(208 - 53 * (i / 4)), 220, 255};
+        bumps.rgba.insert(bumps.rgba.end(), texel, texel + 4);
+    }
+    return bumps;
+}
+
 std::vector<TechniqueScene> techniqueScenes() {
     std::vector<TechniqueScene> scenes;
     {
@@ -71,15 +82,8 @@ std::vector<TechniqueScene> techniqueScenes() {
         // Strong bumps on the floor, vertex colours on the wall, a veil between light and floor.
         TechniqueScene s{"normal map, colours and a veil", plates(false), 2, 4};
         SceneBuilder& b = s.builder;
-        Texture bumps;
-        bumps.width = bumps.height = 4;
-        for (int i = 0; i < 16; ++i) {
-            const std::uint8_t texel[] = {std::uint8_t(48 + 160 * (i % 2)),
-                                          std::uint8_t(208 - 53 * (i / 4)), 220, 255};
-            bumps.rgba.insert(bumps.rgba.end(), texel, texel + 4);
-        }
         lacuna::Material bumpy = plastic({0.6f, 0.5f, 0.4f}, 0.7f);
-        bumpy.normalTexture = b.add(bumps);
+        bumpy.normalTexture = b.add(strongBumps());
         b.d.meshes[0].material = b.add(bumpy);
         b.d.meshes[1].colors = {{1, 1, 1, 1}, {1, 0.2f, 0.2f, 1}, {0.1f, 1, 0.3f, 1}, {1, 1, 0, 1}};
         lacuna::Material veil = matte(Rgb(0.8f));
@@ -88,6 +92,20 @@ std::vector<TechniqueScene> techniqueScenes() {
         b.add(quad({-0.8f, 0.8f, -0.6f}, {1.6f, 0, 0}, {0, 0.1f, 1.4f}, b.add(veil)));
         addQuadLight(b);
         scenes.push_back(s);
+    }
+    {
+        // The camera looks along a floor: much of what it sees lies below the plane of the shading
+        // normal, and much of what that reflects goes into the floor first.
+        SceneBuilder b;
+        lacuna::Material bumpy = plastic({0.6f, 0.5f, 0.4f}, 0.6f);
+        bumpy.clearcoat = 0.7f;
+        bumpy.clearcoatRoughness = 0.7f;
+        bumpy.normalTexture = b.add(strongBumps());
+        b.add(quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}, b.add(bumpy)));
+        b.add(quad({-1, 0.1f, -1.3f}, {2, 0, 0}, {0, 1.3f, 0.2f}));
+        b.add(lookAt({0.2, 0.5, 3}, {0, 0.1, 0}, 30));
+        addQuadLight(b);
+        scenes.push_back({"grazing view of a normal map", b, 2, 4});
     }
     {
         // Two rough faces of a plate of glass between light and floor.

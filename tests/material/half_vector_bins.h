@@ -1,5 +1,5 @@
-// Bins over all directions, and integrals over them, in the coordinates of the half vector: narrow
-// lobes and wide ones are resolved alike. The Jacobian from half vectors to directions is taken
+// Bins over all directions, and integrals over them, in the coordinates of the half vector about a
+// normal: narrow lobes and wide ones are resolved alike. The Jacobian from half vectors to directions is taken
 // numerically, so that it is independent of the formulas under test.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "tests/material/materials.h"
@@ -18,10 +19,10 @@ class HalfVectorBins {
     static constexpr int kSectors = 8;
     static constexpr int kSteps = 14;  ///< midpoints per bin and axis
 
-    explicit HalfVectorBins(const Case& c) : case_(c) {
-        const Vec3d ns = Vec3d(c.bsdf.ns());
+    /// About `normal`, which `from` is on the side of that it is of ng.
+    HalfVectorBins(const Case& c, Vec3 normal) : case_(c) {
         const Vec3d v = Vec3d(c.from);
-        n_ = dot(ns, v) > 0 ? ns : -ns;
+        n_ = c.front ? Vec3d(normal) : -Vec3d(normal);
         Vec3d tangent = v - n_ * dot(v, n_);
         if (length(tangent) < 1e-6) {
             tangent = Vec3d(Frame(Vec3(n_)).s);
@@ -161,6 +162,72 @@ class HalfVectorBins {
     int kinds_ = 1;
     std::vector<double> edges_;
     std::size_t unresolved_ = 0;  ///< number of innermost rings that are one bin
+};
+
+/// Bins for lobes about both normals. Each direction is divided among a bin about either, smoothly,
+/// so that each lobe lies in the bins about its own normal.
+class TwoNormalBins {
+  public:
+    explicit TwoNormalBins(const Case& c) : case_(c) {
+        const Vec3d ng(c.bsdf.ng()), ns(c.bsdf.ns()), from(c.from);
+        // An eye may see lobes about one of them alone.
+        const double eyeNg = c.side == Side::Eye ? shareOfNg(from, ng, ns) : 0.5;
+        if (eyeNg > 0 && c.tilted) ng_.emplace(c, c.bsdf.ng());
+        if (eyeNg < 1 && dot(from, ns) * dot(from, ng) > 0) ns_.emplace(c, c.bsdf.ns());
+    }
+
+    std::size_t size() const { return ngSize() + (ns_ ? ns_->size() : 0); }
+
+    /// Bin of a direction, or size() if it has no half vector here. `u` decides which of its two.
+    std::size_t binOf(Vec3 to, double u) const {
+        if (u < shareOfNs(to)) return ngSize() + ns_->binOf(to);
+        const std::size_t bin = ng_->binOf(to);
+        return bin < ngSize() ? bin : size();
+    }
+
+    /// Calls visit(bin, to, solid angle) for the midpoints of all bins.
+    template <class Visit>
+    void integrate(const Visit& visit) const {
+        if (ng_) {
+            ng_->integrate([&](std::size_t bin, Vec3 to, double solidAngle) {
+                visit(bin, to, (1 - shareOfNs(to)) * solidAngle);
+            });
+        }
+        if (ns_) {
+            ns_->integrate([&](std::size_t bin, Vec3 to, double solidAngle) {
+                visit(ngSize() + bin, to, shareOfNs(to) * solidAngle);
+            });
+        }
+    }
+
+  private:
+    std::size_t ngSize() const { return ng_ ? ng_->size() : 0; }
+    double shareOfNs(Vec3 to) const {
+        if (!ns_) return 0;
+        if (!ng_) return 1;
+        const Vec3d ng(case_.bsdf.ng()), ns(case_.bsdf.ns()), v(case_.from);
+        const Vec3d w = normalize(Vec3d(to));
+        // Bins about a normal know nothing of directions on another side of it.
+        if (dot(w, ng) * dot(w, ns) <= 0) return 0;
+        const bool toFront = dot(w, ng) > 0;
+        // The cosine between a normal and the half vector about it.
+        const auto cosine = [&](Vec3d n) {
+            n = case_.front ? n : -n;
+            if (toFront == case_.front) return dot(normalize(v + w), n);
+            if (case_.parameters.thin) return dot(normalize(v + w - n * (2 * dot(w, n))), n);
+            const double from = case_.indexOn(case_.front), into = case_.indexOn(toFront);
+            return dot(normalize(v * from + w * into), n) * (into > from ? -1 : 1);
+        };
+        const double aboutNs = cosine(ns), aboutNg = cosine(ng);
+        // No microfacet about a normal refracts one into the other.
+        if (aboutNs <= 0) return 0;
+        if (aboutNg <= 0) return 1;
+        const double toNs = std::pow(1 - aboutNs, 2), toNg = std::pow(1 - aboutNg, 2);
+        return toNg / (toNs + toNg);
+    }
+
+    const Case& case_;
+    std::optional<HalfVectorBins> ng_, ns_;
 };
 
 }  // namespace lacuna::test

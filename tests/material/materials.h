@@ -80,6 +80,8 @@ inline std::vector<Material> materials() {
 inline constexpr std::array<float, 6> kRoughness{0.0f, 0.01001f, 0.1f, 0.3f, 0.6f, 1.0f};
 /// 5: a sample that is tilted by a hundredth shows there, and nowhere else.
 inline constexpr std::array<double, 6> kDegrees{0.0, 5.0, 30.0, 60.0, 85.0, 89.9};
+/// Where ng leans 20 degrees towards the known direction: that is above ng and below ns's plane.
+inline constexpr double kBelowDegrees = 97.0;
 
 /// Tables for every ior of `materials()`.
 inline const AlbedoTables& tables() {
@@ -101,7 +103,7 @@ struct Case {
     Vec3 from;    ///< the known direction
     Side side;    ///< of the walk that samples
     bool tilted;  ///< ns and ng differ
-    bool front;   ///< `from` lies outside
+    bool front;   ///< `from` lies outside, by ng
 
     double indexOn(bool outside) const {
         return outside || parameters.thin ? 1.0 : double(parameters.ior);
@@ -136,13 +138,24 @@ inline Vec3 polar(double degrees, double azimuthDegrees) {
         Vec3d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
 }
 
+/// w of bsdf.h, in double from what it means: 1 - 4 m / |toEye . ng|, with m the cosine between ng
+/// and the eye's mirror direction about ns.
+inline double shareOfNg(Vec3d toEye, Vec3d ng, Vec3d ns) {
+    const double side = dot(toEye, ng) > 0 ? 1 : -1;
+    const double m = dot(ns * (2 * dot(toEye, ns)) - toEye, ng) * side;
+    return std::clamp(1 - 4 * m / std::abs(dot(toEye, ng)), 0.0, 1.0);
+}
+
 inline std::vector<Case> grid() {
     std::vector<Case> cases;
     for (const Material& m : materials()) {
         for (const float roughness : kRoughness) {
-            for (const double degrees : kDegrees) {
+            std::vector<double> angles(kDegrees.begin(), kDegrees.end());
+            angles.push_back(kBelowDegrees);
+            for (const double degrees : angles) {
                 for (int bits = 0; bits < 8; ++bits) {
                     const bool front = (bits & 1) == 0, tilted = (bits & 2) != 0;
+                    if (degrees > 90.0 && !tilted) continue;
                     const Side side = (bits & 4) != 0 ? Side::Light : Side::Eye;
                     Bsdf::Parameters p = m.parameters;
                     p.roughness = roughness;
