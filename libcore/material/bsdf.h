@@ -202,6 +202,7 @@ class Bsdf {
     Pair aboutNg(const Cosines& c) const { return {ng_, c.eyeG, c.lightG, 1.0f}; }
 
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
+    bool isTilted() const { return (ns_.x != ng_.x) | (ns_.y != ng_.y) | (ns_.z != ng_.z); }
     /// Diffuse and nothing else: there are no lobes to turn about ng.
     bool isLambert() const { return has(kDiffuse) && has(kOneLobe); }
     /// False where the pair scatters nothing, because it is grazing.
@@ -230,6 +231,7 @@ class Bsdf {
     static void addPart(const BsdfEvaluation& part, float share, float pickedByLight,
                         BsdfEvaluation& out);
     BsdfEvaluation evaluateLobes(const Vec3& toEye, const Vec3& toLight) const;
+    BsdfEvaluation evaluateTilted(const Vec3& toEye, const Vec3& toLight, const Cosines& c) const;
     BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
                               const Cosines& c) const;
     BsdfEvaluation deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const;

@@ -44,36 +44,12 @@ inline Lobe lobeOf(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
 
 }  // namespace
 
-/// One normal's part of the mixture; `share` of what the eye sees.
-inline void Bsdf::addPart(const BsdfEvaluation& part, float share, float pickedByLight,
-                          BsdfEvaluation& out) {
-    out.f += part.f * share;
-    out.pdfWToLight += part.pdfWToLight * share;
-    out.pdfWToEye += part.pdfWToEye * pickedByLight;
-}
-
-BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const {
-    BsdfEvaluation out;
-    Cosines c;
-    if (!connectable() || !makeCosines(toEye, toLight, c)) {
-        return out;
-    }
-    const float eyeNg = eyeShare(c.eyeS, c.eyeG);
-    const float lightNg = lightShare(c.lightS, c.lightG);
-    if (eyeNg < 1.0f && c.lightSeen()) {
-        addPart(lobesAbout(aboutNs(c), toEye, toLight, c), 1.0f - eyeNg, 1.0f - lightNg, out);
-    }
-    if (eyeNg > 0.0f) {
-        addPart(lobesAbout(aboutNg(c), toEye, toLight, c), eyeNg, lightNg, out);
-    }
-    return out;
-}
-
 /// All lobes that have a density, those of layers and glass about pair.n. The diffuse base keeps ns
 /// for the light, and ng for the eye.
 // One result variable per function, filled in place: a copy of it would wait for its parts' stores.
-BsdfEvaluation Bsdf::lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
-                                const Cosines& c) const {
+[[gnu::always_inline]] inline BsdfEvaluation Bsdf::lobesAbout(const Pair& pair, const Vec3& toEye,
+                                                              const Vec3& toLight,
+                                                              const Cosines& c) const {
     BsdfEvaluation out;
     if (!c.reflects()) {
         if (has(kRoughGlass)) {
@@ -103,6 +79,40 @@ BsdfEvaluation Bsdf::lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3&
     }
     if (clearcoatAlpha_ > 0.0f) {
         addRoughClearcoat(toEye, toLight, pair, eye, light, out);
+    }
+    return out;
+}
+
+BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const {
+    Cosines c;
+    if (!connectable() || !makeCosines(toEye, toLight, c)) {
+        return {};
+    }
+    if (!isTilted()) {
+        return lobesAbout(aboutNg(c), toEye, toLight, c);
+    }
+    return evaluateTilted(toEye, toLight, c);
+}
+
+/// One normal's part of the mixture; `share` of what the eye sees.
+inline void Bsdf::addPart(const BsdfEvaluation& part, float share, float pickedByLight,
+                          BsdfEvaluation& out) {
+    out.f += part.f * share;
+    out.pdfWToLight += part.pdfWToLight * share;
+    out.pdfWToEye += part.pdfWToEye * pickedByLight;
+}
+
+/// evaluateLobes() where ns != ng: the mixture.
+BsdfEvaluation Bsdf::evaluateTilted(const Vec3& toEye, const Vec3& toLight,
+                                    const Cosines& c) const {
+    BsdfEvaluation out;
+    const float eyeNg = eyeShare(c.eyeS, c.eyeG);
+    const float lightNg = lightShare(c.lightS, c.lightG);
+    if (eyeNg < 1.0f && c.lightSeen()) {
+        addPart(lobesAbout(aboutNs(c), toEye, toLight, c), 1.0f - eyeNg, 1.0f - lightNg, out);
+    }
+    if (eyeNg > 0.0f) {
+        addPart(lobesAbout(aboutNg(c), toEye, toLight, c), eyeNg, lightNg, out);
     }
     return out;
 }
@@ -193,6 +203,9 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
     if (event == ScatterEvent::Smooth || !makeCosines(toEye, toLight, c) ||
         c.reflects() != (event == ScatterEvent::DeltaReflection)) {
         return out;
+    }
+    if (!isTilted()) {
+        return deltaAbout(aboutNg(c), c, event);
     }
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
     const float lightNg = lightShare(c.lightS, c.lightG);

@@ -48,13 +48,15 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
         return result;
     }
     // The normal, by uLobe, which is uniform again then.
-    float shareNg = 0.0f;
-    if (!isLambert()) {
+    const bool tilted = isTilted() && !isLambert();
+    float shareNg = 0.0f, u = uLobe;
+    if (tilted) {
         shareNg = side == Side::Eye ? eyeShare(fromS, fromG) : lightShare(fromS, fromG);
     }
     const bool byNg = uLobe < shareNg;
-    const float u =
-        byNg ? uLobe / shareNg : std::min((uLobe - shareNg) / (1.0f - shareNg), 0x1.fffffep-1f);
+    if (shareNg > 0.0f) {
+        u = byNg ? uLobe / shareNg : std::min((uLobe - shareNg) / (1.0f - shareNg), 0x1.fffffep-1f);
+    }
     const bool front = fromG > 0.0f;
     const float sign = front ? 1.0f : -1.0f;
     const Vec3 n = (byNg ? ng_ : ns_) * sign;
@@ -107,14 +109,16 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
         }
     }
     to = renormalize(to);
-    const float toG = dot(to, ng_);
-    if (transmits != (toG * sign < 0.0f)) {
-        return result;  // on another side of the surface than the lobe about ns sent it to
-    }
-    if (side == Side::Light && !isLambert()) {
-        const float eyeNg = eyeShare(toG + dot(to, ns_ - ng_), toG);
-        if (byNg ? !(eyeNg > 0.0f) : !(eyeNg < 1.0f)) {
-            return result;  // no eye there sees lobes about this normal
+    if (tilted) {
+        const float toG = dot(to, ng_);
+        if (transmits != (toG * sign < 0.0f)) {
+            return result;  // on another side of the surface than the lobe about ns sent it to
+        }
+        if (side == Side::Light) {
+            const float eyeNg = eyeShare(toG + dot(to, ns_ - ng_), toG);
+            if (byNg ? !(eyeNg > 0.0f) : !(eyeNg < 1.0f)) {
+                return result;  // no eye there sees lobes about this normal
+            }
         }
     }
     BsdfSample& s = result.emplace();
