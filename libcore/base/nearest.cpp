@@ -13,13 +13,15 @@ constexpr std::size_t kPointsPerLeaf = 8;
 constexpr std::size_t kStackResults = 16;
 
 struct Points {
-    std::vector<Vec3> points;
+    std::vector<Vec3> points, sides;
+    float sideLength = 0.0f;
 
     // Names that nanoflann asks for.
     std::size_t kdtree_get_point_count() const { return points.size(); }
     float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-        const Vec3& p = points[i];
-        return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+        const Vec3 p = axis < 3 ? points[i] : sides[i] * sideLength;
+        const std::size_t a = axis % 3;
+        return a == 0 ? p.x : a == 1 ? p.y : p.z;
     }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
@@ -28,19 +30,22 @@ struct Points {
 };
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
-                                                 Points, 3, std::uint32_t>;
+                                                 Points, 6, std::uint32_t>;
 
 }  // namespace
 
 struct NearestPoints::Impl {
-    explicit Impl(std::vector<Vec3> p) : points{std::move(p)}, tree(3, points, {kPointsPerLeaf}) {}
+    Impl(std::vector<Vec3> p, std::vector<Vec3> s, float length)
+        : points{std::move(p), std::move(s), length}, tree(6, points, {kPointsPerLeaf}) {}
     Points points;
     Tree tree;
 };
 
 NearestPoints::NearestPoints() = default;
-NearestPoints::NearestPoints(std::vector<Vec3> points) {
-    if (!points.empty()) impl_ = std::make_unique<Impl>(std::move(points));
+NearestPoints::NearestPoints(std::vector<Vec3> points, std::vector<Vec3> sides, float sideLength) {
+    if (!points.empty()) {
+        impl_ = std::make_unique<Impl>(std::move(points), std::move(sides), sideLength);
+    }
 }
 NearestPoints::~NearestPoints() = default;
 NearestPoints::NearestPoints(NearestPoints&&) noexcept = default;
@@ -54,9 +59,10 @@ Vec3 NearestPoints::point(std::uint32_t index) const {
     return impl_->points.points[index];
 }
 
-std::size_t NearestPoints::find(Vec3 p, std::span<std::uint32_t> out) const {
+std::size_t NearestPoints::find(Vec3 p, Vec3 side, std::span<std::uint32_t> out) const {
     if (!impl_ || out.empty()) return 0;
-    const float query[3] = {p.x, p.y, p.z};
+    const Vec3 s = side * impl_->points.sideLength;
+    const float query[6] = {p.x, p.y, p.z, s.x, s.y, s.z};
     std::array<float, kStackResults> few;
     std::vector<float> many;
     float* distances = few.data();

@@ -1,4 +1,4 @@
-// The nearest of many points in space. nearest.cpp is the only file that includes nanoflann.
+// The nearest of many points that lie on surfaces. nearest.cpp is the only file that includes nanoflann.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,18 @@ namespace lacuna {
 class NearestPoints {
   public:
     NearestPoints();
-    explicit NearestPoints(std::vector<Vec3> points);
+    /// `sides`: where each looks to, a unit vector, or zero for no side. The squared distance of two
+    /// is that of their places plus that of their sides times `sideLength`^2.
+    NearestPoints(std::vector<Vec3> points, std::vector<Vec3> sides, float sideLength);
     ~NearestPoints();
     NearestPoints(NearestPoints&&) noexcept;
     NearestPoints& operator=(NearestPoints&&) noexcept;
 
     std::size_t size() const;
     Vec3 point(std::uint32_t index) const;
-    /// The out.size() points nearest to `p`, nearest first. Returns how many were found: fewer only
+    /// The out.size() points nearest to `p` that looks to `side`, nearest first. Returns how many were found: fewer only
     /// where there are fewer.
-    std::size_t find(Vec3 p, std::span<std::uint32_t> out) const;
+    std::size_t find(Vec3 p, Vec3 side, std::span<std::uint32_t> out) const;
 
   private:
     struct Impl;

@@ -55,19 +55,21 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
             chunks[c].vertices.insert(chunks[c].vertices.end(), path.begin(), path.end());
         }
     });
-    std::vector<Vec3> positions;
+    std::vector<Vec3> positions, sides;
     for (const Chunk& chunk : chunks) {
         context.statistics.add(chunk.tally);
         for (const PathVertex& v : chunk.vertices) {
             if (v.kind == VertexKind::Surface && v.connectable()) {
                 points_.push_back(std::uint32_t(vertices_.size()));
                 positions.push_back(v.position);
+                sides.push_back(scatteringSide(v));
             }
             vertices_.push_back(v);
         }
     }
     const double spacing2 = typicalSpacing2(positions);
-    nearest_ = NearestPoints(std::move(positions));
+    // Turned away counts as twice the spacing: points behind a thin wall are passed over.
+    nearest_ = NearestPoints(std::move(positions), std::move(sides), float(std::sqrt(spacing2)));
 
     // One neighbour beyond N_c says how far the point's region reaches where N_c is 1.
     const std::size_t asked = std::min(size(), std::size_t(neighbours) + 1);
@@ -76,7 +78,7 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
     limit_.resize(size());
     forEachPoint(context.threads, size(), [&](std::uint32_t i) {
         std::vector<std::uint32_t> found(asked);
-        nearest_.find(position(i), found);
+        nearest_.find(position(i), side(i), found);
         // Of coincident points another one may come first.
         const auto self = std::find(found.begin(), found.end(), i);
         std::rotate(found.begin(), self == found.end() ? self - 1 : self,
@@ -97,13 +99,13 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
 void CachePoints::labelAsEye(std::span<PathVertex> walk) const {
     for (PathVertex& v : walk) {
         const bool served = v.kind == VertexKind::Surface && v.connectable();
-        if (served && v.asEye == kNone) v.asEye = nearest(v.position);
+        if (served && v.asEye == kNone) v.asEye = nearest(v);
     }
 }
 
-std::uint32_t CachePoints::nearest(Vec3 position) const {
+std::uint32_t CachePoints::nearest(const PathVertex& vertex) const {
     std::uint32_t found = kNone;
-    nearest_.find(position, {&found, 1});
+    nearest_.find(vertex.position, scatteringSide(vertex), {&found, 1});
     return found;
 }
 
@@ -135,7 +137,7 @@ std::vector<double> EarlierValues::at(const CachePoints& points, const ThreadPoo
     forEachPoint(threads, points.size(), [&](std::uint32_t i) {
         std::vector<std::uint32_t> found(count_);
         for (const Set& set : history_) {
-            const std::size_t n = set.nearest.find(points.position(i), found);
+            const std::size_t n = set.nearest.find(points.position(i), points.side(i), found);
             const double share = 1.0 / (double(n) * double(history_.size()));
             for (std::size_t j = 0; j < n; ++j) {
                 for (std::size_t k = 0; k < columns_; ++k) {

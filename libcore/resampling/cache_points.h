@@ -32,11 +32,13 @@ class CachePoints {
     /// The point as the end of an eye subpath: its predecessor and itself.
     Subpath eye(std::uint32_t point) const { return {vertices_.data() + points_[point] - 1, 2}; }
     Vec3 position(std::uint32_t point) const { return vertices_[points_[point]].position; }
+    /// The side of its surface that it lies on.
+    Vec3 side(std::uint32_t point) const { return scatteringSide(vertices_[points_[point]]); }
 
     /// The point that serves an eye vertex, which is also the vertex's label; kNone where there are
     /// no points. `label`: the vertex's, where it is known.
     std::uint32_t serving(const PathVertex& eye, Label label) const {
-        return label != kNone ? label : nearest(eye.position);
+        return label != kNone ? label : nearest(eye);
     }
     /// Labels a walk's vertices as eye vertices, whichever walk it is.
     void labelAsEye(std::span<PathVertex> walk) const;
@@ -68,7 +70,7 @@ class CachePoints {
     NearestPoints takeNearest() && { return std::move(nearest_); }
 
   private:
-    std::uint32_t nearest(Vec3 position) const;
+    std::uint32_t nearest(const PathVertex& vertex) const;
 
     std::vector<PathVertex> vertices_;   // whole eye subpaths
     std::vector<std::uint32_t> points_;  // index into vertices_

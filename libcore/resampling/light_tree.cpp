@@ -15,13 +15,6 @@ float along(Vec3 v, int axis) {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// The side that light leaves to. Whatever transmits is taken for a reflector: bounds only steer
-/// the refinement.
-Vec3 sideOf(const PathVertex& y) {
-    if (y.kind != VertexKind::Surface) return y.ng;
-    return dot(y.ng, y.toPrevious) < 0.0f ? -y.ng : y.ng;
-}
-
 }  // namespace
 
 LightTree::LightTree(const LightPool& pool, std::span<const LightPool::Entry> candidates,
@@ -34,7 +27,7 @@ LightTree::LightTree(const LightPool& pool, std::span<const LightPool::Entry> ca
             const PathVertex& y = pool.prefix(candidates[i]).back();
             const double power = double(mean(y.throughput));
             if (y.infinite() != infinite || !(power > 0.0)) continue;
-            leaves.push_back({y.position, infinite ? Vec3{} : sideOf(y), power, i});
+            leaves.push_back({y.position, infinite ? Vec3{} : scatteringSide(y), power, i});
         }
     }
     const auto n = std::uint32_t(leaves.size());
@@ -161,18 +154,23 @@ LightTree::Draw LightTree::draw(Cluster c, double u) const {
 
 /// An estimate from above of power x G towards the eye vertex, visibility and BSDFs left out.
 double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal) const {
-    // A cosine is never trusted to be zero: what transmits is not told from what reflects.
+    // A cosine is never trusted to be zero: two-sided lamps are not told from others.
     constexpr float kLeastCosine = 0.02f;
     const Vec3 centre = (node.low + node.high) * 0.5f, half = (node.high - node.low) * 0.5f;
     const float radius2 = dot(half, half);
     if (node.begin >= infinite_) {
-        const float cosine = dot(eyeNormal, centre) + std::sqrt(radius2);
+        const float cosine =
+            eyeNormal == Vec3{} ? 1.0f : dot(eyeNormal, centre) + std::sqrt(radius2);
         return node.power * double(std::clamp(cosine, kLeastCosine, 1.0f));
     }
     const Vec3 to = eye.position - centre;
     const float d2 = dot(to, to);
-    if (d2 <= radius2) return node.power / double(std::max(radius2, 1e-30f));
     const float d = std::sqrt(d2), radius = std::sqrt(radius2);
+    // From the box itself, but not so near that one cluster around the point takes all splits.
+    const Vec3 out = max(max(node.low - eye.position, eye.position - node.high), Vec3{});
+    const float near = std::max(length(out), 0.5f * radius);
+    const double power = node.power / std::max(1e-30, double(near) * double(near));
+    if (d <= radius) return power;
     const float atEye = eyeNormal == Vec3{}
                             ? 1.0f
                             : std::clamp((radius - dot(eyeNormal, to)) / d, kLeastCosine, 1.0f);
@@ -187,15 +185,14 @@ double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal)
         const bool inside = cosine >= openCosine || openSine < 0.0f;
         atLight = inside ? 1.0f : std::max(cosine * openCosine + sine * openSine, kLeastCosine);
     }
-    const float near = std::max(d - radius, radius);
-    return node.power * double(atEye * atLight) / (double(near) * double(near));
+    return power * double(atEye * atLight);
 }
 
 void LightTree::cut(const PathVertex& eye, std::size_t budget, std::vector<CutNode>& heap,
                     std::vector<Cluster>& cut) const {
     cut.clear();
     heap.clear();
-    const Vec3 normal = dot(eye.ng, eye.toPrevious) < 0.0f ? -eye.ng : eye.ng;
+    const Vec3 normal = scatteringSide(eye);
     const auto lower = [](const CutNode& a, const CutNode& b) {
         return a.bound != b.bound ? a.bound < b.bound : a.node > b.node;
     };

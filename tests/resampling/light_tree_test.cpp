@@ -149,10 +149,11 @@ TEST(LightTree, cutsAreFineWhereLightIsNearAndBright) {
     EXPECT_GE(near, 25u);
 }
 
-/// Two clusters of a hundred lamps each, and how many of a cut's 30 parts hold lamps of the first.
+/// Two clusters of a hundred lamps each, and how many of a cut's parts hold lamps of the first.
 /// `describe` makes a lamp of its place in a unit cube around the origin.
 template <class Describe>
-std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe) {
+std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe,
+                            std::size_t parts = 30) {
     const ThreadPool threads(1);
     LightPool pool;
     pool.reset(200);
@@ -169,8 +170,8 @@ std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe) {
     const LightTree tree(pool, pool.connectable(), threads);
     std::vector<LightTree::CutNode> heap;
     std::vector<LightTree::Cluster> cut;
-    tree.cut(eye, 30, heap, cut);
-    EXPECT_EQ(cut.size(), 30u);
+    tree.cut(eye, parts, heap, cut);
+    EXPECT_EQ(cut.size(), parts);
     std::size_t first = 0;
     for (const LightTree::Cluster c : cut) first += tree.candidates(c)[0] < 100;
     return first;
@@ -198,6 +199,30 @@ TEST(LightTree, cutsAreFineWhereLampsFaceThePoint) {
         v.bsdf = grey;
     };
     EXPECT_GE(partsOfTheFirst(eye, reflecting), 25u);
+}
+
+/// What transmits sends light to both sides, wherever it came from.
+TEST(LightTree, cutsAreAlikeForTransmittersThatFaceAndTurnAway) {
+    const AlbedoTables none;
+    const Bsdf glass({.roughness = 0.5f, .transmission = 1.0f}, {1, 0, 0}, {1, 0, 0}, none);
+    const std::size_t facing = partsOfTheFirst(someEye({}, {}), [&](bool first, PathVertex& v) {
+        v.kind = VertexKind::Surface;
+        v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
+        v.ng = {1, 0, 0};
+        v.toPrevious = {-1, 0, 0};
+        v.bsdf = glass;
+    });
+    EXPECT_GE(facing, 10u);
+    EXPECT_LE(facing, 20u);
+}
+
+/// A long row of lamps is near where its end is, however far its middle is.
+TEST(LightTree, cutsAreFineWhereTheEndOfARowIsNear) {
+    const auto describe = [](bool first, PathVertex& v) {
+        v.position =
+            first ? Vec3{60.0f * v.position.x + 31.0f, 0, 0} : v.position + Vec3{-20, 0, 0};
+    };
+    EXPECT_EQ(partsOfTheFirst(someEye({}, {}), describe, 3), 2u);
 }
 
 /// Nor does the point's surface see what is behind it, near or at infinity.
