@@ -33,13 +33,14 @@ inline float Bsdf::eyeShare(float eyeS, float eyeG) const {
 }
 
 /// The probability that a light walk picks ng: always where ns sees no light; as often as not where
-/// the mirror direction about ng leads to an eye that sees lobes about it; else seldom: such eyes
-/// then fill about the square of the normals' angle.
+/// the mirror direction about ng leads to an eye that sees lobes about it; else seldom. Such eyes
+/// then fill about the square of the normals' angle: a walk that picked ng no more often than that
+/// would carry its inverse there.
 inline float Bsdf::lightShare(float lightS, float lightG) const {
     if (!(lightS * lightG > 0.0f)) return 1.0f;
     const float tilt2 = lengthSquared(ns_ - ng_);
     const float mirroredS = (2.0f - tilt2) * lightG - lightS;
-    return std::max(std::min(0.125f, tilt2), 0.5f * eyeShare(mirroredS, lightG));
+    return std::max(std::min(0.125f, 0.5f * std::sqrt(tilt2)), 0.5f * eyeShare(mirroredS, lightG));
 }
 
 /// Lobe probabilities: the lobes' albedos, channels averaged, as far as they are known without
