@@ -52,6 +52,11 @@ def exists(pattern, tests):
     return any(t == pattern or ("*" in pattern and t.startswith(suite)) for t in tests)
 
 
+def gtest_filter(patterns):
+    """The tests of these names, those with a parameter too: All/Suite.name/value."""
+    return ":".join(f"{p}:*/{p}" if "*" in p else f"{p}:*/{p}/*" for p in patterns.split(":"))
+
+
 def check():
     wrong = []
     names = [f.name for f in FAULTS]
@@ -168,7 +173,9 @@ class Build:
         found = []
         for folder, patterns in fault.tests.items():
             program = self.directory / "tests" / f"test_{folder}"
-            output, code = run([program, f"--gtest_filter={patterns}", "--gtest_brief=1"], self.directory, SECONDS)
+            output, code = run([program, f"--gtest_filter={gtest_filter(patterns)}", "--gtest_brief=1"], self.directory, SECONDS)
+            if re.search(r"^\[=+\] 0 tests", output, re.M):
+                fail(f"{fault.name}: no test of {program.name} is called {patterns}")
             found += failed_tests(output, code, program.name)
         return found
 
