@@ -55,8 +55,9 @@ std::string hashOfFile(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     ContentHash hash;
     hash.addStream(stream);
-    if (!stream.eof())
+    if (!stream.eof()) {
         throw InputError(path + ": expected a file that can be read, found none; check the name");
+    }
     return hash.hex();
 }
 

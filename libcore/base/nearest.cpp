@@ -13,13 +13,12 @@ constexpr std::size_t kPointsPerLeaf = 8;
 constexpr std::size_t kStackResults = 16;
 
 struct Points {
-    std::vector<Vec3> points, sides;
-    float sideLength = 0.0f;
+    std::vector<Vec3> points, sides;  // sides times the length that they count
 
     // Names that nanoflann asks for.
     std::size_t kdtree_get_point_count() const { return points.size(); }
     float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-        const Vec3 p = axis < 3 ? points[i] : sides[i] * sideLength;
+        const Vec3& p = axis < 3 ? points[i] : sides[i];
         const std::size_t a = axis % 3;
         return a == 0 ? p.x : a == 1 ? p.y : p.z;
     }
@@ -36,7 +35,10 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<fl
 
 struct NearestPoints::Impl {
     Impl(std::vector<Vec3> p, std::vector<Vec3> s, float length)
-        : points{std::move(p), std::move(s), length}, tree(6, points, {kPointsPerLeaf}) {}
+        : sideLength(length),
+          points{std::move(p), std::move(s)},
+          tree(6, points, {kPointsPerLeaf}) {}
+    float sideLength;
     Points points;
     Tree tree;
 };
@@ -44,6 +46,7 @@ struct NearestPoints::Impl {
 NearestPoints::NearestPoints() = default;
 NearestPoints::NearestPoints(std::vector<Vec3> points, std::vector<Vec3> sides, float sideLength) {
     if (!points.empty()) {
+        for (Vec3& side : sides) side = side * sideLength;
         impl_ = std::make_unique<Impl>(std::move(points), std::move(sides), sideLength);
     }
 }
@@ -55,13 +58,9 @@ std::size_t NearestPoints::size() const {
     return impl_ ? impl_->points.points.size() : 0;
 }
 
-Vec3 NearestPoints::point(std::uint32_t index) const {
-    return impl_->points.points[index];
-}
-
 std::size_t NearestPoints::find(Vec3 p, Vec3 side, std::span<std::uint32_t> out) const {
     if (!impl_ || out.empty()) return 0;
-    const Vec3 s = side * impl_->points.sideLength;
+    const Vec3 s = side * impl_->sideLength;
     const float query[6] = {p.x, p.y, p.z, s.x, s.y, s.z};
     std::array<float, kStackResults> few;
     std::vector<float> many;

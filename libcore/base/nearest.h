@@ -1,4 +1,5 @@
-// The nearest of many points that lie on surfaces. nearest.cpp is the only file that includes nanoflann.
+// The nearest of many points that lie on surfaces. nearest.cpp is the only file that includes
+// nanoflann.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,8 @@ class NearestPoints {
     NearestPoints& operator=(NearestPoints&&) noexcept;
 
     std::size_t size() const;
-    Vec3 point(std::uint32_t index) const;
-    /// The out.size() points nearest to `p` that looks to `side`, nearest first. Returns how many were found: fewer only
-    /// where there are fewer.
+    /// The out.size() points nearest to `p` that looks to `side`, nearest first. Returns how many
+    /// were found: fewer only where there are fewer.
     std::size_t find(Vec3 p, Vec3 side, std::span<std::uint32_t> out) const;
 
   private:

@@ -61,6 +61,7 @@ struct PathVertex {
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
+static_assert(sizeof(PathVertex) == 200);  // pools hold millions of them
 
 /// ng on the side that a surface scatters light to and the path lies on; zero where that is both
 /// sides, because the surface transmits. Elsewhere ng. The same in either walk's vertex.
@@ -69,7 +70,6 @@ inline Vec3 scatteringSide(const PathVertex& v) {
     if (v.bsdf.transmits()) return {};
     return dot(v.ng, v.toPrevious) < 0.0f ? -v.ng : v.ng;
 }
-static_assert(sizeof(PathVertex) == 200);  // pools hold millions of them
 
 /// Asks the cache for a vertex that will be looked at soon.
 inline void prefetch(const PathVertex& vertex) {

@@ -228,8 +228,9 @@ class Bsdf {
     }
     float eyeShare(float eyeS, float eyeG) const;
     float lightShare(float lightS, float lightG) const;
-    static void addPart(const BsdfEvaluation& part, float share, float pickedByLight,
-                        BsdfEvaluation& out);
+    template <class PartAbout>
+    BsdfEvaluation mixture(const Cosines& c, float eyeNg, bool byNs, bool byNg,
+                           const PartAbout& partAbout) const;
     BsdfEvaluation evaluateLobes(const Vec3& toEye, const Vec3& toLight) const;
     BsdfEvaluation evaluateTilted(const Vec3& toEye, const Vec3& toLight, const Cosines& c) const;
     BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,

@@ -94,27 +94,30 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
     return evaluateTilted(toEye, toLight, c);
 }
 
-/// One normal's part of the mixture; `share` of what the eye sees.
-inline void Bsdf::addPart(const BsdfEvaluation& part, float share, float pickedByLight,
-                          BsdfEvaluation& out) {
-    out.f += part.f * share;
-    out.pdfWToLight += part.pdfWToLight * share;
-    out.pdfWToEye += part.pdfWToEye * pickedByLight;
+/// The mixture of both normals' parts, partAbout(pair) each; `byNs`, `byNg`: which of them have one.
+template <class PartAbout>
+inline BsdfEvaluation Bsdf::mixture(const Cosines& c, float eyeNg, bool byNs, bool byNg,
+                                    const PartAbout& partAbout) const {
+    BsdfEvaluation out;
+    const float lightNg = lightShare(c.lightS, c.lightG);
+    const auto add = [&](const BsdfEvaluation& part, float seenByEye, float pickedByLight) {
+        out.f += part.f * seenByEye;
+        out.pdfWToLight += part.pdfWToLight * seenByEye;
+        out.pdfWToEye += part.pdfWToEye * pickedByLight;
+    };
+    if (byNs && c.lightSeen()) add(partAbout(aboutNs(c)), 1.0f - eyeNg, 1.0f - lightNg);
+    if (byNg) add(partAbout(aboutNg(c)), eyeNg, lightNg);
+    return out;
 }
 
-/// evaluateLobes() where ns != ng: the mixture.
+/// evaluateLobes() where ns != ng.
 BsdfEvaluation Bsdf::evaluateTilted(const Vec3& toEye, const Vec3& toLight,
                                     const Cosines& c) const {
-    BsdfEvaluation out;
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
-    const float lightNg = lightShare(c.lightS, c.lightG);
-    if (eyeNg < 1.0f && c.lightSeen()) {
-        addPart(lobesAbout(aboutNs(c), toEye, toLight, c), 1.0f - eyeNg, 1.0f - lightNg, out);
-    }
-    if (eyeNg > 0.0f) {
-        addPart(lobesAbout(aboutNg(c), toEye, toLight, c), eyeNg, lightNg, out);
-    }
-    return out;
+    const bool byNs = eyeNg < 1.0f;
+    const bool byNg = eyeNg > 0.0f;
+    return mixture(c, eyeNg, byNs, byNg,
+                   [&](const Pair& pair) { return lobesAbout(pair, toEye, toLight, c); });
 }
 
 void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
@@ -198,18 +201,17 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
 
 BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
                                    ScatterEvent event) const {
-    BsdfEvaluation out;
     Cosines c;
     if (event == ScatterEvent::Smooth || !makeCosines(toEye, toLight, c) ||
         c.reflects() != (event == ScatterEvent::DeltaReflection)) {
-        return out;
+        return {};
     }
     if (!isTilted()) {
         return deltaAbout(aboutNg(c), c, event);
     }
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
-    const float lightNg = lightShare(c.lightS, c.lightG);
-    bool byNs = eyeNg<1.0f, byNg = eyeNg> 0.0f;
+    bool byNs = eyeNg < 1.0f;
+    bool byNg = eyeNg > 0.0f;
     const bool straight = event == ScatterEvent::DeltaTransmission && has(kThin);
     if (byNs && byNg && !straight) {
         // Each normal has an event of its own here: the directions say which this one is of.
@@ -218,15 +220,11 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         byNg = lengthSquared(cross(h, ng_)) < lengthSquared(cross(h, ns_));
         byNs = !byNg;
     }
-    if (byNs && c.lightSeen()) {
-        addPart(deltaAbout(aboutNs(c), c, event), 1.0f - eyeNg, 1.0f - lightNg, out);
-    }
-    if (byNg) {
-        addPart(deltaAbout(aboutNg(c), c, event), eyeNg, lightNg, out);
-    }
-    return out;
+    return mixture(c, eyeNg, byNs, byNg,
+                   [&](const Pair& pair) { return deltaAbout(pair, c, event); });
 }
 
+/// The delta event about pair.n.
 BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const {
     BsdfEvaluation out;
     const bool deltaLayers = has(kLayers) && !has(kRoughLayers);

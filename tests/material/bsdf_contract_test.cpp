@@ -160,15 +160,7 @@ TEST(BsdfContract, TiltedNormalsLeaveNoEyeInTheDark) {
                 const Bsdf bsdf(p, ng, ns, tables());
                 for (const double degrees : {30.0, 60.0, 80.0, 85.0, 88.0}) {
                     const Vec3 toEye = world().toWorld(polar(degrees, 180));
-                    Moments albedo;
-                    for (int i = 0; i < 4000; ++i) {
-                        const float u0 = random.next(), u1 = random.next(), u2 = random.next();
-                        const auto s = bsdf.sample(Side::Eye, toEye, u0, u1, u2);
-                        albedo.add(s ? double(s->evaluation.f.g) *
-                                           std::abs(double(dot(s->to, ng))) /
-                                           double(s->evaluation.pdfWToLight)
-                                     : 0.0);
-                    }
+                    const Moments albedo = albedoSeenFrom(bsdf, toEye, 4000, random);
                     SCOPED_TRACE(m.name + " " + std::to_string(roughness) + " tilted by " +
                                  std::to_string(tilt) + ", seen at " + std::to_string(degrees));
                     EXPECT_GT(albedo.mean(), 0.3);

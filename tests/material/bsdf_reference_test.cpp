@@ -311,15 +311,7 @@ TEST(BsdfReference, WhitePlasticReturnsEverything) {
                 p.clearcoatRoughness = roughness;
                 const Bsdf bsdf(p, world().n, world().n, tables());
                 const Vec3 from = world().toWorld(polar(degrees, 300));
-                Moments albedo;
-                for (int i = 0; i < 20000; ++i) {
-                    const float u0 = random.next(), u1 = random.next(), u2 = random.next();
-                    const auto s = bsdf.sample(Side::Eye, from, u0, u1, u2);
-                    albedo.add(s ? double(s->evaluation.f.g) *
-                                       std::abs(double(dot(s->to, world().n))) /
-                                       double(s->evaluation.pdfWToLight)
-                                 : 0.0);
-                }
+                const Moments albedo = albedoSeenFrom(bsdf, from, 20000, random);
                 const double excess =
                     std::max(0.0, std::abs(albedo.mean() - 1) - double(kTableError));
                 EXPECT_GT(normalTail(excess / std::max(1e-9, albedo.standardError()), 2),

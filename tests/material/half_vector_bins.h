@@ -1,6 +1,6 @@
 // Bins over all directions, and integrals over them, in the coordinates of the half vector about a
-// normal: narrow lobes and wide ones are resolved alike. The Jacobian from half vectors to directions is taken
-// numerically, so that it is independent of the formulas under test.
+// normal: narrow lobes and wide ones are resolved alike. The Jacobian from half vectors to
+// directions is taken numerically, so that it is independent of the formulas under test.
 #pragma once
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "libcore/base/sampling.h"
 #include "libcore/material/albedo_tables.h"
 #include "libcore/material/bsdf.h"
+#include "tests/material/statistics.h"
 
 namespace lacuna::test {
 
@@ -144,6 +145,20 @@ inline double shareOfNg(Vec3d toEye, Vec3d ng, Vec3d ns) {
     const double side = dot(toEye, ng) > 0 ? 1 : -1;
     const double m = dot(ns * (2 * dot(toEye, ns)) - toEye, ng) * side;
     return std::clamp(1 - 4 * m / std::abs(dot(toEye, ng)), 0.0, 1.0);
+}
+
+/// Moments of the weights that an eye walk's samples have: their mean is the albedo seen from
+/// toEye.
+inline Moments albedoSeenFrom(const Bsdf& bsdf, Vec3 toEye, int samples, Random& random) {
+    Moments albedo;
+    for (int i = 0; i < samples; ++i) {
+        const float u0 = random.next(), u1 = random.next(), u2 = random.next();
+        const auto s = bsdf.sample(Side::Eye, toEye, u0, u1, u2);
+        albedo.add(s ? double(s->evaluation.f.g) * std::abs(double(dot(s->to, bsdf.ng()))) /
+                           double(s->evaluation.pdfWToLight)
+                     : 0.0);
+    }
+    return albedo;
 }
 
 inline std::vector<Case> grid() {

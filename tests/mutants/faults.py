@@ -210,7 +210,7 @@ FAULTS = [
           {"resampling": "CachePmfs.areTheWeightsOverTheirSum"}),
     Fault("nearest-by-place-alone", "nearest points may lie on the other side of a wall",
           "libcore/base/nearest.cpp",
-          "axis < 3 ? points[i] : sides[i] * sideLength", "axis < 3 ? points[i] : sides[i] * 0.0f",
+          "for (Vec3& side : sides) side = side * sideLength;", "for (Vec3& side : sides) side = side * 0.0f;",
           {"base": "NearestPoints.*"}),
     Fault("cache-point-trusts-zero", "weights count on nothing where a cache point sees a lamp from behind",
           "libcore/resampling/cache_points.cpp",
