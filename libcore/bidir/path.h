@@ -54,7 +54,8 @@ struct PathVertex {
     std::uint32_t material = kNone;
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
-    std::uint16_t index = 0;                    ///< 0 on the light or the lens
+    std::uint8_t index = 0;                     ///< 0 on the light or the lens
+    bool twoSided = false;                      ///< LightSource: its lamp shines to both sides
 
     bool infinite() const { return kind == VertexKind::Infinite; }
     /// Whether a connection may end here.
@@ -63,10 +64,11 @@ struct PathVertex {
 static_assert(std::is_trivially_copyable_v<PathVertex>);
 static_assert(sizeof(PathVertex) == 200);  // pools hold millions of them
 
-/// ng on the side that a surface scatters light to and the path lies on; zero where that is both
-/// sides, because the surface transmits. Elsewhere ng. The same in either walk's vertex.
+/// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
+/// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either
+/// walk's vertex.
 inline Vec3 scatteringSide(const PathVertex& v) {
-    if (v.kind != VertexKind::Surface) return v.ng;
+    if (v.kind != VertexKind::Surface) return v.twoSided ? Vec3{} : v.ng;
     if (v.bsdf.transmits()) return {};
     return dot(v.ng, v.toPrevious) < 0.0f ? -v.ng : v.ng;
 }

@@ -31,6 +31,7 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
     out.ng = p.ng;
     out.light = p.light;
     out.lightUv = p.uv;
+    out.twoSided = lights.twoSided(p.light);
     if (p.kind == LightKind::Area && !scene_.absorption().empty()) {
         out.material = lights.material(p.light);
     }
@@ -93,7 +94,7 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     PathVertex& v = out.emplace_back();
     const PathVertex& previous = out[out.size() - 2];
     v.kind = VertexKind::Surface;
-    v.index = std::uint16_t(out.size() - 1);
+    v.index = std::uint8_t(out.size() - 1);
     v.position = point.position;
     v.ng = point.ng;
     v.toPrevious = -direction;
@@ -170,7 +171,7 @@ std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
     PathVertex& v = out.emplace_back();
     const PathVertex& previous = out[out.size() - 2];
     v.kind = VertexKind::Infinite;
-    v.index = std::uint16_t(out.size() - 1);
+    v.index = std::uint8_t(out.size() - 1);
     v.position = walk.direction;
     v.toPrevious = -walk.direction;
     v.light = scene_.lights().environmentIndex();

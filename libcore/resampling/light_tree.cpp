@@ -154,7 +154,7 @@ LightTree::Draw LightTree::draw(Cluster c, double u) const {
 
 /// An estimate from above of power x G towards the eye vertex, visibility and BSDFs left out.
 double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal) const {
-    // A cosine is never trusted to be zero: two-sided lamps are not told from others.
+    // A cosine is never trusted to be zero: cones and boxes are rounded.
     constexpr float kLeastCosine = 0.02f;
     const Vec3 centre = (node.low + node.high) * 0.5f, half = (node.high - node.low) * 0.5f;
     const float radius2 = dot(half, half);

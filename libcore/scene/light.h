@@ -113,6 +113,10 @@ class Lights {
         if (a.hasHoles) p.opacity = opacityAt(light, uv);
         return p;
     }
+    /// Whether it shines to both sides of its surface.
+    bool twoSided(std::uint32_t light) const {
+        return light < area_.size() && area_[light].twoSided;
+    }
     /// LightPoint::opacity of a light's point alone.
     float opacity(std::uint32_t light, Vec2 uv) const {
         return light < area_.size() && area_[light].hasHoles ? opacityAt(light, uv) : 1.0f;

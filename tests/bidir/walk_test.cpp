@@ -21,6 +21,29 @@ void expectSame(const std::vector<PathVertex>& a, const std::vector<PathVertex>&
     }
 }
 
+TEST(Walker, LampsWithoutABackAreKnown) {
+    for (const bool twoSided : {false, true}) {
+        SceneBuilder b;
+        b.add(quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, b.add(emitter(Rgb(1.0f), twoSided))));
+        b.add(pointLight({0, 3, 0}, Rgb(1.0f)));
+        b.d.cameras.push_back(lookAt({0, 0, 4}, {0, 0, 0}, 60));
+        const auto scene = b.build();
+        const Camera camera = scene->makeCamera("", {8, 8}, {});
+        const Walker walker(*scene, camera, {4, 2});
+        int area = 0, point = 0;
+        for (std::uint64_t i = 0; i < 64; ++i) {
+            Rng rng(1, 0, StreamKind::User, i);
+            PathVertex y0;
+            ASSERT_TRUE(walker.sampleLight(rng, y0));
+            const bool onSurface = scene->lights().kind(y0.light) == LightKind::Area;
+            ++(onSurface ? area : point);
+            EXPECT_EQ(y0.twoSided, onSurface && twoSided);
+        }
+        EXPECT_GT(area, 0);
+        EXPECT_GT(point, 0);
+    }
+}
+
 TEST(Walker, TogetherAsAlone) {
     constexpr std::size_t kWalks = 21;  // more than go together, and no multiple of that
     for (const int texels : {4, 300}) {

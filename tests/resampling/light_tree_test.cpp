@@ -201,6 +201,17 @@ TEST(LightTree, cutsAreFineWhereLampsFaceThePoint) {
     EXPECT_GE(partsOfTheFirst(eye, reflecting), 25u);
 }
 
+/// Lamps without a back shine both ways.
+TEST(LightTree, cutsAreAlikeForTwoSidedLampsThatFaceAndTurnAway) {
+    const std::size_t facing = partsOfTheFirst(someEye({}, {}), [](bool first, PathVertex& v) {
+        v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
+        v.ng = {1, 0, 0};
+        v.twoSided = true;
+    });
+    EXPECT_GE(facing, 10u);
+    EXPECT_LE(facing, 20u);
+}
+
 /// What transmits sends light to both sides, wherever it came from.
 TEST(LightTree, cutsAreAlikeForTransmittersThatFaceAndTurnAway) {
     const AlbedoTables none;
