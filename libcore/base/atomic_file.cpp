@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <functional>
 #include <system_error>
 
 #include "libcore/base/error.h"
@@ -27,9 +28,40 @@ std::string resolved(const std::string& path) {
     return ignored ? path : real.string();
 }
 
+/// A file without a name, which a killed process cannot leave behind; -1 where the file system has
+/// none, or where there is no /proc to name it by.
+int openNameless(const std::string& directory) {
+    if (::access("/proc/self/fd", X_OK) != 0) return -1;
+    return ::open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+}
+
+/// Names it over the target; -1 and errno where that fails. There is no single call for that: a
+/// process that is killed between the two leaves a name that the next one for this target reuses.
+/// Two at a time take each other's; each file is whole.
+int nameOver(int fd, const std::string& directory, const std::string& target) {
+    const std::string link = "/proc/self/fd/" + std::to_string(fd);
+    const std::string name =
+        directory + "/.lacuna-" + std::to_string(std::hash<std::string>{}(target)) + ".tmp";
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+        ::unlink(name.c_str());
+        if (::linkat(AT_FDCWD, link.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+            if (errno == EEXIST) continue;
+            return -1;
+        }
+        if (::rename(name.c_str(), target.c_str()) == 0) return 0;
+        if (errno == ENOENT) continue;
+        const int error = errno;
+        ::unlink(name.c_str());
+        errno = error;
+        return -1;
+    }
+    errno = EBUSY;
+    return -1;
+}
+
 /// Opens a new file beside the target. The name does not grow with the target's (NAME_MAX), and is
 /// created with O_EXCL so that two tools never share one.
-int openTemporary(const std::string& directory, std::string& name) {
+int openNamed(const std::string& directory, std::string& name) {
     const std::string stem = directory + "/.lacuna-" + std::to_string(::getpid()) + "-";
     for (int attempt = 0;; ++attempt) {
         name = stem + std::to_string(attempt) + ".tmp";
@@ -52,9 +84,14 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(resolved(
     if (exists && !S_ISREG(info.st_mode)) {
         fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
     } else {
-        std::string name;
-        fd_ = openTemporary(directoryOf(target_), name);
-        if (fd_ >= 0) temporary_ = name;
+        const std::string directory = directoryOf(target_);
+        fd_ = openNameless(directory);
+        nameless_ = fd_ >= 0;
+        if (!nameless_) {
+            std::string name;
+            fd_ = openNamed(directory, name);
+            if (fd_ >= 0) temporary_ = name;
+        }
     }
     if (fd_ < 0) {
         const int error = errno;
@@ -89,7 +126,7 @@ void AtomicFile::seek(std::uint64_t position) {
 
 void AtomicFile::commit() {
     if (error_ != 0) fail("expected all of it to be written", error_);
-    if (temporary_.empty()) {
+    if (temporary_.empty() && !nameless_) {
         const int closed = ::close(fd_);
         fd_ = -1;
         if (closed != 0) fail("expected to close it", errno);
@@ -98,10 +135,13 @@ void AtomicFile::commit() {
     // Data before name: after a crash the target is the old file or the new one, never a part of
     // it.
     if (::fsync(fd_) != 0) fail("expected to reach the disk", errno);
+    if (nameless_ && nameOver(fd_, directoryOf(target_), target_) != 0) {
+        fail("expected to name it", errno);
+    }
     const int closed = ::close(fd_);
     fd_ = -1;
     if (closed != 0) fail("expected to close it", errno);
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    if (!nameless_ && ::rename(temporary_.c_str(), target_.c_str()) != 0) {
         fail("expected to rename " + temporary_ + " to it", errno);
     }
     temporary_.clear();

@@ -8,9 +8,10 @@
 
 namespace lacuna {
 
-/// A file under construction. What is written goes to a temporary file beside the target; `commit`
-/// syncs it and renames it over the target. Without a commit (an exception, an early return) the
-/// temporary file is removed and an older target stays as it was.
+/// A file under construction. What is written goes to a temporary file beside the target, without
+/// a name where the file system can do that; `commit` syncs it and renames it over the target.
+/// Without a commit (an exception, an early return, a kill) the temporary file is gone and an older
+/// target stays as it was.
 ///
 /// A target that is a symbolic link keeps the link; one that is no regular file (/dev/stdout, a
 /// pipe) is written to directly. A write-protected target is refused although it could be replaced.
@@ -36,7 +37,8 @@ class AtomicFile {
 
     std::string path_;       // as the user named it
     std::string target_;     // symbolic links resolved
-    std::string temporary_;  // empty: written directly, or committed
+    std::string temporary_;  // empty: without a name yet, written directly, or committed
+    bool nameless_ = false;
     int fd_ = -1;
     int error_ = 0;  // errno of the first failure
     std::uint64_t position_ = 0;
