@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <vector>
 
 #include "libcore/base/error.h"
 
@@ -22,10 +23,26 @@ std::string number(double value) {
 
 }  // namespace
 
-CurveLog::CurveLog(const std::string& path) : path_(path), file_(path, std::ios::trunc) {
-    file_ << "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse";
-    for (std::size_t i = 0; i < kRayKinds; ++i) file_ << ",rays_" << name(RayKind(i));
-    file_ << ",phases" << std::endl;
+CurveLog::CurveLog(const std::string& path, std::uint64_t iteration) : path_(path) {
+    std::string header = "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse";
+    for (std::size_t i = 0; i < kRayKinds; ++i) header += std::string(",rays_") + name(RayKind(i));
+    header += ",phases";
+    std::vector<std::string> rows;
+    std::ifstream before(path);
+    for (std::string line; iteration > 0 && std::getline(before, line);) {
+        unsigned long long number = 0;
+        double seconds = 0.0;
+        if (std::sscanf(line.c_str(), "%llu,%lf,", &number, &seconds) != 2) continue;
+        if (number == 0 || number > iteration) break;
+        rows.push_back(line);
+        lastIteration_ = number;
+        wants(seconds);
+    }
+    before.close();
+    file_.open(path, std::ios::trunc);
+    file_ << header << '\n';
+    for (const std::string& row : rows) file_ << row << '\n';
+    file_.flush();
     check();
 }
 

@@ -27,8 +27,9 @@ struct CurveRow {
 /// of seconds in between.
 class CurveLog {
   public:
-    /// Replaces the file by its header line. Throws RunError.
-    explicit CurveLog(const std::string& path);
+    /// Replaces the file by its header line and its rows up to `iteration`, if they are there: a
+    /// render that goes on from a checkpoint. Throws RunError.
+    explicit CurveLog(const std::string& path, std::uint64_t iteration = 0);
 
     /// Whether an iteration that ended at `seconds` gets a row: asked once per iteration, before
     /// its error is measured.

@@ -12,6 +12,9 @@
 #include "libcore/image/image_io.h"
 
 namespace lacuna {
+namespace {
+constexpr std::uint64_t kMaxIterations = 1'000'000'000;
+}
 
 void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("SCENE", o.scene, "Scene: .glb or .gltf")->type_name("SCENE.glb");
@@ -48,6 +51,24 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
 
+    const std::string pieces = "Long renders";
+    app.add_option("--checkpoint", o.checkpoint,
+                   "Go on from FILE if it is there, save to it now and then and at an interrupt")
+        ->type_name("FILE")
+        ->group(pieces);
+    app.add_option("--checkpoint-every", o.checkpointEveryText, "Time between saves (default: 60s)")
+        ->type_name("T")
+        ->group(pieces);
+    app.add_option("--blocks", o.blocksText,
+                   "Only blocks A .. B-1 of the picture, as a part for lacuna-merge")
+        ->type_name("A,B")
+        ->group(pieces);
+    app.add_option("--block-iterations", o.blockIterations,
+                   "Iterations of a block; what methods learn begins anew with each (default: 64; "
+                   "16 where methods learn; 8 where iterations share light paths)")
+        ->type_name("N")
+        ->group(pieces);
+
     const std::string check = "Measuring and checking";
     app.add_option("--reference", o.reference, "Image to compare with: .exr, .hdr, .pfm, .png")
         ->type_name("FILE")
@@ -67,7 +88,6 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--display-server", o.displayServer, "Not there yet")
         ->type_name("H:P")
         ->group(check);
-    app.add_option("--checkpoint", o.checkpoint, "Not there yet")->type_name("FILE")->group(check);
     addCommonOptions(app, o.common);
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
@@ -99,16 +119,38 @@ std::vector<std::string_view> splitAtCommas(std::string_view text) {
     }
 }
 
+/// Options of long renders that do not go together.
+void checkPieces(const RenderOptions& o) {
+    const bool pieces = o.blocks || !o.checkpoint.empty();
+    if (!o.checkpointEveryText.empty() && o.checkpoint.empty()) {
+        throw UsageError(
+            "--checkpoint-every: expected together with --checkpoint; add --checkpoint FILE or "
+            "leave it out");
+    }
+    if (o.verify && pieces) {
+        throw UsageError("--verify: expected a render in one go, found " +
+                         std::string(o.blocks ? "--blocks" : "--checkpoint") +
+                         "; leave one of them out");
+    }
+    if (o.blocks && o.timeSeconds) {
+        throw UsageError(
+            "--blocks: expected a number of iterations, found --time; leave one of them out");
+    }
+    if (o.blocks && !o.output.empty() && endingOf(o.output) != ".exr") {
+        throw UsageError("--blocks: expected an .exr to hold the part, found '" + o.output + "'");
+    }
+}
+
 }  // namespace
 
-double parseDuration(const std::string& text) {
+double parseDuration(const std::string& option, const std::string& text) {
     const char unit = text.empty() ? '\0' : text.back();
     const double factor = unit == 'm' ? 60.0 : unit == 'h' ? 3600.0 : 1.0;
     std::string_view number = text;
     if (unit == 's' || unit == 'm' || unit == 'h') number.remove_suffix(1);
     double value = 0.0;
     if (!parseNumber(number, value) || !(value > 0.0) || !std::isfinite(value * factor)) {
-        throw UsageError("--time: expected a time above 0 such as 90s, 90, 10m or 1h, found '" +
+        throw UsageError(option + ": expected a time above 0 such as 90s, 90, 10m or 1h, found '" +
                          text + "'");
     }
     return value * factor;
@@ -122,6 +164,17 @@ PixelRect parseCrop(const std::string& text) {
         r.x1 <= r.x0 || r.y1 <= r.y0) {
         throw UsageError("--crop: expected pixels x0,x1,y0,y1 with x0 < x1 and y0 < y1, found '" +
                          text + "'");
+    }
+    return r;
+}
+
+BlockRange parseBlocks(const std::string& text) {
+    const std::vector<std::string_view> parts = splitAtCommas(text);
+    BlockRange r;
+    if (parts.size() != 2 || !parseNumber(parts[0], r.begin) || !parseNumber(parts[1], r.end) ||
+        r.end <= r.begin || r.end > kMaxIterations) {
+        throw UsageError("--blocks: expected A,B with A < B (blocks A to B - 1), found '" + text +
+                         "'");
     }
     return r;
 }
@@ -148,10 +201,6 @@ void checkOptions(RenderOptions& o) {
         throw UsageError(
             "--display-server: not there yet; leave it out and open the image that is written");
     }
-    if (!o.checkpoint.empty()) {
-        throw UsageError(
-            "--checkpoint: not there yet; leave it out (an interrupt saves the image)");
-    }
     checkSceneOptions(o);
     for (const std::string& text : o.assignments) {
         if (!text.starts_with("effects.")) continue;
@@ -159,15 +208,21 @@ void checkOptions(RenderOptions& o) {
                          ": effects have an option of their own; write --effect " +
                          text.substr(text.find('.') + 1));
     }
-    requireRange("--iterations", o.iterations, 1, 1'000'000'000);
+    requireRange("--iterations", o.iterations, 1, std::int64_t(kMaxIterations));
+    requireRange("--block-iterations", o.blockIterations, 1, std::int64_t(kMaxIterations));
     requireReal("--exposure", o.exposure, -1000.0, 1000.0, "stops from -1000 to 1000");
-    if (!o.timeText.empty()) o.timeSeconds = parseDuration(o.timeText);
+    if (!o.timeText.empty()) o.timeSeconds = parseDuration("--time", o.timeText);
+    if (!o.blocksText.empty()) o.blocks = parseBlocks(o.blocksText);
+    if (!o.checkpointEveryText.empty()) {
+        o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
+    }
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
     if (o.countSetup && !o.timeSeconds) {
         throw UsageError(
             "--count-setup: expected together with --time; add --time or leave it out");
     }
+    checkPieces(o);
     if (o.scene.empty()) {
         throw UsageError("SCENE.glb: expected the scene to render, found none; see --help");
     }
@@ -186,7 +241,10 @@ void checkOptions(RenderOptions& o) {
 
 void checkOutputs(const RenderOptions& o) {
     using Named = std::pair<const char*, const std::string*>;
-    const Named results[] = {{"-o", &o.output}, {"--log", &o.log}, {"--json", &o.common.json}};
+    const Named results[] = {{"-o", &o.output},
+                             {"--log", &o.log},
+                             {"--json", &o.common.json},
+                             {"--checkpoint", &o.checkpoint}};
     const Named inputs[] = {
         {"the scene", &o.scene}, {"--reference", &o.reference}, {"--env", &o.environment}};
     const auto same = [](const std::string& a, const std::string& b) {
@@ -214,7 +272,7 @@ void checkOutputs(const RenderOptions& o) {
         }
     }
     if (!o.output.empty()) requireWritable(o.output);
-    for (const std::string* path : {&o.log, &o.common.json}) {
+    for (const std::string* path : {&o.log, &o.common.json, &o.checkpoint}) {
         if (!path->empty()) const AtomicFile probe(*path);
     }
 }

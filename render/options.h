@@ -19,6 +19,11 @@ struct ReplayRequest {
     std::uint32_t iteration = 0;
 };
 
+/// Blocks `begin` .. `end` - 1.
+struct BlockRange {
+    std::uint64_t begin = 0, end = 0;
+};
+
 struct RenderOptions : SceneOptions {
     std::string commandLine;  ///< as a shell would take it again
 
@@ -32,12 +37,15 @@ struct RenderOptions : SceneOptions {
     double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;
-    std::string displayServer, checkpoint;
+    std::string displayServer, checkpoint, checkpointEveryText, blocksText;
+    std::optional<std::int64_t> blockIterations;
 
     // Made from the texts above by checkOptions.
     std::optional<double> timeSeconds;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
+    double checkpointSeconds = 60.0;
+    std::optional<BlockRange> blocks;
 };
 
 /// Declares every option. Both must outlive the parsing.
@@ -51,8 +59,10 @@ void checkOptions(RenderOptions& options);
 /// RunError where a result cannot be written. Leaves no file behind.
 void checkOutputs(const RenderOptions& options);
 
-/// "90s", "90", "10m", "1h" (decimals allowed) in seconds. Throws UsageError.
-double parseDuration(const std::string& text);
+/// "90s", "90", "10m", "1h" (decimals allowed) in seconds. Throws UsageError that names `option`.
+double parseDuration(const std::string& option, const std::string& text);
+/// "A,B", half open, not empty. Throws UsageError.
+BlockRange parseBlocks(const std::string& text);
 /// "x0,x1,y0,y1", half open, not empty. Throws UsageError.
 PixelRect parseCrop(const std::string& text);
 /// Throws UsageError.

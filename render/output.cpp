@@ -24,19 +24,9 @@ json number(double value) {
     return std::isfinite(value) ? json(value) : json(std::isnan(value) ? "nan" : "inf");
 }
 
-json numbers(const double (&values)[3]) {
-    return json::array({number(values[0]), number(values[1]), number(values[2])});
-}
-
 std::string rectText(const PixelRect& r) {
     return std::to_string(r.x0) + "," + std::to_string(r.x1) + "," + std::to_string(r.y0) + "," +
            std::to_string(r.y1);
-}
-
-/// EXR has 32-bit integers: larger ones become text.
-Attribute integerAttribute(std::uint64_t value) {
-    if (value <= std::uint64_t(std::numeric_limits<int>::max())) return int(value);
-    return std::to_string(value);
 }
 
 /// File names need not be UTF-8; JSON has to be.
@@ -53,6 +43,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["parameters"] = parametersJson(*r.method, r.settings).dump();
     a["seed"] = integerAttribute(r.seed);
     a["iterations"] = integerAttribute(r.iterations);
+    a["blockIterations"] = integerAttribute(r.blocks.iterations);
     a["renderTimeSeconds"] = r.seconds;
     a["setupTimeSeconds"] = r.setupSeconds;
     a["rays"] = double(r.statistics.totalRays());  // exact up to 2^53
@@ -71,6 +62,15 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
 }
 
 }  // namespace
+
+json numbersJson(const double (&values)[3]) {
+    return json::array({number(values[0]), number(values[1]), number(values[2])});
+}
+
+Attribute integerAttribute(std::uint64_t value) {
+    if (value <= std::uint64_t(std::numeric_limits<int>::max())) return int(value);
+    return std::to_string(value);
+}
 
 json parametersJson(const MethodRow& row, const Settings& settings) {
     json object = json::object();
@@ -93,11 +93,17 @@ json parametersJson(const MethodRow& row, const Settings& settings) {
     return object;
 }
 
-LayeredImage composeImage(const RenderReport& report, const Film& film,
-                          const FeatureLayers* features, const TechniqueFilm* techniques) {
-    LayeredImage image(film.width(), film.height());
-    image.setRgb("", film.image());
-    image.setRgb("variance", film.variance());
+void setPicture(LayeredImage& image, const FilmSum& sum) {
+    image.setRgb("", sum.image(image.width(), image.height()));
+    image.setRgb("variance", sum.variance(image.width(), image.height()));
+    for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
+}
+
+LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
+                          const FeatureLayers* features) {
+    LayeredImage image(report.crop.width(), report.crop.height());
+    setPicture(image, sum);
+    if (report.techniques) addShareOfFirstConnections(image, report.limits.maxDepth);
     if (features) {
         image.setRgb("albedo", features->albedo);
         const std::vector<Rgb>& normals = features->normal.pixels;
@@ -110,7 +116,6 @@ LayeredImage composeImage(const RenderReport& report, const Film& film,
         }
         image.channel("Z") = features->z;
     }
-    if (techniques) techniques->writeTo(image);
     setHeader(image, report);
     return image;
 }
@@ -145,8 +150,8 @@ json reportJson(const RenderReport& r) {
            {"invalid_samples", r.statistics.invalidSamples},
            {"invalid_replays", r.statistics.invalidReplays},
            {"peak_bytes", peakBytes()},
-           {"mean_rgb", numbers(r.mean.mean)},
-           {"mean_rgb_stderr", numbers(r.mean.standardError)},
+           {"mean_rgb", numbersJson(r.mean.mean)},
+           {"mean_rgb_stderr", numbersJson(r.mean.standardError)},
            {"width", r.crop.width()},
            {"height", r.crop.height()},
            {"film", {r.filmWidth, r.filmHeight}},
@@ -156,6 +161,8 @@ json reportJson(const RenderReport& r) {
            {"threads", r.threads},
            {"seed", r.seed},
            {"warmup_iterations", r.warmupIterations},
+           {"block_iterations", r.blocks.iterations},
+           {"first_block", r.firstBlock},
            {"phases", r.phaseSeconds},
            {"tolerance", r.tolerance},
            {"effects", effectsJson(r.effects)},

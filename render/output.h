@@ -29,13 +29,16 @@ struct RenderReport {
     std::uint64_t lightPaths = 0;
 
     std::uint64_t iterations = 0;
-    int warmupIterations = 0;
-    double seconds = 0.0;  ///< warm-up and iterations; no comparing, logging, saving
+    BlockPlan blocks;
+    std::uint64_t firstBlock = 0;
+    bool techniques = false;
+    int warmupIterations = 0;  ///< of each block
+    double seconds = 0.0;      ///< warm-ups and iterations; no comparing, logging, saving
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;
     std::string stopped;  ///< iterations, time, interrupt
-    Film::MeanColour mean;
+    FilmSum::MeanColour mean;
     std::optional<WeightVerifier::Result> verify;
     std::optional<ErrorMeasures> error;  ///< against --reference
 
@@ -49,9 +52,18 @@ struct RenderReport {
 /// The method's parameters with their values.
 nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 
-/// The picture with variance, features (may be null), technique layers (may be null) and header.
-LayeredImage composeImage(const RenderReport& report, const Film& film,
-                          const FeatureLayers* features, const TechniqueFilm* techniques);
+/// The picture with its variance and layers.
+void setPicture(LayeredImage& image, const FilmSum& sum);
+
+/// The picture with features (may be null) and header.
+LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
+                          const FeatureLayers* features);
+
+/// Three numbers; what is not finite is the text "inf" or "nan", which JSON has no number for.
+nlohmann::json numbersJson(const double (&values)[3]);
+
+/// EXR has 32-bit integers: larger ones become text.
+Attribute integerAttribute(std::uint64_t value);
 
 /// {"simulated": [names], "left_out": [names], "reasons": {name: text}}
 nlohmann::json effectsJson(const std::vector<Effect>& effects);

@@ -1,5 +1,7 @@
 #include "render/proposal_layers.h"
 
+#include <algorithm>
+
 namespace lacuna {
 
 ProposalLayers::ProposalLayers(std::vector<std::string> names, int width, int height)
@@ -14,8 +16,9 @@ void ProposalLayers::add(const PathEvent& event) {
         sums_[event.proposal->label][event.pixel] += event.contribution;
 }
 
-void ProposalLayers::writeTo(LayeredImage& image, std::uint64_t iterations) const {
-    const float scale = iterations > 0 ? 1.0f / float(iterations) : 0.0f;
+Layers ProposalLayers::means() const {
+    const float scale = iterations_ > 0 ? 1.0f / float(iterations_) : 0.0f;
+    LayeredImage image(width_, height_);
     for (std::size_t part = 0; part < names_.size(); ++part) {
         Image layer(width_, height_);
         for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
@@ -23,6 +26,12 @@ void ProposalLayers::writeTo(LayeredImage& image, std::uint64_t iterations) cons
         }
         image.setRgb("part." + names_[part], layer);
     }
+    return image.channels();
+}
+
+void ProposalLayers::clear() {
+    for (std::vector<Rgb>& sum : sums_) std::ranges::fill(sum, Rgb{});
+    iterations_ = 0;
 }
 
 }  // namespace lacuna

@@ -10,20 +10,23 @@
 namespace lacuna {
 
 /// Contributions of connections by the label of their proposal, weighted by MIS.
-class ProposalLayers {
+class ProposalLayers final : public BlockLayers {
   public:
     /// `names`: of the labels.
     ProposalLayers(std::vector<std::string> names, int width, int height);
 
     /// Different pixels may be added to at the same time. What no connection made is left out.
     void add(const PathEvent& event);
-    /// Layers part.NAME, means over the iterations.
-    void writeTo(LayeredImage& image, std::uint64_t iterations) const;
+    void countIteration() { ++iterations_; }
+    /// Layers part.NAME.
+    Layers means() const override;
+    void clear() override;
 
   private:
     std::vector<std::string> names_;
     int width_, height_;
     std::vector<std::vector<Rgb>> sums_;  // by name
+    std::uint64_t iterations_ = 0;
 };
 
 }  // namespace lacuna

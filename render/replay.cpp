@@ -5,6 +5,7 @@
 #include "libcore/base/error.h"
 #include "libcore/bidir/verify.h"
 #include "libcore/tool/interrupt.h"
+#include "render/block_plan.h"
 #include "render/caches.h"
 #include "render/stage.h"
 
@@ -133,6 +134,8 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     whole.crop = {0, film.width, 0, film.height};  // a sample does not depend on the crop
 
     const std::unique_ptr<Method> method = row.create(settings);
+    const std::uint64_t blockIterations = planOf(options, *method).iterations;
+    whole.blockIterations = blockIterations;
     const Caches caches =
         loadCaches(options, row, settings, stage, pool, interrupt.requested(), progress);
     caches.giveTo(*method);
@@ -140,17 +143,18 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 
     // Streams are addressed, so a sample needs nothing of the iterations before it but what the
-    // method learned. The warm-up is always run (it is part of every method's beginning);
-    // iterations 0 .. i-1 only for methods that say they learn from them: they cost as much as
-    // rendering them.
+    // method learned in its block. The warm-up is always run (it is part of every method's
+    // beginning); the block's iterations before it only for methods that say they learn from them:
+    // they cost as much as rendering them.
     IterationStatistics ignored;
     progress.phase("warm-up");
-    bool complete = integrator.warmUp(interrupt.requested(), ignored);
+    const std::uint64_t block = sample.iteration / blockIterations;
+    bool complete = integrator.beginBlock(block, *method, interrupt.requested(), ignored);
     if (complete && method->learns()) {
         progress.phase("iterations before it");
         std::vector<Rgb> pixels(std::size_t(film.width) * std::size_t(film.height));
-        for (std::uint32_t i = 0; complete && i < sample.iteration; ++i) {
-            complete = integrator.render(i, pixels, interrupt.requested(), ignored);
+        for (std::uint64_t i = block * blockIterations; complete && i < sample.iteration; ++i) {
+            complete = integrator.render(std::uint32_t(i), pixels, interrupt.requested(), ignored);
         }
     }
     if (!complete) return kInterruptedExit;

@@ -8,15 +8,16 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/image_io.h"
 #include "render/black_picture.h"
+#include "render/block_plan.h"
 
 namespace lacuna {
 namespace {
 
-constexpr std::uint64_t kDefaultIterations = 64;
 constexpr double kVerifyTolerance = 1e-4;
 const std::atomic<bool> kNever{false};
 
@@ -42,19 +43,15 @@ Image cropped(const Image& image, const PixelRect& rect) {
     return part;
 }
 
-std::uint64_t iterationLimit(const RenderOptions& options) {
-    if (options.iterations) return std::uint64_t(*options.iterations);
-    return options.timeSeconds ? 0 : kDefaultIterations;
-}
-
 /// Checks what the picture alone needs against what the machine has: better an error now than being
 /// killed by the system after hours.
-Film makeFilm(const RenderOptions& options, const RenderSettings& settings) {
+Film makeFilm(const RenderOptions& options, const RenderSettings& settings, BlockPlan plan) {
     const PixelRect& crop = settings.crop;
     const double depth = settings.limits.maxDepth;
     const double layers = options.techniques ? depth * (depth + 3.0) : 0.0;
-    // Sums and squares in double, an iteration, and the layers on their way to the file.
-    const double perPixel = 48.0 + 12.0 + 104.0 + layers * 2.0 * sizeof(Rgb);
+    // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
+    // the file.
+    const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 3.0 * sizeof(Rgb);
     const double bytes = perPixel * double(crop.width()) * double(crop.height());
     const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (available > 0.0 && bytes > available) {
@@ -64,7 +61,7 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings) {
                        " GB; use a smaller picture, --crop" +
                        (options.techniques ? " or a smaller --max-depth" : ""));
     }
-    return Film(crop.width(), crop.height());
+    return Film(crop.width(), crop.height(), plan, options.blocks ? options.blocks->begin : 0);
 }
 
 }  // namespace
@@ -77,15 +74,20 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       progress_(progress),
       stage_(loadStage(options, row, settings, pool, progress)),
       caches_(loadCaches(options, row, settings, stage_, pool, interrupt.requested(), progress)),
-      method_(row.create(settings)),
-      film_(makeFilm(options, stage_.settings)) {
-    caches_.giveTo(*method_);
-    loadReference();
+      row_(row),
+      methodSettings_(settings),
+      method_(freshMethod()),
+      plan_(planOf(options, *method_)),
+      film_(makeFilm(options, stage_.settings, plan_)),
+      pixels_(std::size_t(film_.width()) * std::size_t(film_.height())),
+      end_(endOf(options, plan_)) {
+    stage_.settings.blockIterations = plan_.iterations;
     integrator_ = std::make_unique<BidirIntegrator>(
         *stage_.scene, *stage_.camera, stage_.techniques, *method_, stage_.settings, pool_);
     if (options_.techniques) {
         techniques_.emplace(film_.width(), film_.height(), stage_.settings.limits.maxDepth);
         integrator_->delivery().setTechniqueFilm(&*techniques_);
+        film_.addLayers(*techniques_);
     }
     if (options_.verify) {
         verifier_ = std::make_unique<WeightVerifier>(*stage_.scene, *stage_.camera,
@@ -93,6 +95,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     }
     if (options_.techniques && !row.proposalLabels.empty()) {
         proposalLayers_.emplace(row.proposalLabels, film_.width(), film_.height());
+        film_.addLayers(*proposalLayers_);
     }
     if (verifier_ || proposalLayers_) {
         integrator_->delivery().setObserver([this](const PathEvent& event) {
@@ -112,6 +115,9 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.crop = stage_.settings.crop;
     r.limits = stage_.settings.limits;
     r.lightPaths = row.techniques.splats ? integrator_->lightPaths() : 0;
+    r.blocks = plan_;
+    r.firstBlock = film_.block();
+    r.techniques = options.techniques;
     r.warmupIterations = method_->warmupIterations();
     r.setupSeconds = stage_.setupSeconds + caches_.seconds;
     r.phaseSeconds = stage_.phaseSeconds;
@@ -122,9 +128,63 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
     if (options.common.verbose) describeStage();
+    if (options.blocks || !options.checkpoint.empty()) inputs_ = inputs();
+    if (!options.checkpoint.empty()) {
+        checkpoint_.emplace(options.checkpoint, options.checkpointSeconds);
+        if (std::optional<Part> part = checkpoint_->load(inputs_, report_.firstBlock)) {
+            goOn(std::move(*part));
+        }
+    }
+    loadReference();
 }
 
 Session::~Session() = default;
+
+std::unique_ptr<Method> Session::freshMethod() const {
+    std::unique_ptr<Method> method = row_.create(methodSettings_);
+    caches_.giveTo(*method);
+    return method;
+}
+
+/// Whatever a pixel depends on.
+CacheStamp Session::inputs() const {
+    CacheStamp stamp{sceneInputs(stage_)};
+    const auto add = [&](const std::string& name, const std::string& value) {
+        stamp.inputs[name] = value;
+    };
+    for (const auto& [name, value] : stage_.viewInputs) add(name, value);
+    for (const Effect& e : stage_.effects) {
+        if (e.forced && !e.ofScene) add("effect " + e.name, e.simulated ? "on" : "off");
+    }
+    for (const auto& [name, value] : methodSettings_) add(name, value);
+    for (const auto& [name, hash] : caches_.hashes) add("cache " + name, hash);
+    const PixelRect& crop = stage_.settings.crop;
+    add("version", LACUNA_VERSION);
+    add("program", hashOfFile("/proc/self/exe"));  // another build may round in another way
+    add("method", row_.name);
+    add("seed", std::to_string(options_.common.seed));
+    add("film", std::to_string(report_.filmWidth) + " x " + std::to_string(report_.filmHeight));
+    add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
+                    std::to_string(crop.y0) + "," + std::to_string(crop.y1));
+    add("technique layers", options_.techniques ? "yes" : "no");
+    add("iterations of a block", std::to_string(plan_.iterations));
+    return stamp;
+}
+
+/// From what a checkpoint holds.
+void Session::goOn(Part part) {
+    totals_ = {part.seconds, part.statistics};
+    if (part.sums.open.empty()) ofBlocks_ = totals_;
+    film_.restore(std::move(part.sums), pool_);
+    if (end_ > 0 && film_.nextIteration() > end_) {
+        throw InputError(options_.checkpoint + ": expected a checkpoint of at most " +
+                         std::to_string(end_) + " iterations, found " +
+                         std::to_string(film_.nextIteration()) +
+                         "; ask for no fewer --iterations, or name another file");
+    }
+    progress_.remark(options_.checkpoint + ": goes on from iteration " +
+                     std::to_string(film_.nextIteration()));
+}
 
 void Session::describeStage() const {
     const Scene& scene = *stage_.scene;
@@ -155,14 +215,15 @@ void Session::loadReference() {
         }
         reference_.emplace(std::move(image), options_.reference);
     }
-    if (!options_.log.empty()) log_.emplace(options_.log);
+    if (!options_.log.empty()) log_.emplace(options_.log, film_.iterations());
 }
 
 int Session::run() {
     render();
+    if (checkpoint_) finishCheckpoint();
     save();
     warnAboutDefects();
-    if (!logFailure_.empty()) throw RunError(logFailure_);
+    if (!failure_.empty()) throw RunError(failure_);
     return report_.stopped == "interrupt" ? kInterruptedExit : 0;
 }
 
@@ -175,51 +236,112 @@ bool Session::mayBegin() const {
            spent + expectedSeconds_ <= limit + std::min(0.5 * expectedSeconds_, 0.1 * limit);
 }
 
+/// A method as new, warmed up. False where an interrupt came first.
+bool Session::beginBlock() {
+    std::unique_ptr<Method> fresh = freshMethod();
+    // What a block's warm-up counts is counted once, whoever goes on in the middle of it.
+    const bool first = film_.iterations() == 0, again = film_.inBlock() > 0;
+    Totals ofWarmUp;
+    bool complete = false;
+    {
+        const Stopwatch watch(ofWarmUp.seconds);
+        complete = integrator_->beginBlock(
+            film_.block(), *fresh, first ? kNever : interrupt_.requested(), ofWarmUp.statistics);
+    }
+    method_ = std::move(fresh);
+    if (complete && !again) {
+        totals_.seconds += ofWarmUp.seconds;
+        totals_.statistics.add(ofWarmUp.statistics);
+    }
+    return complete;
+}
+
+/// False where an interrupt came first.
+bool Session::renderIteration() {
+    // The first iteration is always finished, so that there is something to save. So is every one
+    // with layers: a part of one in them could not be taken out again.
+    const bool first = film_.iterations() == 0;
+    const std::atomic<bool>& cancel = first || techniques_ ? kNever : interrupt_.requested();
+    Totals ofIteration;
+    {
+        const Stopwatch watch(ofIteration.seconds);
+        if (!integrator_->render(std::uint32_t(film_.nextIteration()), pixels_, cancel,
+                                 ofIteration.statistics)) {
+            return false;
+        }
+        if (proposalLayers_) proposalLayers_->countIteration();
+        film_.add(pixels_, pool_);
+    }
+    totals_.seconds += ofIteration.seconds;
+    totals_.statistics.add(ofIteration.statistics);
+    if (film_.inBlock() == 0) ofBlocks_ = totals_;
+    expectedSeconds_ = first ? ofIteration.seconds : 0.5 * (expectedSeconds_ + ofIteration.seconds);
+    return true;
+}
+
 void Session::render() {
-    const std::uint64_t limit = iterationLimit(options_);
+    const std::uint64_t limit = end_ > 0 ? end_ - report_.firstBlock * plan_.iterations : 0;
     const auto tell = [&] {
-        progress_.iterations({report_.iterations, limit, report_.statistics.totalRays(),
+        report_.iterations = film_.iterations();
+        report_.seconds = totals_.seconds;
+        progress_.iterations({report_.iterations, limit, totals_.statistics.totalRays(),
                               report_.seconds, options_.timeSeconds.value_or(0.0)});
     };
-    if (report_.warmupIterations > 0) progress_.phase("warm-up");
-    {
-        const Stopwatch watch(report_.seconds);
-        integrator_->warmUp(kNever, report_.statistics);
-    }
-    progress_.phase("rendering");
     tell();
-    std::vector<Rgb> pixels(std::size_t(film_.width()) * std::size_t(film_.height()));
+    bool begun = false;
     for (;;) {
-        // The first iteration is always finished, so that there is something to save. So is every
-        // one with technique layers: a part of one in them could not be taken out again.
-        const bool first = report_.iterations == 0;
-        const std::atomic<bool>& cancel = first || techniques_ ? kNever : interrupt_.requested();
-        double seconds = 0.0;
-        bool complete = false;
-        IterationStatistics statistics;
-        {
-            const Stopwatch watch(seconds);
-            complete =
-                integrator_->render(std::uint32_t(report_.iterations), pixels, cancel, statistics);
-            if (complete) film_.add(pixels, pool_);
-        }
-        report_.seconds += seconds;
-        report_.statistics.add(statistics);
-        if (complete) {
-            expectedSeconds_ =
-                report_.iterations == 0 ? seconds : 0.5 * (expectedSeconds_ + seconds);
-            ++report_.iterations;
-            if (log_ && log_->wants(report_.seconds)) logRow();
-            tell();
-        }
-        if (interrupt_.requested()) {
+        if (interrupt_.requested() && film_.iterations() > 0) {
             report_.stopped = "interrupt";
-        } else if (limit > 0 && report_.iterations >= limit) {
+        } else if (end_ > 0 && film_.nextIteration() >= end_) {
             report_.stopped = "iterations";
-        } else if (options_.timeSeconds && !mayBegin()) {
+        } else if (options_.timeSeconds && film_.iterations() > 0 && !mayBegin()) {
             report_.stopped = "time";
         }
-        if (!report_.stopped.empty()) return;
+        if (!report_.stopped.empty()) break;
+        if (!begun) {
+            if (report_.warmupIterations > 0) progress_.phase("warm-up");
+            if (!beginBlock()) continue;
+            progress_.phase("rendering");
+            begun = true;
+            tell();
+        }
+        if (!renderIteration()) continue;
+        begun = film_.inBlock() > 0;
+        tell();
+        if (log_ && log_->wants(report_.seconds)) logRow();
+        if (checkpoint_) saveCheckpoint();
+    }
+    report_.statistics = totals_.statistics;
+}
+
+/// What the checkpoint holds now.
+Part Session::part() const {
+    // What a method has learned in an open block, and what the layers hold of it, is not saved.
+    const bool withOpen = !method_->learns() && !techniques_;
+    const Totals& totals = withOpen ? totals_ : ofBlocks_;
+    return {inputs_,        film_.width(),      film_.height(),
+            plan_,          report_.firstBlock, film_.state(withOpen),
+            totals.seconds, totals.statistics};
+}
+
+void Session::saveCheckpoint() {
+    if (const auto failure = checkpoint_->failure()) {
+        progress_.warning("warning: " + *failure +
+                          " (the render goes on; the last checkpoint is kept)");
+    }
+    if (!checkpoint_->due()) return;
+    Part now = part();
+    if (now.iterations() > 0) checkpoint_->save(std::move(now));
+}
+
+void Session::finishCheckpoint() {
+    Part now = part();
+    if (now.iterations() == 0) return;
+    progress_.phase("saving the checkpoint");
+    try {
+        checkpoint_->finish(std::move(now));
+    } catch (const std::exception& e) {
+        failure_ = e.what();
     }
 }
 
@@ -228,10 +350,11 @@ void Session::measure() {
     if (!reference_) return;
     const Stopwatch watch(report_.phaseSeconds["compare"]);
     try {
-        report_.error = reference_->compare(film_.image(), options_.output);
+        report_.error = reference_->compare(film_.sum(&pool_).image(film_.width(), film_.height()),
+                                            options_.output);
     } catch (const InputError& e) {
         report_.error.reset();
-        logFailure_ = e.what();
+        failure_ = e.what();
     }
 }
 
@@ -239,9 +362,9 @@ void Session::logRow() {
     measure();
     try {
         log_->write({report_.iterations, report_.seconds, report_.setupSeconds,
-                     report_.statistics.rays, report_.error, report_.statistics.phaseSeconds});
+                     totals_.statistics.rays, report_.error, totals_.statistics.phaseSeconds});
     } catch (const RunError& e) {
-        logFailure_ = e.what();
+        failure_ = e.what();
         log_.reset();
     }
 }
@@ -256,7 +379,8 @@ void Session::save() {
     for (const auto& [phase, seconds] : report_.statistics.phaseSeconds) {
         report_.phaseSeconds[phase] += seconds;
     }
-    report_.mean = film_.meanColour();
+    const FilmSum sum = film_.sum(&pool_);
+    report_.mean = sum.meanColour();
     warnIfBlack();
     if (verifier_) report_.verify = verifier_->result();
 
@@ -269,13 +393,15 @@ void Session::save() {
     }
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
-        LayeredImage image = composeImage(report_, film_, features ? &*features : nullptr,
-                                          techniques_ ? &*techniques_ : nullptr);
-        if (proposalLayers_) proposalLayers_->writeTo(image, report_.iterations);
+        LayeredImage image = composeImage(report_, sum, features ? &*features : nullptr);
         if (features) {
             for (const auto& asset : caches_.assets) {
                 asset->draw(image, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
             }
+        }
+        if (options_.blocks) {
+            addPart(image, {inputs_, film_.width(), film_.height(), plan_, report_.firstBlock,
+                            film_.finalState(pool_), totals_.seconds, totals_.statistics});
         }
         writeImage(options_.output, image, options_.exposure);
     }

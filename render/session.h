@@ -8,6 +8,7 @@
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
 #include "render/caches.h"
+#include "render/checkpoint.h"
 #include "render/curve_log.h"
 #include "render/options.h"
 #include "render/output.h"
@@ -27,10 +28,18 @@ class Session {
     int run();
 
   private:
+    std::unique_ptr<Method> freshMethod() const;
+    CacheStamp inputs() const;
     void loadReference();
     void describeStage() const;
+    void goOn(Part part);
+    bool beginBlock();
     void render();
+    bool renderIteration();
     bool mayBegin() const;
+    Part part() const;
+    void saveCheckpoint();
+    void finishCheckpoint();
     void measure();
     void logRow();
     void save();
@@ -45,16 +54,30 @@ class Session {
 
     Stage stage_;
     Caches caches_;
-    std::unique_ptr<Method> method_;
-    std::unique_ptr<BidirIntegrator> integrator_;
+    const MethodRow& row_;
+    const Settings& methodSettings_;
+    std::unique_ptr<Method> method_;  ///< of the open block
+    BlockPlan plan_;
     Film film_;
+    std::unique_ptr<BidirIntegrator> integrator_;
+    std::vector<Rgb> pixels_;  ///< of an iteration
     std::optional<TechniqueFilm> techniques_;
     std::optional<ProposalLayers> proposalLayers_;
     std::unique_ptr<WeightVerifier> verifier_;
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;
-    std::string logFailure_;        ///< a full disk must not cost the picture
+    CacheStamp inputs_;  ///< where parts are written or read
+    std::optional<Checkpoint> checkpoint_;
+    std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
+    std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
     double expectedSeconds_ = 0.0;  ///< of the next iteration
+    /// Of iterations that are in the film, and of their blocks' warm-ups.
+    struct Totals {
+        double seconds = 0.0;
+        IterationStatistics statistics;
+    };
+    Totals totals_;
+    Totals ofBlocks_;  ///< of whole blocks alone
     RenderReport report_;
 };
 

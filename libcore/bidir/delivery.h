@@ -11,6 +11,7 @@
 #include "libcore/bidir/close.h"
 #include "libcore/bidir/render_setup.h"
 #include "libcore/bidir/task.h"
+#include "libcore/bidir/technique_film.h"
 
 namespace lacuna {
 

@@ -105,9 +105,9 @@ void EyePass::select(const PixelPaths& paths, const Iteration& iteration, Worker
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const PathVertex& z = paths.eye[t - 1];
         if (!z.infinite() && z.connectable() && int(t) <= setup_.settings.limits.maxDepth) {
-            method_.select({z, paths.eye.first(t), paths.ownLight, filmIndex, iteration.number,
-                            setup_.walker, setup_.space, result.tally},
-                           rng, worker.proposals);
+            iteration.method.select({z, paths.eye.first(t), paths.ownLight, filmIndex,
+                                     iteration.number, setup_.walker, setup_.space, result.tally},
+                                    rng, worker.proposals);
         }
         worker.proposalEnds[t] = worker.proposals.proposals().size();
     }

@@ -8,13 +8,9 @@ namespace lacuna {
 class EyePass {
   public:
     /// All must outlive it.
-    EyePass(const RenderSetup& setup, const Method& method, const LightPass& lightPass,
-            Delivery& delivery, const Workers& workers)
-        : setup_(setup),
-          method_(method),
-          lightPass_(lightPass),
-          delivery_(delivery),
-          workers_(workers) {}
+    EyePass(const RenderSetup& setup, const LightPass& lightPass, Delivery& delivery,
+            const Workers& workers)
+        : setup_(setup), lightPass_(lightPass), delivery_(delivery), workers_(workers) {}
 
     /// All pixels of the crop. False if cancelled.
     bool run(const Iteration& iteration) const;
@@ -39,7 +35,6 @@ class EyePass {
               TaskResult& result) const;
 
     const RenderSetup& setup_;
-    const Method& method_;
     const LightPass& lightPass_;
     Delivery& delivery_;
     const Workers& workers_;

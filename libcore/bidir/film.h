@@ -1,13 +1,11 @@
-// Where contributions go: one iteration's picture, and the sums over iterations.
+// Where contributions go: one iteration's picture, and what iterations add up to.
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <vector>
 
-#include "libcore/base/vec.h"
-#include "libcore/image/image.h"
+#include "libcore/bidir/film_sum.h"
 
 namespace lacuna {
 
@@ -34,62 +32,76 @@ struct Splat {
 std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
                         const ThreadPool& pool);
 
-/// Sums over iterations, in double: the mean picture and the variance of that mean, from iterations
-/// as independent samples.
+/// Layers that are filled while the iterations of a block run.
+class BlockLayers {
+  public:
+    virtual ~BlockLayers() = default;
+    /// Means over the block's iterations so far, of layers that are not black.
+    virtual Layers means() const = 0;
+    /// Begins a new block.
+    virtual void clear() = 0;
+};
+
+/// How the iterations of a render are grouped. (theory.md, "Blocks")
+struct BlockPlan {
+    static constexpr std::uint64_t kEndless = std::uint64_t(1) << 40;
+
+    std::uint64_t iterations = kEndless;  ///< B, of a block
+    /// Iterations of a block share light paths: variances come from blocks.
+    bool areSamples = false;
+};
+
+/// The picture of the iterations so far: whole blocks, and an open one. Iteration i is the i % B-th
+/// of block i / B.
 class Film {
   public:
-    Film(int width, int height);
+    /// Begins with iteration 0 of block `first`.
+    Film(int width, int height, BlockPlan plan = {}, std::uint64_t first = 0);
 
-    /// One finished iteration: `pixels` = width * height values.
-    void add(std::span<const Rgb> pixels, const ThreadPool& pool);
+    /// Layers to sum up as well; they must outlive the film. Before the first iteration.
+    void addLayers(BlockLayers& layers) { layers_.push_back(&layers); }
+
+    /// The next iteration: `pixels` = width * height values. Ends the block with its last one.
+    void add(std::span<const Rgb> pixels, const ThreadPool& threads);
 
     int width() const { return width_; }
     int height() const { return height_; }
+    const BlockPlan& plan() const { return plan_; }
+    /// Of the first block on.
     std::uint64_t iterations() const { return iterations_; }
+    /// Number of the next iteration.
+    std::uint64_t nextIteration() const { return block_ * plan_.iterations + inBlock_; }
+    /// Number of its block, and how many iterations of it there are.
+    std::uint64_t block() const { return block_; }
+    std::uint64_t inBlock() const { return inBlock_; }
 
-    /// Mean over iterations; black before the first.
-    Image image() const;
-    /// Variance of the mean per pixel and channel; zero before the second iteration.
-    Image variance() const;
-    struct MeanColour {
-        double mean[3] = {0, 0, 0};
-        double standardError[3] = {0, 0, 0};  ///< zero before the second iteration
+    /// Everything that there is. `threads` may be null.
+    FilmSum sum(const ThreadPool* threads = nullptr) const;
+    Image image() const { return sum().image(width_, height_); }
+    Image variance() const { return sum().variance(width_, height_); }
+    FilmSum::MeanColour meanColour() const { return sum().meanColour(); }
+
+    /// Sums that a film goes on from; a copy is a snapshot.
+    struct State {
+        std::vector<SumTree::Node> blocks;  ///< items are blocks
+        std::uint64_t openBlock = 0;
+        std::vector<SumTree::Node> open;  ///< items are iterations of the open block
     };
-    /// Mean of the whole picture, its standard error from the spread of iterations' means.
-    MeanColour meanColour() const;
+    /// To go on from. `withOpen`: in the middle of the open block, whose layers are left out.
+    State state(bool withOpen) const;
+    /// To be added to others: the open block's iterations as one node, with its layers.
+    State finalState(const ThreadPool& threads) const;
+    /// Of a film of the same plan that began with the same block. Before the first iteration.
+    void restore(State state, const ThreadPool& threads);
 
   private:
+    FilmSum openSum(const ThreadPool* threads) const;
+
     int width_, height_;
-    std::uint64_t iterations_ = 0;
-    std::vector<Vec3d> sum_, sumOfSquares_;
-    double meanSum_[3] = {0, 0, 0}, meanSquares_[3] = {0, 0, 0};
-};
-
-/// A pair of pictures per technique (s, t), summed over iterations: --techniques.
-class TechniqueFilm {
-  public:
-    TechniqueFilm(int width, int height, int maxDepth);
-
-    /// "s02t03"
-    static std::string layerName(int s, int t);
-    /// Adds to one pixel; different pixels may be added to at the same time.
-    void add(int s, int t, std::uint32_t pixel, const Rgb& weighted, const Rgb& unweighted);
-    void countIteration() { ++iterations_; }
-    /// Layers weighted.sSStTT and unweighted.sSStTT, of techniques that ever contributed, and the
-    /// channel share.t02: what connections of the first eye vertex (t = 2, s > 0) add to the
-    /// pixel's mean over the channels, as a share of it [Nabata20a fig 2]; 0 where it is black.
-    void writeTo(LayeredImage& image) const;
-    Image weighted(int s, int t) const { return mean(s, t, false); }
-    Image unweighted(int s, int t) const { return mean(s, t, true); }
-    int maxDepth() const { return maxDepth_; }
-
-  private:
-    std::size_t indexOf(int s, int t) const;
-    Image mean(int s, int t, bool unweighted) const;
-
-    int width_, height_, maxDepth_;
-    std::uint64_t iterations_ = 0;
-    std::vector<std::vector<Rgb>> layers_;  // [technique * 2 + unweighted]
+    BlockPlan plan_;
+    std::vector<BlockLayers*> layers_;
+    SumTree blocks_{false}, open_;
+    std::uint64_t block_, inBlock_ = 0, iterations_ = 0;
 };
 
 }  // namespace lacuna

@@ -8,36 +8,48 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
                                  Method& method, const RenderSettings& settings,
                                  const ThreadPool& threads)
     : setup_(scene, camera, techniques, settings, threads),
-      method_(method),
+      method_(&method),
       workers_(threads, settings.limits.maxDepth) {}
 
 TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration) {
     TechniqueCounts counts;
     counts.hit = setup_.techniques.hits;
     counts.splats = setup_.techniques.splats ? double(setup_.lightPaths) : 0.0;
-    const ConnectionDensity& density = method_.freeze(iteration);
+    const ConnectionDensity& density = method_->freeze(iteration);
     if (setup_.techniques.connects) counts.connectThrough(density);
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;
 }
 
-IterationContext BidirIntegrator::contextFor(IterationStatistics& statistics) const {
-    return {setup_.space, setup_.threads, setup_.settings.seed, setup_.filmPixels(), statistics};
+IterationContext BidirIntegrator::contextFor(std::uint32_t generation,
+                                             IterationStatistics& statistics) const {
+    return {setup_.space, setup_.threads,      setup_.settings.seed,
+            generation,   setup_.filmPixels(), statistics};
+}
+
+/// Behind the warm-ups of its block and of all before.
+std::uint32_t BidirIntegrator::generationOf(std::uint32_t iteration) const {
+    const std::uint64_t block = iteration / setup_.settings.blockIterations;
+    return std::uint32_t(iteration + (block + 1) * std::uint64_t(method_->warmupIterations()));
 }
 
 LightPass::Purpose BidirIntegrator::poolAlone(StreamKind stream) const {
-    return {stream, method_.pool().subpaths, 0};
+    return {stream, method_->pool().subpaths, 0};
 }
 
-bool BidirIntegrator::warmUp(const std::atomic<bool>& cancel, IterationStatistics& statistics) {
+bool BidirIntegrator::beginBlock(std::uint64_t block, Method& fresh,
+                                 const std::atomic<bool>& cancel, IterationStatistics& statistics) {
     PhaseTimer timer(statistics, "warm-up");
-    for (int i = 0; i < method_.warmupIterations(); ++i) {
-        const auto number = std::uint32_t(i);
-        const Iteration iteration{number, freeze(number), {}, statistics, cancel};
+    method_ = &fresh;
+    const auto warmups = std::uint64_t(method_->warmupIterations());
+    for (std::uint64_t i = 0; i < warmups; ++i) {
+        const auto number = std::uint32_t(block * warmups + i);
+        const Iteration iteration{number, *method_, freeze(number), {}, statistics, cancel};
         if (!lightPass_.run(iteration, poolAlone(StreamKind::Warmup), pool_)) return false;
-        IterationContext context = contextFor(statistics);
-        method_.prepare(pool_, context);
-        method_.observe(pool_, context);
+        IterationContext context =
+            contextFor(std::uint32_t(block * setup_.settings.blockIterations) + number, statistics);
+        method_->prepare(pool_, context);
+        method_->observe(pool_, context);
     }
     return true;
 }
@@ -46,8 +58,8 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
                              const std::atomic<bool>& cancel, IterationStatistics& statistics) {
     std::fill(pixels.begin(), pixels.end(), Rgb{});
     const Techniques& techniques = setup_.techniques;
-    const Iteration iteration{number, freeze(number), pixels, statistics, cancel};
-    IterationContext context = contextFor(statistics);
+    const Iteration iteration{number, *method_, freeze(number), pixels, statistics, cancel};
+    IterationContext context = contextFor(generationOf(number), statistics);
     {
         PhaseTimer timer(statistics, "light paths");
         LightPass::Purpose purpose = poolAlone(StreamKind::LightPath);
@@ -60,7 +72,7 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
     }
     {
         PhaseTimer timer(statistics, "prepare");
-        method_.prepare(pool_, context);
+        method_->prepare(pool_, context);
     }
     if (techniques.hits || techniques.connects) {
         PhaseTimer timer(statistics, "eye paths");
@@ -68,7 +80,7 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
     }
     {
         PhaseTimer timer(statistics, "observe");
-        method_.observe(pool_, context);
+        method_->observe(pool_, context);
     }
     delivery_.countIteration();
     return true;
@@ -78,12 +90,12 @@ BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t number, i
                                                          const PathObserver& observer) {
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
-    const Iteration iteration{number, freeze(number), {}, ignored, never};
-    if (method_.pool().subpaths > 0) {
+    const Iteration iteration{number, *method_, freeze(number), {}, ignored, never};
+    if (method_->pool().subpaths > 0) {
         lightPass_.run(iteration, poolAlone(StreamKind::LightPath), pool_);
     }
-    IterationContext context = contextFor(ignored);
-    method_.prepare(pool_, context);
+    IterationContext context = contextFor(generationOf(number), ignored);
+    method_->prepare(pool_, context);
     TaskResult result;
     Rgb pixel;
     Worker& worker = workers_.own();
@@ -97,7 +109,7 @@ BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t number,
                                                            const PathObserver& observer) {
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
-    const Iteration iteration{number, freeze(number), {}, ignored, never};
+    const Iteration iteration{number, *method_, freeze(number), {}, ignored, never};
     TaskResult result;
     Worker& worker = workers_.own();
     const PathObserver before = delivery_.setObserver(observer);

@@ -18,19 +18,21 @@ class BidirIntegrator {
     BidirIntegrator(const Scene& scene, const Camera& camera, Techniques techniques, Method& method,
                     const RenderSettings& settings, const ThreadPool& threads);
 
-    /// Iterations that the method wants thrown away before the first: call once, first.
-    /// Returns false if cancelled.
-    bool warmUp(const std::atomic<bool>& cancel, IterationStatistics& statistics);
+    /// Goes on with a method that has not seen an iteration yet, and runs those that it wants
+    /// thrown away before the first of the block. Returns false if cancelled.
+    bool beginBlock(std::uint64_t block, Method& fresh, const std::atomic<bool>& cancel,
+                    IterationStatistics& statistics);
 
     /// Renders one iteration, one eye path per pixel of the crop, into `pixels` (overwritten).
-    /// Iterations must come in order 0, 1, .. Returns false, leaving `pixels` unfinished, if
-    /// cancelled.
+    /// Those of a block must come in order, behind its beginBlock(), where the method learns from
+    /// them. Returns false, leaving `pixels` unfinished, if cancelled.
     bool render(std::uint32_t iteration, std::span<Rgb> pixels, const std::atomic<bool>& cancel,
                 IterationStatistics& statistics);
 
     /// Runs one sample alone after the light pass of its iteration: eye path through a pixel of the
-    /// full film, or one light subpath. Iterations before it must have been run where the method
-    /// learns from them. Returns the walks' vertices, valid until the next call of anything.
+    /// full film, or one light subpath. Its block must have begun, and the block's iterations
+    /// before it must have been run where the method learns from them. Returns the walks' vertices,
+    /// valid until the next call of anything.
     struct Replayed {
         Subpath eye, light;
     };
@@ -47,15 +49,16 @@ class BidirIntegrator {
 
   private:
     TechniqueCounts freeze(std::uint32_t iteration);
-    IterationContext contextFor(IterationStatistics& statistics) const;
+    IterationContext contextFor(std::uint32_t generation, IterationStatistics& statistics) const;
+    std::uint32_t generationOf(std::uint32_t iteration) const;
     LightPass::Purpose poolAlone(StreamKind stream) const;
 
     RenderSetup setup_;
-    Method& method_;
+    Method* method_;  ///< of the block
     Workers workers_;
     Delivery delivery_{setup_};
     LightPass lightPass_{setup_, delivery_, workers_};
-    EyePass eyePass_{setup_, method_, lightPass_, delivery_, workers_};
+    EyePass eyePass_{setup_, lightPass_, delivery_, workers_};
     LightPool pool_;
 };
 

@@ -3,7 +3,8 @@
 // These are two different numbers, so they are two interfaces. (theory.md, "What is exact, and
 // why")
 //
-// A Method lives for the whole render and owns its caches. Per iteration:
+// A Method lives for a block of iterations (theory.md, "Blocks") and owns what it learns in it. Per
+// iteration:
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
 #pragma once
 
@@ -89,7 +90,7 @@ class Method {
 
     /// Rows that need assets get them before anything else; without them they must still work.
     virtual void use(const AssetSet& assets) { (void)assets; }
-    /// Iterations to run and throw away before the first one that counts.
+    /// Iterations to run and throw away before the first one of a block that counts.
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }
 
@@ -106,9 +107,11 @@ class Method {
     virtual void observe(const LightPool& pool, IterationContext& context) {
         (void)pool, (void)context;
     }
-    /// Whether an iteration depends on earlier ones beyond the warm-up: --replay then runs them
-    /// again.
+    /// Whether an iteration depends on earlier ones of its block beyond the warm-up: --replay then
+    /// runs them again, and an interrupted block is begun anew.
     virtual bool learns() const { return false; }
+    /// Whether the iterations of a block share light paths, so that only blocks are independent.
+    virtual bool sharesLightPaths() const { return false; }
 };
 
 }  // namespace lacuna

@@ -40,6 +40,7 @@ struct IterationContext {
     const PathSpace& space;
     const ThreadPool& threads;
     std::uint64_t seed;
+    std::uint32_t generation;  ///< counts all iterations, warm-ups too: addresses random numbers
     std::uint64_t filmPixels;  ///< of the whole film, whatever the crop
     IterationStatistics& statistics;
 };

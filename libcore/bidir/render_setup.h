@@ -19,6 +19,8 @@ struct RenderSettings {
     std::uint64_t seed = 1;
     PixelRect crop;                ///< inside the camera's film
     std::uint64_t lightPaths = 0;  ///< L; 0: one per pixel of the full film
+    /// B: what methods learn begins anew with every block of so many iterations.
+    std::uint64_t blockIterations = BlockPlan::kEndless;
 };
 
 /// Shared by the passes; all references outlive the render.
@@ -62,6 +64,7 @@ struct RenderSetup {
 /// An iteration under way.
 struct Iteration {
     std::uint32_t number;
+    const Method& method;
     TechniqueCounts counts;  ///< frozen for it
     std::span<Rgb> pixels;   ///< of the crop: what it adds up; none in a warm-up
     IterationStatistics& statistics;

@@ -160,10 +160,11 @@ void insertAttribute(Imf::Header& header, const std::string& name, const Attribu
 
 }  // namespace
 
-void writeExr(const std::string& path, const LayeredImage& image) {
+void writeExr(const std::string& path, const LayeredImage& image, ExrCompression compression) {
     if (image.channels().empty()) throw std::invalid_argument("EXR without channels");
     Imf::Header header(image.width(), image.height());
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() =
+        compression == ExrCompression::Zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
     for (const auto& [name, value] : image.attributes) insertAttribute(header, name, value);
     Imf::FrameBuffer buffer;
     const std::size_t stride = sizeof(float);

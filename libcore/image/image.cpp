@@ -2,6 +2,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 namespace lacuna {
 namespace {
@@ -42,6 +43,14 @@ std::vector<float>& LayeredImage::channel(const std::string& name) {
 const std::vector<float>* LayeredImage::find(const std::string& name) const {
     const auto found = channels_.find(name);
     return found == channels_.end() ? nullptr : &found->second;
+}
+
+std::vector<float> LayeredImage::take(const std::string& name) {
+    const auto found = channels_.find(name);
+    if (found == channels_.end()) throw std::invalid_argument("no channel " + name);
+    std::vector<float> values = std::move(found->second);
+    channels_.erase(found);
+    return values;
 }
 
 void LayeredImage::setRgb(const std::string& layer, const Image& image) {

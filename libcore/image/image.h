@@ -53,6 +53,8 @@ class LayeredImage {
     const std::vector<float>* find(const std::string& name) const;
     const std::map<std::string, std::vector<float>>& channels() const { return channels_; }
 
+    /// Removes a channel and returns what it held. Throws std::invalid_argument if there is none.
+    std::vector<float> take(const std::string& name);
     /// Sets LAYER.R, LAYER.G, LAYER.B. Throws std::invalid_argument if the sizes differ.
     void setRgb(const std::string& layer, const Image& image);
     bool hasRgb(const std::string& layer) const;

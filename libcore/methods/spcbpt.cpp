@@ -326,6 +326,7 @@ class SubspaceConnections final : public Method {
     }
 
     bool learns() const override { return options_.reuse > 0; }
+    bool sharesLightPaths() const override { return options_.reuse > 0; }
 
     void observe(const LightPool&, IterationContext& context) override {
         if (tables_.measured()) {

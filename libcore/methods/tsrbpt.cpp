@@ -208,7 +208,7 @@ class TwoStageResampling final : public Method {
     void observe(const LightPool&, IterationContext& context) override {
         expected_.add(candidates_.size());
         PhaseTimer timer(context.statistics, "cache points");
-        CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
+        CachePoints next(context, options_.cacheDensity, options_.cachePoints, context.generation);
         earlier_.add(std::move(points_), std::move(sums_));
         q_ = earlier_.at(next, context.threads);
         points_ = std::move(next);
@@ -284,7 +284,7 @@ class TwoStageResampling final : public Method {
         const double limit = points_.inverseSquareLimit(c);
         const double perSubpath = 1.0 / double(options_.subpaths);
         tree_.cut(eye.back(), options_.clusters, s.heap, s.cut);
-        Rng rng(context.seed, generation_, StreamKind::CacheDraw, c);
+        Rng rng(context.seed, context.generation, StreamKind::CacheDraw, c);
         s.draws.clear();
         s.flows.clear();
         s.reserves.clear();
@@ -350,7 +350,6 @@ class TwoStageResampling final : public Method {
     std::vector<double> q_;  // Q1, Q2 by point, from earlier iterations
     EarlierValues earlier_;
     ExpectedVertices expected_;
-    std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;
     LightTree tree_;

@@ -132,7 +132,7 @@ class CacheResampling final : public Method {
     void observe(const LightPool&, IterationContext& context) override {
         expected_.add(candidates_.size());
         PhaseTimer timer(context.statistics, "cache points");
-        CachePoints next(context, options_.cacheDensity, options_.cachePoints, generation_++);
+        CachePoints next(context, options_.cacheDensity, options_.cachePoints, context.generation);
         if (aware()) {
             earlier_.add(std::move(points_), std::move(flow_));
             q_ = earlier_.at(next, context.threads);
@@ -171,7 +171,6 @@ class CacheResampling final : public Method {
     std::vector<double> q_;  // by point, from earlier iterations
     EarlierValues earlier_;
     ExpectedVertices expected_;
-    std::uint32_t generation_ = 0;
     const LightPool* pool_ = nullptr;
     std::vector<LightPool::Entry> candidates_;
     CachePmfs pmfs_;

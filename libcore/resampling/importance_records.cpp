@@ -106,7 +106,7 @@ ImportanceRecords::Pick ImportanceRecords::pick(std::uint32_t serving, int s, do
 
 void ImportanceRecords::observe(IterationContext& context) {
     PhaseTimer timer(context.statistics, "importance records");
-    CachePoints next(context, options_.density, options_.records, generation_++);
+    CachePoints next(context, options_.density, options_.records, context.generation);
     if (options_.aware) {
         earlier_.add(std::move(points_), std::move(found_));
         learnt_ = earlier_.at(next, context.threads);

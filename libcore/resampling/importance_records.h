@@ -72,7 +72,6 @@ class ImportanceRecords {
     CachePoints points_;          // of this iteration
     std::vector<double> learnt_;  // by record, length and column, from the earlier iteration
     EarlierValues earlier_;
-    std::uint32_t generation_ = 0;
     const VerticesByLength* vertices_ = nullptr;
     std::vector<CombinedPmf> pmfs_;  // by record and s
     std::vector<double> found_;      // as learnt_, of this iteration

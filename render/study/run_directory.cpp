@@ -47,8 +47,8 @@ void RunDirectory::render(const std::string& renderer, const std::string& scene,
     if (error) {
         throw RunError(path_ + ": expected to make this folder, found " + error.message());
     }
-    std::vector<std::string> all{renderer, scene,    "-o",   image(),  "--log",
-                                 curve(),  "--json", json(), "--quiet"};
+    std::vector<std::string> all{renderer, scene,  "-o",      image(),        "--log",     curve(),
+                                 "--json", json(), "--quiet", "--checkpoint", checkpoint()};
     all.insert(all.end(), arguments.begin(), arguments.end());
     const int exitCode = runChild(all, log(), cancel);
     fs::remove_all(cache(), error);
@@ -62,6 +62,7 @@ void RunDirectory::render(const std::string& renderer, const std::string& scene,
                                                      std::to_string(exitCode) + ": " +
                                                      lastLine(log()));
     }
+    fs::remove(checkpoint(), error);
 }
 
 }  // namespace lacuna

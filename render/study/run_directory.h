@@ -16,6 +16,8 @@ class RunDirectory {
     std::string curve() const { return path_ + "/curve.csv"; }
     std::string json() const { return path_ + "/run.json"; }
     std::string log() const { return path_ + "/render.log"; }
+    /// Where an interrupted render goes on; gone once it is complete.
+    std::string checkpoint() const { return path_ + "/checkpoint"; }
     /// Scratch of one render: caches are built anew for each, so that every setup is measured.
     std::string cache() const { return path_ + "/cache"; }
 

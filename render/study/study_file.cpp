@@ -19,9 +19,10 @@ using nlohmann::json;
 const std::vector<std::string> kMeasures = {"mae", "rmse", "mape", "relmse"};
 
 /// Options that a study may set; the others (outputs, seeds, limits) are its own business.
-const std::set<std::string> kOptions = {
-    "width",    "height", "crop",      "camera",   "env",    "env-rotate", "env-scale",
-    "aperture", "focus",  "max-depth", "rr-depth", "effect", "tolerance"};
+const std::set<std::string> kOptions = {"width",  "height",     "crop",      "camera",
+                                        "env",    "env-rotate", "env-scale", "aperture",
+                                        "focus",  "max-depth",  "rr-depth",  "block-iterations",
+                                        "effect", "tolerance"};
 
 /// Beside the study's file, unless absolute or in the folder of scenes that others made.
 std::string resolvePath(const std::string& studyFile, const std::string& path) {

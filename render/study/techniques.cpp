@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libcore/bidir/film.h"
+#include "libcore/bidir/technique_film.h"
 #include "libcore/image/exr.h"
 #include "render/study/embed.h"
 

@@ -93,7 +93,7 @@ void judgeAll(const Picture& a, const Image& pixels, const Image& pixelVariance,
     if (which != Judge::MeanOnly) {
         judge(a.blocks.image(), a.blocks.variance(), blocks, blockVariance, z, what + ": block");
     }
-    const Film::MeanColour own = a.pixels.meanColour();
+    const FilmSum::MeanColour own = a.pixels.meanColour();
     double smallest = 0;
     for (int c = 0; c < 3; ++c) {
         const double error = std::hypot(own.standardError[c], meanError[c]);
@@ -118,13 +118,13 @@ Shot quickShot(int iterations) {
 }
 
 double Picture::mean() const {
-    const Film::MeanColour m = pixels.meanColour();
+    const FilmSum::MeanColour m = pixels.meanColour();
     return (m.mean[0] + m.mean[1] + m.mean[2]) / 3;
 }
 
 double Picture::standardError() const {
     // The channels of one path go together: as if they were equal.
-    const Film::MeanColour m = pixels.meanColour();
+    const FilmSum::MeanColour m = pixels.meanColour();
     return (m.standardError[0] + m.standardError[1] + m.standardError[2]) / 3;
 }
 
@@ -145,6 +145,7 @@ Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot, Metho
 }
 
 void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
+    method_ = &method;
     RenderSettings r;
     r.limits = {shot_.maxDepth, shot_.rouletteDepth};
     r.seed = shot_.seed;
@@ -159,7 +160,7 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
 
 void Render::warmUp() {
     const std::atomic<bool> never{false};
-    integrator_->warmUp(never, statistics_);
+    integrator_->beginBlock(0, *method_, never, statistics_);
 }
 
 void Render::iterate(std::uint32_t iteration) {
@@ -199,7 +200,7 @@ Picture render(const Scene& scene, const MethodRow& row, const Shot& shot) {
 void expectSame(const Picture& a, const Picture& b, const std::string& what, Judge which) {
     expectValid(a, what);
     expectValid(b, what);
-    const Film::MeanColour m = b.pixels.meanColour();
+    const FilmSum::MeanColour m = b.pixels.meanColour();
     judgeAll(a, b.pixels.image(), b.pixels.variance(), b.blocks.image(), b.blocks.variance(),
              m.mean, m.standardError, b.pixels.iterations(), what, which);
 }

@@ -81,6 +81,7 @@ class Render {
     Camera camera_;
     Settings settings_;
     std::unique_ptr<Method> own_;
+    Method* method_ = nullptr;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::vector<Rgb> pixels_;
     IterationStatistics statistics_;

@@ -45,7 +45,7 @@ class Bench {
           method_(row.create(resolve(row, {}))),
           integrator_(scene_, camera_, row.techniques, *method_, settings(), pool_) {
         IterationStatistics warmUp;
-        integrator_.warmUp(never_, warmUp);
+        integrator_.beginBlock(0, *method_, never_, warmUp);
     }
 
     const ThreadPool& pool() const { return pool_; }
@@ -168,7 +168,8 @@ void lightPool(benchmark::State& state, const std::string& file) {
     const std::atomic<bool> never{false};
     for (auto _ : state) {
         IterationStatistics statistics;
-        integrator.warmUp(never, statistics);
+        const auto fresh = row.create(resolve(row, million));
+        integrator.beginBlock(0, *fresh, never, statistics);
     }
     const LightPool& light = integrator.pool();
     const double vertices = double(light.vertices().size());

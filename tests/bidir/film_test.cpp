@@ -1,11 +1,13 @@
 // What a film says of its iterations: sums, and the spread that every z-test is as good as.
-#include "libcore/bidir/film.h"
+#include "libcore/bidir/technique_film.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/rng.h"
 
 namespace lacuna::test {
 namespace {
@@ -38,7 +40,7 @@ TEST(Film, varianceIsThatOfTheMean) {
 
 // The picture's mean is 50.5 times the first pixel, and so is its spread.
 TEST(Film, meanColourHasTheErrorOfItsMean) {
-    const Film::MeanColour m = threeIterations().meanColour();
+    const FilmSum::MeanColour m = threeIterations().meanColour();
     EXPECT_NEAR(m.mean[0], 50.5 * 7.0 / 3.0, 1e-9);
     EXPECT_NEAR(m.standardError[0], 50.5 * std::sqrt(7.0 / 9.0), 1e-9);
     EXPECT_NEAR(m.standardError[1], 3.0 * m.standardError[0], 1e-9);
@@ -55,6 +57,141 @@ TEST(Film, saysNothingOfASpreadThatItHasNotSeen) {
     EXPECT_EQ(film.meanColour().standardError[0], 0.0);
 }
 
+// Blocks ------------------------------------------------------------------------------------------
+
+constexpr int kPixels = 3;
+
+std::vector<Rgb> iterationPixels(std::uint64_t number) {
+    Rng rng(9, std::uint32_t(number), StreamKind::User, 0);
+    std::vector<Rgb> pixels(kPixels);
+    // Over many orders of magnitude, so that every other order of sums would show.
+    const auto value = [&] { return std::pow(10.0f, 8.0f * rng.uniform() - 4.0f); };
+    for (Rgb& p : pixels) p = {value(), value(), 0.25f};
+    return pixels;
+}
+
+Film filmOf(std::uint64_t begin, std::uint64_t end, BlockPlan plan, std::uint64_t firstBlock = 0) {
+    const ThreadPool threads(1);
+    Film film(kPixels, 1, plan, firstBlock);
+    for (std::uint64_t i = begin; i < end; ++i) film.add(iterationPixels(i), threads);
+    return film;
+}
+
+void expectSameSum(const FilmSum& a, const FilmSum& b) {
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.samples, b.samples);
+    EXPECT_EQ(a.mean, b.mean);
+    EXPECT_EQ(a.spread, b.spread);
+    EXPECT_EQ(a.wholeMean, b.wholeMean);
+    EXPECT_EQ(a.wholeSquares, b.wholeSquares);
+}
+
+TEST(Film, anyPieceOfAPictureGoesOnToTheSameSums) {
+    const ThreadPool threads(1);
+    constexpr std::uint64_t kEnd = 103;
+    for (const std::uint64_t size : {1u, 5u, 8u, 64u}) {
+        for (const bool samples : {false, true}) {
+            const BlockPlan plan{size, samples};
+            const FilmSum whole = filmOf(0, kEnd, plan).sum();
+            for (const std::uint64_t stop : {1u, 4u, 37u, 64u, 102u}) {
+                SCOPED_TRACE(std::to_string(size) + " to a block, stopped at " +
+                             std::to_string(stop));
+                const Film before = filmOf(0, stop, plan);
+                for (const bool withOpen : {false, true}) {
+                    Film after(kPixels, 1, plan);
+                    after.restore(before.state(withOpen), threads);
+                    EXPECT_EQ(after.nextIteration(), withOpen ? stop : stop / size * size);
+                    while (after.nextIteration() < kEnd) {
+                        after.add(iterationPixels(after.nextIteration()), threads);
+                    }
+                    expectSameSum(after.sum(), whole);
+                }
+            }
+        }
+    }
+}
+
+TEST(Film, aSnapshotStaysAsItWas) {
+    const ThreadPool threads(1);
+    Film film = filmOf(0, 6, {4, false});
+    const Film::State snapshot = film.state(true);
+    for (std::uint64_t i = 6; i < 40; ++i) film.add(iterationPixels(i), threads);
+    Film before(kPixels, 1, {4, false});
+    before.restore(snapshot, threads);
+    expectSameSum(before.sum(), filmOf(0, 6, {4, false}).sum());
+}
+
+TEST(SumTree, neighboursJoinToTheSumOfBoth) {
+    const ThreadPool threads(1);
+    const BlockPlan plan{3, false};
+    const FilmSum whole = filmOf(0, 13 * 3, plan).sum();
+    for (const std::uint64_t a : {1u, 4u, 5u}) {
+        for (const std::uint64_t b : {6u, 8u, 11u}) {
+            SumTree tree(false);
+            for (const auto& [begin, end] : {std::pair{std::uint64_t(0), a}, {a, b}, {b, 13ul}}) {
+                const Film part = filmOf(begin * 3, end * 3, plan, begin);
+                for (const SumTree::Node& node : part.state(false).blocks) tree.add(node, threads);
+            }
+            FilmSum sum;
+            tree.addTo(sum, nullptr);
+            expectSameSum(sum, whole);
+        }
+    }
+}
+
+// Two blocks of 1, 2 and 4, 9: their means are 1.5 and 6.5, so the mean of both has the variance
+// (2.5^2 + 2.5^2) / 2, whatever their iterations did.
+TEST(Film, whereIterationsShareLightPathsBlocksAreTheSamples) {
+    const ThreadPool threads(1);
+    Film film(1, 1, {2, true});
+    for (const float v : {1.0f, 2.0f, 4.0f, 9.0f}) {
+        EXPECT_EQ(film.sum().samples, (film.iterations() + 1) / 2);
+        film.add(std::vector<Rgb>{Rgb(v)}, threads);
+    }
+    EXPECT_FLOAT_EQ(film.image().at(0, 0).r, 4.0f);
+    EXPECT_FLOAT_EQ(film.variance().at(0, 0).r, 6.25f);
+    EXPECT_NEAR(film.meanColour().standardError[0], 2.5, 1e-12);
+    EXPECT_EQ(filmOf(0, 2, {2, true}).variance().at(0, 0).r, 0.0f) << "one block has no spread";
+}
+
+class OneLayer final : public BlockLayers {
+  public:
+    Layers means() const override { return value != 0.0f ? Layers{{"a.R", {value}}} : Layers{}; }
+    void clear() override { value = 0.0f; }
+    float value = 0.0f;
+};
+
+TEST(Film, layersAreMeansOverAllBlocks) {
+    const ThreadPool threads(1);
+    Film film(1, 1, {2, false});
+    OneLayer layer;
+    film.addLayers(layer);
+    const std::vector<Rgb> pixel{Rgb(1.0f)};
+    layer.value = 3.0f;
+    film.add(pixel, threads);
+    film.add(pixel, threads);
+    EXPECT_EQ(layer.value, 0.0f) << "cleared at the end of its block";
+    film.add(pixel, threads);  // nothing in this block
+    film.add(pixel, threads);
+    layer.value = 6.0f;
+    film.add(pixel, threads);
+    EXPECT_FLOAT_EQ(film.sum().layers.at("a.R")[0], (2 * 3.0f + 2 * 0.0f + 6.0f) / 5);
+    EXPECT_TRUE(film.state(true).open[0].sum->layers.empty());
+    EXPECT_FLOAT_EQ(film.finalState(threads).open[0].sum->layers.at("a.R")[0], 6.0f);
+}
+
+// Sums of floats would be infinite, and so would squares.
+TEST(Film, holdsThePowersThatAFloatHolds) {
+    const ThreadPool threads(1);
+    for (const float unit : {1e-37f, 1e37f}) {
+        Film film(1, 1, {4, false});
+        for (int i = 0; i < 100; ++i)
+            film.add(std::vector<Rgb>{Rgb(unit * float(i % 3 + 1))}, threads);
+        EXPECT_FLOAT_EQ(film.image().at(0, 0).r, unit * 1.99f);
+        EXPECT_NEAR(film.meanColour().standardError[0] / double(unit), 0.0820, 1e-3);
+    }
+}
+
 // Connections of the first eye vertex are half of the first pixel and nothing of the other.
 TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     TechniqueFilm film(2, 1, 3);
@@ -67,7 +204,10 @@ TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     EXPECT_EQ(film.weighted(1, 2).at(0, 0), Rgb(1.5f));
     EXPECT_EQ(film.unweighted(1, 2).at(0, 0), Rgb(3.0f));
     LayeredImage image(2, 1);
-    film.writeTo(image);
+    for (const auto& [name, plane] : film.means()) image.channel(name) = plane;
+    EXPECT_TRUE(image.hasRgb("unweighted.s00t02"));
+    EXPECT_FALSE(image.hasRgb("weighted.s01t01")) << "black layers are left out";
+    addShareOfFirstConnections(image, 3);
     EXPECT_FLOAT_EQ(image.channel("share.t02")[0], 0.5f);
     EXPECT_EQ(image.channel("share.t02")[1], 0.0f);
 }

@@ -43,7 +43,7 @@ std::vector<double> believed(const MethodRow& row, const std::vector<std::string
     const OneSurface space;
     const ThreadPool threads(1);
     IterationStatistics statistics;
-    IterationContext context{space, threads, 43, 1, statistics};
+    IterationContext context{space, threads, 43, 0, 1, statistics};
     std::vector<std::string> settings = {"candidates=" + std::to_string(kSubpaths),
                                          "connections=" + std::to_string(Picks::kMost)};
     for (const Option& o : row.options) {

@@ -17,7 +17,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
     const ThreadPool threads(1);
     IterationStatistics statistics;
     double worst = 0.0;
-    IterationContext context{space, threads, 20, 1000, statistics};
+    IterationContext context{space, threads, 20, 0, 1000, statistics};
     // A row may draw in prepare() what it picks from in select(), so the mean is over both.
     constexpr int kSubpaths = 5, kPrepares = 1000, kDraws = 400;
     // 4.5 standard errors: 7e-6 false alarms per comparison, two comparisons per row.
@@ -26,6 +26,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         if (settings.empty()) continue;  // no pool
         const auto method = row.create(resolve(row, settings));
         method->freeze(0);
+        context.generation = 0;
         LightPool pool;
         pool.reset(kSubpaths);
         std::vector<PathVertex> path;
@@ -76,6 +77,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
                 squares[half] += value[half] * value[half];
             }
             method->observe(pool, context);
+            ++context.generation;
         }
         for (const int half : {0, 1}) {
             double truth = 0.0;

@@ -112,7 +112,7 @@ TEST(SkeletonBeliefs, areThePicksButForTheEvenChoice) {
     const BehindAWall space;
     const ThreadPool threads(1);
     IterationStatistics statistics;
-    IterationContext context{space, threads, 41, 1000, statistics};
+    IterationContext context{space, threads, 41, 0, 1000, statistics};
     const MethodRow& row = findMethod("skelbpt");
     const std::vector<std::string> settings = {"candidates=6", "node_acceptance=0"};
     const auto method = row.create(resolve(row, settings));
@@ -143,7 +143,7 @@ TEST(SkeletonBeliefs, areThoseOfThePathsSide) {
     const MethodRow& row = findMethod("skelbpt");
     const std::vector<std::string> settings = {"candidates=6", "node_acceptance=0"};
     IterationStatistics statistics;
-    IterationContext context{space, threads, 41, 1000, statistics};
+    IterationContext context{space, threads, 41, 0, 1000, statistics};
     const auto method = row.create(resolve(row, settings));
     give(*method, nodeOnEitherSide());
     const ConnectionDensity& density = settle(*method, pool, context, 2);

@@ -53,7 +53,7 @@ TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
     for (const char* defensive : {"defensive=0.25", "defensive=0.7"}) {
         SCOPED_TRACE(defensive);
         IterationStatistics statistics;
-        IterationContext context{space, threads, 41, 1, statistics};
+        IterationContext context{space, threads, 41, 0, 1, statistics};
         const std::vector<std::string> settings = {"candidates=6", "second_candidates=1000000",
                                                    "cache_density=1", defensive};
         const auto method = row.create(resolve(row, settings));
@@ -79,7 +79,7 @@ double believed(OneSurface::Sees sees, const char* clusters) {
     const ThreadPool threads(1);
     const MethodRow& row = findMethod("tsrbpt");
     IterationStatistics statistics;
-    IterationContext context{space, threads, 41, 1, statistics};
+    IterationContext context{space, threads, 41, 0, 1, statistics};
     const std::vector<std::string> settings = {"candidates=4", "cache_density=1", "defensive=0.5",
                                                "first_connections=2", clusters};
     const auto method = row.create(resolve(row, settings));

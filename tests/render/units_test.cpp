@@ -15,13 +15,13 @@ namespace lacuna {
 namespace {
 
 TEST(RenderUnits, Durations) {
-    EXPECT_EQ(parseDuration("90s"), 90.0);
-    EXPECT_EQ(parseDuration("90"), 90.0);
-    EXPECT_EQ(parseDuration("0.5"), 0.5);
-    EXPECT_EQ(parseDuration("1.5m"), 90.0);
-    EXPECT_EQ(parseDuration("1h"), 3600.0);
+    EXPECT_EQ(parseDuration("--time", "90s"), 90.0);
+    EXPECT_EQ(parseDuration("--time", "90"), 90.0);
+    EXPECT_EQ(parseDuration("--time", "0.5"), 0.5);
+    EXPECT_EQ(parseDuration("--time", "1.5m"), 90.0);
+    EXPECT_EQ(parseDuration("--time", "1h"), 3600.0);
     for (const char* text : {"", "s", "0", "0s", "-1s", "1 s", "1ms", "infs", "nans", "0x1s"}) {
-        EXPECT_THROW(parseDuration(text), UsageError) << text;
+        EXPECT_THROW(parseDuration("--time", text), UsageError) << text;
     }
     EXPECT_EQ(durationText(0.4), "0s");
     EXPECT_EQ(durationText(65.0), "1m05s");

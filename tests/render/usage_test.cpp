@@ -85,20 +85,41 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure(start + "--count-setup", 2, "--time");
     expectFailure("@none.glb -o @out.png --method pt --techniques", 2, ".exr");
     expectFailure(start + "--display-server localhost:14158", 2, "not there yet");
-    expectFailure(start + "--checkpoint @state", 2, "not there yet");
     expectFailure(start + "--json @out.exr", 2, "file of its own");
 }
 
 /// A variable of the shell that is not set must not leave an option out.
 TEST_F(RenderUsage, EmptyTextsExitWith2) {
     const std::string start = "@none.glb -o @out.exr --method pt ";
-    for (const char* option :
-         {"--time",      "--crop",   "--replay",     "--env",         "--reference",
-          "--log",       "--camera", "--json",       "--cache",       "--set",
-          "--width",     "--height", "--iterations", "--max-depth",   "--rr-depth",
-          "--aperture",  "--focus",  "--exposure",   "--env-rotate",  "--env-scale",
-          "--tolerance", "--seed",   "--threads",    "--help-method", "--display-server",
-          "--checkpoint"}) {
+    for (const char* option : {"--time",
+                               "--crop",
+                               "--replay",
+                               "--env",
+                               "--reference",
+                               "--log",
+                               "--camera",
+                               "--json",
+                               "--cache",
+                               "--set",
+                               "--width",
+                               "--height",
+                               "--iterations",
+                               "--max-depth",
+                               "--rr-depth",
+                               "--aperture",
+                               "--focus",
+                               "--exposure",
+                               "--env-rotate",
+                               "--env-scale",
+                               "--tolerance",
+                               "--seed",
+                               "--threads",
+                               "--help-method",
+                               "--display-server",
+                               "--checkpoint",
+                               "--checkpoint-every",
+                               "--blocks",
+                               "--block-iterations"}) {
         expectFailure(start + option + " \"\"", 2, option);
     }
     expectFailure(start + "--time=", 2, "--time");

@@ -99,7 +99,7 @@ TEST_F(RenderVerify, ReadsNoStoredDensity) {
     const std::atomic<bool> never{false};
     IterationStatistics statistics;
     std::vector<Rgb> pixels(16 * 12);
-    integrator.warmUp(never, statistics);
+    integrator.beginBlock(0, *method, never, statistics);
     integrator.render(0, pixels, never, statistics);
     EXPECT_GT(paths, 500);
     EXPECT_LT(worst, 1e-5);

@@ -17,7 +17,7 @@ struct Space {
     FiniteSpace space{3};
     ThreadPool threads{2};
     IterationStatistics statistics;
-    IterationContext context{space, threads, 5, 10, statistics};
+    IterationContext context{space, threads, 5, 0, 10, statistics};
 };
 
 double distance2(Vec3 a, Vec3 b) {
@@ -112,7 +112,7 @@ TEST(CachePoints, areNotOnMirrors) {
     const ThreadPool threads(1);
     const BehindAMirror space;
     IterationStatistics statistics;
-    IterationContext context{space, threads, 5, 3, statistics};
+    IterationContext context{space, threads, 5, 0, 3, statistics};
     const CachePoints points(context, 1.0, 3, 0);
     ASSERT_EQ(points.size(), 3u) << "three paths, and nothing is connected at a mirror";
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -142,7 +142,7 @@ TEST(CachePoints, weightsDoNotCountOnWhatIsBehindASurface) {
     for (const float transmission : {0.0f, 1.0f}) {
         const OnePoint space(transmission);
         IterationStatistics statistics;
-        IterationContext context{space, threads, 5, 1, statistics};
+        IterationContext context{space, threads, 5, 0, 1, statistics};
         const CachePoints points(context, 1.0, 3, 0);
         ASSERT_EQ(points.size(), 1u);
         light.position = {0.1f, -0.3f, 1.5f};

@@ -66,7 +66,8 @@ TEST_P(ShippedStudies, QuickNeedsNoSceneOfOthersAndLittleTime) {
     for (const StudyScene& scene : study.scenes) {
         EXPECT_TRUE(std::filesystem::exists(scene.file)) << scene.file;
         const double runs = double(study.methods.size() * study.seeds.size());
-        seconds += runs * (study.effort[0] == "--time" ? parseDuration(study.effort[1]) : 1.0);
+        seconds +=
+            runs * (study.effort[0] == "--time" ? parseDuration("--time", study.effort[1]) : 1.0);
     }
     EXPECT_LE(seconds, 120.0);
 }

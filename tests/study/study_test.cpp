@@ -1,4 +1,6 @@
 // lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
+#include <signal.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -6,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "libcore/image/exr.h"
 #include "tests/study/study_tool.h"
 
 namespace lacuna::test {
@@ -312,6 +315,40 @@ TEST_F(StudyRun, RefusesReferencesOfOtherScenesSizesAndDepths) {
     refused(scene, "--width 20 --height 16 --max-depth 5", "24 x 16");
     refused(scene, "--width 24 --height 16 --max-depth 4", "paths of up to 5");
     refused(other.text(), "--width 24 --height 16 --max-depth 5", "a picture of the scene");
+}
+
+TEST_F(StudyRun, InterruptedTenTimesItIsTheSame) {
+    writeStudy(R"({"iterations": 60, "scenes": [{"file": "room.gltf",
+        "options": {"width": 96, "height": 64, "max-depth": 5},
+        "reference": {"method": "bpt", "iterations": 60, "parts": 2, "file": "reference.exr"}}]})");
+    ASSERT_EQ(run("@study.json -o @whole --quiet").exitCode, 0);
+    int interrupted = 0, goneOn = 0;
+    for (int i = 0; i < 10; ++i) {
+        const Outcome o = runAndSignal("@study.json -o @pieces --quiet", {SIGINT},
+                                       std::chrono::milliseconds(350));
+        interrupted += o.exitCode == 130;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("pieces"))) {
+            goneOn += entry.path().filename() == "checkpoint";
+        }
+    }
+    EXPECT_GT(interrupted, 2);
+    EXPECT_GT(goneOn, 0);
+    ASSERT_EQ(run("@study.json -o @pieces --quiet").exitCode, 0);
+    int pictures = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path("whole"))) {
+        EXPECT_NE(entry.path().filename(), "checkpoint");
+        if (entry.path().filename() != "image.exr" ||
+            entry.path().string().find("references") != std::string::npos) {
+            continue;
+        }
+        const std::string other =
+            path("pieces/" + std::filesystem::relative(entry.path(), path("whole")).string());
+        ASSERT_TRUE(std::filesystem::exists(other)) << other;
+        EXPECT_TRUE(readExrLayers(entry.path()).channels() == readExrLayers(other).channels())
+            << other;
+        ++pictures;
+    }
+    EXPECT_EQ(pictures, 6);
 }
 
 }  // namespace

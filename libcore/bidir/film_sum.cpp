@@ -1,0 +1,162 @@
+#include "libcore/bidir/film_sum.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "libcore/base/parallel.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::size_t kPixelsPerTask = 1 << 14;
+
+/// body(i) for all pixels, in pieces.
+template <class Body>
+void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) {
+    const std::size_t tasks = (pixels + kPixelsPerTask - 1) / kPixelsPerTask;
+    const auto piece = [&](std::size_t task) {
+        const std::size_t end = std::min(pixels, (task + 1) * kPixelsPerTask);
+        for (std::size_t i = task * kPixelsPerTask; i < end; ++i) body(i);
+    };
+    if (threads && tasks > 1) {
+        threads->forEach(tasks, piece);
+    } else {
+        for (std::size_t task = 0; task < tasks; ++task) piece(task);
+    }
+}
+
+/// Means and spreads of two sums, one number at a time; in double between two roundings.
+struct Joint {
+    Joint(const FilmSum& left, const FilmSum& right, bool oneSample)
+        : nLeft(double(left.iterations)),
+          nRight(double(right.iterations)),
+          between(oneSample ? 0.0 : nLeft * nRight / (nLeft + nRight)) {}
+
+    double mean(double left, double right) const {
+        return (nLeft * left + nRight * right) / (nLeft + nRight);
+    }
+    double squares(double left, double right, double distance) const {
+        return left + right + between * distance * distance;
+    }
+    void join(float& mean_, float& spread, float mean2, float spread2) const {
+        const double a = double(mean_), b = double(mean2);
+        spread = float(std::sqrt(
+            squares(double(spread) * double(spread), double(spread2) * double(spread2), b - a)));
+        mean_ = float(mean(a, b));
+    }
+
+    const double nLeft, nRight;
+    const double between;  ///< weight of the squared distance of the two means
+};
+
+void joinLayers(FilmSum& left, const FilmSum& right, const Joint& joint) {
+    const std::size_t pixels = left.mean.size();
+    for (const auto& [name, plane] : right.layers) left.layers[name].resize(pixels);
+    const std::vector<float> none(pixels);
+    for (auto& [name, plane] : left.layers) {
+        const auto found = right.layers.find(name);
+        const std::vector<float>& other = found == right.layers.end() ? none : found->second;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            plane[i] = float(joint.mean(double(plane[i]), double(other[i])));
+        }
+    }
+}
+
+/// Variance of the mean of weighted samples: their spread squared, over the sum of the weights and
+/// the degrees of freedom.
+double varianceOfMean(double squares, const FilmSum& sum) {
+    if (sum.samples < 2) return 0.0;
+    const double variance = squares / (double(sum.iterations) * double(sum.samples - 1));
+    return std::max(0.0, variance);  // and where it is no number
+}
+
+}  // namespace
+
+FilmSum FilmSum::ofIteration(std::span<const Rgb> pixels, int width, const ThreadPool& threads) {
+    FilmSum sum;
+    sum.iterations = sum.samples = 1;
+    sum.mean.assign(pixels.begin(), pixels.end());
+    const auto row = std::size_t(width);
+    std::vector<Vec3d> rows(pixels.size() / row);
+    threads.forEach(rows.size(), [&](std::size_t y) {
+        for (const Rgb& p : pixels.subspan(y * row, row)) rows[y] += Vec3d{p.r, p.g, p.b};
+    });
+    Vec3d total;
+    for (const Vec3d& r : rows) total += r;
+    for (std::size_t c = 0; c < 3; ++c) sum.wholeMean[c] = total[c] / double(pixels.size());
+    return sum;
+}
+
+Image FilmSum::image(int width, int height) const {
+    Image image(width, height);
+    if (iterations > 0) image.pixels = mean;
+    return image;
+}
+
+Image FilmSum::variance(int width, int height) const {
+    Image image(width, height);
+    const auto of = [&](float s) { return float(varianceOfMean(double(s) * double(s), *this)); };
+    for (std::size_t i = 0; i < spread.size(); ++i) {
+        image.pixels[i] = {of(spread[i].r), of(spread[i].g), of(spread[i].b)};
+    }
+    return image;
+}
+
+FilmSum::MeanColour FilmSum::meanColour() const {
+    MeanColour m;
+    for (std::size_t c = 0; c < 3; ++c) {
+        m.mean[c] = wholeMean[c];
+        m.standardError[c] = std::sqrt(varianceOfMean(wholeSquares[c], *this));
+    }
+    return m;
+}
+
+void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads) {
+    if (right.iterations == 0) return;
+    if (left.iterations == 0) {
+        left = right;
+        return;
+    }
+    const Joint joint(left, right, oneSample);
+    const bool spreads = !oneSample || !left.spread.empty() || !right.spread.empty();
+    if (spreads) left.spread.resize(left.mean.size());
+    forPixels(left.mean.size(), threads, [&](std::size_t i) {
+        Rgb unused, none;
+        Rgb &m = left.mean[i], &s = spreads ? left.spread[i] : unused;
+        const Rgb &m2 = right.mean[i], &s2 = right.spread.empty() ? none : right.spread[i];
+        joint.join(m.r, s.r, m2.r, s2.r);
+        joint.join(m.g, s.g, m2.g, s2.g);
+        joint.join(m.b, s.b, m2.b, s2.b);
+    });
+    for (std::size_t c = 0; c < 3; ++c) {
+        left.wholeSquares[c] = joint.squares(left.wholeSquares[c], right.wholeSquares[c],
+                                             right.wholeMean[c] - left.wholeMean[c]);
+        left.wholeMean[c] = joint.mean(left.wholeMean[c], right.wholeMean[c]);
+    }
+    joinLayers(left, right, joint);
+    left.iterations += right.iterations;
+    left.samples = oneSample ? 1 : left.samples + right.samples;
+}
+
+void SumTree::add(Node node, const ThreadPool& threads) {
+    nodes_.push_back(std::move(node));
+    while (nodes_.size() >= 2) {
+        Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
+        const bool siblings = left.size == right.size && left.begin + left.size == right.begin &&
+                              left.begin % (2 * left.size) == 0;
+        if (!siblings) return;
+        if (left.sum.use_count() > 1) left.sum = std::make_shared<FilmSum>(*left.sum);
+        std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read it
+        join(*left.sum, *right.sum, oneSample_, &threads);
+        left.size *= 2;
+        nodes_.pop_back();
+    }
+}
+
+void SumTree::addTo(FilmSum& sum, const ThreadPool* threads) const {
+    for (const Node& node : nodes_) join(sum, *node.sum, oneSample_, threads);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,82 @@
+// What iterations add up to: means and spreads, summed in an order that does not depend on who
+// made which iteration when, so that a picture that was made in pieces is the picture made in one
+// go to the last bit. (theory.md, "Blocks")
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libcore/image/image.h"
+
+namespace lacuna {
+
+class ThreadPool;
+
+/// Channels beside the picture, by name.
+using Layers = std::map<std::string, std::vector<float>>;
+
+/// The mean of a number of iterations, and how far they lie from it.
+struct FilmSum {
+    std::uint64_t iterations = 0;
+    /// Independent samples of the picture among them: iterations, or the blocks that they lie in
+    /// where a block's iterations share light paths.
+    std::uint64_t samples = 0;
+    std::vector<Rgb> mean;  ///< by pixel
+    /// By pixel and channel: root of the sum over the samples of (a sample's iterations) x (its
+    /// distance from the mean)^2. Empty: zero everywhere.
+    std::vector<Rgb> spread;
+    /// The same of the picture's mean colour; squared.
+    std::array<double, 3> wholeMean{}, wholeSquares{};
+    Layers layers;  ///< further means; a channel that is missing is zero
+
+    /// An iteration's picture, row by row.
+    static FilmSum ofIteration(std::span<const Rgb> pixels, int width, const ThreadPool& threads);
+
+    Image image(int width, int height) const;
+    /// Variance of the mean per pixel and channel; zero below two samples.
+    Image variance(int width, int height) const;
+    struct MeanColour {
+        double mean[3] = {0, 0, 0};
+        double standardError[3] = {0, 0, 0};  ///< zero below two samples
+    };
+    /// Of the whole picture, its standard error from the spread of the samples' means.
+    MeanColour meanColour() const;
+};
+
+/// Adds `right` to `left` [Chan83]. `oneSample`: they are parts of one sample,
+/// so that nothing is known of its spread. `threads` may be null.
+void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads);
+
+/// Sums of items that come one after the other: item i is a leaf of the binary tree whose nodes
+/// are [k 2^l, (k+1) 2^l), and of the tree only the largest whole nodes are kept. Two trees of
+/// neighbouring ranges join to that of both, bit for bit.
+class SumTree {
+  public:
+    struct Node {
+        std::uint64_t begin = 0, size = 0;  ///< items; size a power of two that divides begin
+        std::shared_ptr<FilmSum> sum;       ///< not changed while anyone else holds it
+    };
+
+    /// `oneSample`: all items are parts of one sample.
+    explicit SumTree(bool oneSample) : oneSample_(oneSample) {}
+
+    /// A node behind all others.
+    void add(Node node, const ThreadPool& threads);
+    /// What a copy of this holds stays as it is.
+    const std::vector<Node>& nodes() const { return nodes_; }
+    bool empty() const { return nodes_.empty(); }
+    void clear() { nodes_.clear(); }
+    /// Adds all nodes to `sum`, the first one first. `threads` may be null.
+    void addTo(FilmSum& sum, const ThreadPool* threads) const;
+
+  private:
+    bool oneSample_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace lacuna

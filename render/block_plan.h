@@ -1,0 +1,20 @@
+// How a render's iterations are cut into blocks, and which of them are asked for. (theory.md,
+// "Blocks")
+#pragma once
+
+#include <cstdint>
+
+#include "libcore/bidir/film.h"
+#include "libcore/bidir/method.h"
+#include "render/options.h"
+
+namespace lacuna {
+
+/// The method's blocks, or those of --block-iterations.
+BlockPlan planOf(const RenderOptions& options, const Method& method);
+
+/// Behind the last iteration that is asked for; 0: time alone ends the render. Throws UsageError
+/// for blocks behind the picture's end.
+std::uint64_t endOf(const RenderOptions& options, const BlockPlan& plan);
+
+}  // namespace lacuna

@@ -1,0 +1,75 @@
+#include "render/checkpoint.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/image/exr.h"
+
+namespace lacuna {
+namespace {
+
+void write(const std::string& path, const Part& part) {
+    LayeredImage image(part.width, part.height);
+    addPart(image, part);
+    writeExr(path, image, ExrCompression::None);
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(std::string path, double seconds)
+    : path_(std::move(path)), every_(seconds) {}
+
+Checkpoint::~Checkpoint() {
+    if (writing_.valid()) writing_.wait();
+}
+
+std::optional<Part> Checkpoint::load(const CacheStamp& inputs, std::uint64_t firstBlock) const {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_, ignored)) return std::nullopt;
+    LayeredImage image = readExrLayers(path_);
+    Part part = takePart(image, path_);
+    // As a file holds them: a line break in a camera's name is none there.
+    std::string different = differencesText(CacheStamp::parse(inputs.text()), part.inputs);
+    if (different.empty() && part.firstBlock != firstBlock) {
+        different = "first block (there " + std::to_string(part.firstBlock) + ", here " +
+                    std::to_string(firstBlock) + ")";
+    }
+    if (!different.empty()) {
+        throw InputError(path_ + ": expected a checkpoint of this command, found another " +
+                         different + "; name another file, or delete it");
+    }
+    return part;
+}
+
+bool Checkpoint::due() const {
+    const bool idle = !writing_.valid() ||
+                      writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return idle && Clock::now() - last_ >= every_;
+}
+
+void Checkpoint::save(Part part) {
+    last_ = Clock::now();
+    writing_ =
+        std::async(std::launch::async, [this, part = std::move(part)] { write(path_, part); });
+}
+
+void Checkpoint::finish(Part part) {
+    if (writing_.valid()) writing_.wait();
+    write(path_, part);
+}
+
+std::optional<std::string> Checkpoint::failure() {
+    if (!writing_.valid() ||
+        writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+        return std::nullopt;
+    }
+    try {
+        writing_.get();
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+    return std::nullopt;
+}
+
+}  // namespace lacuna

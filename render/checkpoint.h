@@ -1,0 +1,47 @@
+// --checkpoint: what there is of a picture goes to a file now and then, and a later run of the same
+// command goes on from it.
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <optional>
+#include <string>
+
+#include "render/part.h"
+
+namespace lacuna {
+
+class Checkpoint {
+  public:
+    /// `seconds` between two saves.
+    Checkpoint(std::string path, double seconds);
+    /// Waits for what is being written.
+    ~Checkpoint();
+    Checkpoint(const Checkpoint&) = delete;
+    Checkpoint& operator=(const Checkpoint&) = delete;
+
+    /// What the file holds; empty if there is none. Throws InputError if it is no checkpoint, is
+    /// damaged, of another render than `inputs` or begins with another block: the message says what
+    /// differs.
+    std::optional<Part> load(const CacheStamp& inputs, std::uint64_t firstBlock) const;
+
+    /// Whether it is time to save and the last save is done.
+    bool due() const;
+    /// Writes in the background: whole or not at all. Rendering may go on meanwhile, the part's
+    /// sums are not changed.
+    void save(Part part);
+    /// Writes and waits. Throws RunError.
+    void finish(Part part);
+    /// Why the last save in the background failed; told once.
+    std::optional<std::string> failure();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::string path_;
+    std::chrono::duration<double> every_;
+    Clock::time_point last_ = Clock::now();
+    std::future<void> writing_;
+};
+
+}  // namespace lacuna

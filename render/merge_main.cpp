@@ -1,0 +1,95 @@
+// lacuna-merge: parts of a picture (lacuna-render --blocks) become the picture.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/image/exr.h"
+#include "libcore/image/image_io.h"
+#include "libcore/tool/tool.h"
+#include "render/merge.h"
+#include "render/output.h"
+
+namespace lacuna {
+namespace {
+
+struct Options {
+    std::vector<std::string> parts;
+    std::string output;
+    bool gaps = false;
+    CommonOptions common;
+};
+
+void declare(CLI::App& app, Options& options) {
+    app.add_option("PART", options.parts, "What lacuna-render --blocks wrote, in any order")
+        ->required()
+        ->type_name("PART.exr ...");
+    app.add_option("-o,--output", options.output, "The picture: .exr")
+        ->required()
+        ->type_name("OUT.exr");
+    app.add_flag("--gaps", options.gaps, "Blocks may be missing");
+    addCommonOptions(app, options.common);
+    app.footer(
+        "All parts together are the picture that one lacuna-render would have made, bit for bit;\n"
+        "times are sums. Refused: parts of other commands (another scene, method, setting, seed,\n"
+        "size, version), blocks that come twice, and, without --gaps, blocks that are missing.\n"
+        "--cache and --seed are accepted as by every tool and change nothing here.\n"
+        "Exit codes: 0 done, 1 failed while running, 2 usage, 3 a part cannot be used.");
+}
+
+void requireOutputs(const Options& options) {
+    if (endingOf(options.output) != ".exr") {
+        throw UsageError(options.output +
+                         ": expected a picture ending in .exr; choose another "
+                         "name");
+    }
+    for (const std::string& part : options.parts) {
+        if (part == options.output || part == options.common.json) {
+            throw UsageError(part +
+                             ": expected a result of its own, found a part; choose another "
+                             "name");
+        }
+    }
+    requireWritable(options.output);
+    if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
+}
+
+int merge(int argc, const char* const* argv) {
+    CLI::App app("Puts the parts of a picture together", "lacuna-merge");
+    Options options;
+    declare(app, options);
+    if (const auto done = parseCommandLine(app, argc, argv)) return *done;
+    requireOutputs(options);
+
+    const ThreadPool pool(options.common.threads);
+    Merged merged = mergeParts(options.parts, options.gaps, pool);
+    for (const std::string& text : merged.warnings) {
+        std::fprintf(stderr, "warning: %s\n", text.c_str());
+    }
+    merged.image.attributes["commandLine"] = commandLineText(argc, argv);
+    writeExr(options.output, merged.image);
+    const FilmSum::MeanColour& m = merged.mean;
+    if (!options.common.json.empty()) {
+        writeJson(options.common.json, {{"parts", options.parts.size()},
+                                        {"blocks", merged.blocks},
+                                        {"iterations", merged.iterations},
+                                        {"mean_rgb", numbersJson(m.mean)},
+                                        {"mean_rgb_stderr", numbersJson(m.standardError)}});
+    }
+    std::printf("%s: %d x %d pixels, %llu iterations in %llu blocks of %zu parts\n",
+                options.output.c_str(), merged.image.width(), merged.image.height(),
+                static_cast<unsigned long long>(merged.iterations),
+                static_cast<unsigned long long>(merged.blocks), options.parts.size());
+    return 0;
+}
+
+}  // namespace
+}  // namespace lacuna
+
+int main(int argc, char** argv) {
+    return lacuna::runTool([&] { return lacuna::merge(argc, argv); });
+}
