@@ -99,7 +99,7 @@ class RenderKills : public RenderPieces {
     void killAndGoOn(const std::string& method, int kills, std::uint64_t seed) {
         SCOPED_TRACE(method);
         const std::string common =
-            quick(method, "--quiet --width 32 --height 24 --iterations 120 --block-iterations 8");
+            quick(method, "--quiet --width 32 --height 24 --iterations 80 --block-iterations 8");
         const auto start = std::chrono::steady_clock::now();
         ASSERT_EQ(run(common).exitCode, 0);
         const double whole =
