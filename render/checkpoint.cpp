@@ -15,6 +15,17 @@ void write(const std::string& path, const Part& part) {
     writeExr(path, image, ExrCompression::None);
 }
 
+/// A checkpoint may be called anything: its name says nothing of what is wrong.
+LayeredImage readLayers(const std::string& path) {
+    try {
+        return readExrLayers(path);
+    } catch (const InputError&) {
+        throw InputError(path +
+                         ": expected a checkpoint, found a damaged one or another file; name "
+                         "another file, or delete it");
+    }
+}
+
 }  // namespace
 
 Checkpoint::Checkpoint(std::string path, double seconds)
@@ -27,7 +38,7 @@ Checkpoint::~Checkpoint() {
 std::optional<Part> Checkpoint::load(const CacheStamp& inputs, std::uint64_t firstBlock) const {
     std::error_code ignored;
     if (!std::filesystem::exists(path_, ignored)) return std::nullopt;
-    LayeredImage image = readExrLayers(path_);
+    LayeredImage image = readLayers(path_);
     Part part = takePart(image, path_);
     // As a file holds them: a line break in a camera's name is none there.
     std::string different = differencesText(CacheStamp::parse(inputs.text()), part.inputs);

@@ -27,7 +27,7 @@ struct Options {
 void declare(CLI::App& app, Options& options) {
     app.add_option("PART", options.parts, "What lacuna-render --blocks wrote, in any order")
         ->required()
-        ->type_name("PART.exr ...");
+        ->type_name("PART.exr");
     app.add_option("-o,--output", options.output, "The picture: .exr")
         ->required()
         ->type_name("OUT.exr");

@@ -21,8 +21,6 @@ struct Part {
     double seconds = 0.0;  ///< that its iterations and warm-ups took
     IterationStatistics statistics;
 
-    /// Behind the last whole block.
-    std::uint64_t endBlock() const { return sums.openBlock; }
     std::uint64_t iterations() const;
 };
 

@@ -66,7 +66,6 @@ class Film {
 
     int width() const { return width_; }
     int height() const { return height_; }
-    const BlockPlan& plan() const { return plan_; }
     /// Of the first block on.
     std::uint64_t iterations() const { return iterations_; }
     /// Number of the next iteration.

@@ -24,7 +24,6 @@ class TechniqueFilm final : public BlockLayers {
     void clear() override;
     Image weighted(int s, int t) const { return mean(s, t, false); }
     Image unweighted(int s, int t) const { return mean(s, t, true); }
-    int maxDepth() const { return maxDepth_; }
 
   private:
     std::size_t indexOf(int s, int t) const;

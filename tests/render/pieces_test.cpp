@@ -129,8 +129,10 @@ TEST_F(RenderKills, leaveNothingToBeSeen) {
     }
 }
 
+using RenderKillsSlow = RenderKills;
+
 /// A hundred of them, over all rows.
-TEST_F(RenderKills, leaveNothingToBeSeenSlow) {
+TEST_F(RenderKillsSlow, leaveNothingToBeSeenByAnyRow) {
     const std::vector<std::string> names = allMethods();
     const int each = (100 + int(names.size()) - 1) / int(names.size());
     for (const std::string& method : names) killAndGoOn(method, each, 7);
