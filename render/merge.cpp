@@ -92,15 +92,15 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
         merged.iterations += part.iterations();
         statistics.add(part.statistics);
         seconds += part.seconds;
-        for (SumTree::Node& node : part.sums.blocks) blocks.add(std::move(node), pool);
+        for (SumTree::Node& node : part.sums.blocks) blocks.add(std::move(node), &pool);
         SumTree open(plan.areSamples);
-        for (SumTree::Node& node : part.sums.open) open.add(std::move(node), pool);
+        for (SumTree::Node& node : part.sums.open) open.add(std::move(node), &pool);
         FilmSum sum;
         open.addTo(sum, &pool);
         if (i + 1 == files.size()) {
             last = std::move(sum);
         } else if (sum.iterations > 0) {
-            blocks.add({part.sums.openBlock, 1, std::make_shared<FilmSum>(std::move(sum))}, pool);
+            blocks.add({part.sums.openBlock, 1, std::make_shared<FilmSum>(std::move(sum))}, &pool);
         }
     }
     FilmSum sum;

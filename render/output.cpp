@@ -159,6 +159,7 @@ json reportJson(const RenderReport& r) {
            {"max_depth", r.limits.maxDepth},
            {"rr_depth", r.limits.rouletteDepth},
            {"threads", r.threads},
+           {"ranks", r.ranks},
            {"seed", r.seed},
            {"warmup_iterations", r.warmupIterations},
            {"block_iterations", r.blocks.iterations},
@@ -170,6 +171,7 @@ json reportJson(const RenderReport& r) {
            {"cache_hashes", r.cacheHashes},
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
+    if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
     if (r.verify) {
         j["verify"] = {{"max_difference", r.verify->maxDifference},
                        {"paths", r.verify->paths},

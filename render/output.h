@@ -22,7 +22,9 @@ struct RenderReport {
     const MethodRow* method = nullptr;
     Settings settings;
     std::uint64_t seed = 1;
-    int threads = 1;
+    int threads = 1;  ///< of rank 0
+    int ranks = 1;
+    std::uint64_t receivedBytes = 0;  ///< from other ranks
     int filmWidth = 0, filmHeight = 0;
     PixelRect crop;
     WalkLimits limits;

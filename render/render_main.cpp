@@ -8,6 +8,8 @@
 #include "libcore/tool/scene_stage.h"
 #include "render/method_help.h"
 #include "render/options.h"
+#include "render/ranks/together.h"
+#include "render/render_inputs.h"
 #include "render/replay.h"
 #include "render/session.h"
 
@@ -35,13 +37,8 @@ int printEffects(const RenderOptions& options) {
     return 0;
 }
 
-int render(int argc, const char* const* argv) {
-    CLI::App app("Renders a glTF scene by bidirectional methods", "lacuna-render");
-    RenderOptions options;
-    declareOptions(app, options);
-    if (const auto done = parseCommandLine(app, argc, argv)) return *done;
-    options.commandLine = commandLineText(argc, argv);
-
+/// Everything that only looks or prints; nullopt: a picture is to be made.
+std::optional<int> printOrReplay(const RenderOptions& options) {
     if (options.listMethods) {
         std::fputs(listMethods().c_str(), stdout);
         return 0;
@@ -50,18 +47,103 @@ int render(int argc, const char* const* argv) {
         std::fputs(methodHelp(findMethod(options.helpMethod, "--help-method")).c_str(), stdout);
         return 0;
     }
-    checkOptions(options);
     if (options.effects) return printEffects(options);
-
+    if (!options.replay) return std::nullopt;
     const MethodRow& row = findMethod(options.method, "--method");
     const Settings settings = resolve(row, options.assignments, "--set ");
-    const ThreadPool pool(options.common.threads);
-    if (options.replay) return replay(options, row, settings, pool);
+    return replay(options, row, settings, ThreadPool(options.common.threads));
+}
 
-    checkOutputs(options);
+/// The ranks' parts of a picture are of one program, scene and command, or are none.
+void compareInputs(const Ranks& ranks, const CacheStamp& own) {
+    if (!ranks.leads()) {
+        ranks.send(0, Ranks::Tag::Inputs, own.text());
+        return;
+    }
+    for (int i = 1; i < ranks.size(); ++i) {
+        const Ranks::Letter letter = ranks.wait();
+        const std::string different =
+            differencesText(CacheStamp::parse(own.text()), CacheStamp::parse(textOf(letter)));
+        if (different.empty()) continue;
+        throw InputError(ranks.name(letter.from) + ": expected what " + ranks.name(0) +
+                         " renders, found another " + different +
+                         "; give all ranks the same program and the same files");
+    }
+}
+
+int renderPicture(RenderOptions& options, const Ranks& ranks) {
+    const MethodRow* row = nullptr;
+    Settings settings;
+    const bool checked = ranks.agree([&] {
+        row = &findMethod(options.method, "--method");
+        settings = resolve(*row, options.assignments, "--set ");
+        if (options.verify && ranks.many()) {
+            throw UsageError("--verify: expected one process, found " +
+                             std::to_string(ranks.size()) + " ranks; leave it or mpirun out");
+        }
+        if (ranks.leads()) checkOutputs(options);
+    });
+    if (!checked) return 0;
+
+    const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
     Progress progress(options.common.quiet, interrupt.requested());
-    return Session(options, row, settings, pool, interrupt, progress).run();
+    if (!ranks.leads()) progress.mute();
+    std::optional<Stage> stage;
+    if (!ranks.agree([&] { stage = loadStage(options, *row, settings, pool, progress); })) return 0;
+    // Rank 0 makes the caches that are missing, the others read them.
+    Caches caches;
+    const auto load = [&] {
+        caches = loadCaches(options, *row, settings, *stage, pool, interrupt.requested(), progress);
+    };
+    if (!ranks.agree([&] {
+            if (ranks.leads()) load();
+        }))
+        return 0;
+    if (!ranks.leads()) options.prepare = false;
+    if (!ranks.agree([&] {
+            if (!ranks.leads()) load();
+        }))
+        return 0;
+
+    BlockMaker maker(options, *row, settings, *stage, caches, pool);
+    if (ranks.many()) {
+        const CacheStamp inputs =
+            renderInputs(options, *row, settings, *stage, caches, maker.plan());
+        if (!ranks.agree([&] { compareInputs(ranks, inputs); })) return 0;
+    }
+    std::optional<Session> session;
+    const bool ready = ranks.agree([&] {
+        if (!ranks.leads()) return;
+        session.emplace(options, *row, settings, *stage, caches, maker, ranks, pool, interrupt,
+                        progress);
+    });
+    if (!ready) return 0;
+    if (session) return session->run();
+    serve(ranks, maker, stage->settings.crop, interrupt, pool);
+    return 0;
+}
+
+int render(int argc, char** argv) {
+    const Ranks ranks;
+    // One voice is enough.
+    if (!ranks.leads() && !std::freopen("/dev/null", "w", stdout)) return 1;
+    RenderOptions options;
+    std::optional<int> done;
+    const bool parsed = ranks.agree([&] {
+        CLI::App app("Renders a glTF scene by bidirectional methods", "lacuna-render");
+        declareOptions(app, options);
+        done = parseCommandLine(app, argc, argv);
+        if (done) return;
+        options.commandLine = commandLineText(argc, argv);
+        if (!options.listMethods && options.helpMethod.empty()) checkOptions(options);
+        if (ranks.leads()) done = printOrReplay(options);
+    });
+    if (!parsed) return 0;
+    const bool picture =
+        !options.listMethods && options.helpMethod.empty() && !options.effects && !options.replay;
+    if (done || !picture) return done.value_or(0);
+    return renderPicture(options, ranks);
 }
 
 }  // namespace

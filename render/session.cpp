@@ -3,37 +3,23 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/image_io.h"
 #include "render/black_picture.h"
 #include "render/block_plan.h"
+#include "render/ranks/together.h"
+#include "render/render_inputs.h"
+#include "render/stopwatch.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kVerifyTolerance = 1e-4;
-const std::atomic<bool> kNever{false};
-
-/// Adds the time of its life to `seconds`.
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
-    ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    double& seconds_;
-    Clock::time_point start_;
-};
 
 Image cropped(const Image& image, const PixelRect& rect) {
     Image part(rect.width(), rect.height());
@@ -67,58 +53,34 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
 }  // namespace
 
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+                 Stage& stage, const Caches& caches, BlockMaker& maker, const Ranks& ranks,
                  const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress)
     : options_(options),
       pool_(pool),
       interrupt_(interrupt),
       progress_(progress),
-      stage_(loadStage(options, row, settings, pool, progress)),
-      caches_(loadCaches(options, row, settings, stage_, pool, interrupt.requested(), progress)),
-      row_(row),
-      methodSettings_(settings),
-      method_(freshMethod()),
-      plan_(planOf(options, *method_)),
+      stage_(stage),
+      caches_(caches),
+      maker_(maker),
+      plan_(maker.plan()),
       film_(makeFilm(options, stage_.settings, plan_)),
-      pixels_(std::size_t(film_.width()) * std::size_t(film_.height())),
       end_(endOf(options, plan_)) {
-    stage_.settings.blockIterations = plan_.iterations;
-    integrator_ = std::make_unique<BidirIntegrator>(
-        *stage_.scene, *stage_.camera, stage_.techniques, *method_, stage_.settings, pool_);
-    if (options_.techniques) {
-        techniques_.emplace(film_.width(), film_.height(), stage_.settings.limits.maxDepth);
-        integrator_->delivery().setTechniqueFilm(&*techniques_);
-        film_.addLayers(*techniques_);
-    }
-    if (options_.verify) {
-        verifier_ = std::make_unique<WeightVerifier>(*stage_.scene, *stage_.camera,
-                                                     stage_.settings.limits, pool_);
-    }
-    if (options_.techniques && !row.proposalLabels.empty()) {
-        proposalLayers_.emplace(row.proposalLabels, film_.width(), film_.height());
-        film_.addLayers(*proposalLayers_);
-    }
-    if (verifier_ || proposalLayers_) {
-        integrator_->delivery().setObserver([this](const PathEvent& event) {
-            if (verifier_) verifier_->check(event);
-            if (proposalLayers_) proposalLayers_->add(event);
-        });
-    }
-
     RenderReport& r = report_;
     r.commandLine = options.commandLine;
     r.method = &row;
     r.settings = settings;
     r.seed = options.common.seed;
     r.threads = pool.threads();
+    r.ranks = ranks.size();
     r.filmWidth = stage_.camera->film().width;
     r.filmHeight = stage_.camera->film().height;
     r.crop = stage_.settings.crop;
     r.limits = stage_.settings.limits;
-    r.lightPaths = row.techniques.splats ? integrator_->lightPaths() : 0;
+    r.lightPaths = row.techniques.splats ? maker_.lightPaths() : 0;
     r.blocks = plan_;
     r.firstBlock = film_.block();
     r.techniques = options.techniques;
-    r.warmupIterations = method_->warmupIterations();
+    r.warmupIterations = maker_.warmupIterations();
     r.setupSeconds = stage_.setupSeconds + caches_.seconds;
     r.phaseSeconds = stage_.phaseSeconds;
     for (const auto& [phase, seconds] : caches_.phaseSeconds) r.phaseSeconds[phase] += seconds;
@@ -128,7 +90,9 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
     if (options.common.verbose) describeStage();
-    if (options.blocks || !options.checkpoint.empty()) inputs_ = inputs();
+    if (options.blocks || !options.checkpoint.empty()) {
+        inputs_ = renderInputs(options, row, settings, stage, caches, plan_);
+    }
     if (!options.checkpoint.empty()) {
         checkpoint_.emplace(options.checkpoint, options.checkpointSeconds);
         if (std::optional<Part> part = checkpoint_->load(inputs_, report_.firstBlock)) {
@@ -136,40 +100,21 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
         }
     }
     loadReference();
+    if (ranks.many()) {
+        const double limit =
+            options.timeSeconds.value_or(0.0) - (options.countSetup ? r.setupSeconds : 0.0);
+        auto together = std::make_unique<Together>(ranks, maker_, stage_.settings.crop,
+                                                   Together::Limits{end_, std::max(0.0, limit)},
+                                                   interrupt, pool);
+        together_ = together.get();
+        crew_ = std::move(together);
+        return;
+    }
+    for (BlockLayers* layers : maker_.layers()) film_.addLayers(*layers);
+    crew_ = std::make_unique<Alone>(maker_, interrupt, pool, progress);
 }
 
 Session::~Session() = default;
-
-std::unique_ptr<Method> Session::freshMethod() const {
-    std::unique_ptr<Method> method = row_.create(methodSettings_);
-    caches_.giveTo(*method);
-    return method;
-}
-
-/// Whatever a pixel depends on.
-CacheStamp Session::inputs() const {
-    CacheStamp stamp{sceneInputs(stage_)};
-    const auto add = [&](const std::string& name, const std::string& value) {
-        stamp.inputs[name] = value;
-    };
-    for (const auto& [name, value] : stage_.viewInputs) add(name, value);
-    for (const Effect& e : stage_.effects) {
-        if (e.forced && !e.ofScene) add("effect " + e.name, e.simulated ? "on" : "off");
-    }
-    for (const auto& [name, value] : methodSettings_) add(name, value);
-    for (const auto& [name, hash] : caches_.hashes) add("cache " + name, hash);
-    const PixelRect& crop = stage_.settings.crop;
-    add("version", LACUNA_VERSION);
-    add("program", hashOfFile("/proc/self/exe"));  // another build may round in another way
-    add("method", row_.name);
-    add("seed", std::to_string(options_.common.seed));
-    add("film", std::to_string(report_.filmWidth) + " x " + std::to_string(report_.filmHeight));
-    add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
-                    std::to_string(crop.y0) + "," + std::to_string(crop.y1));
-    add("technique layers", options_.techniques ? "yes" : "no");
-    add("iterations of a block", std::to_string(plan_.iterations));
-    return stamp;
-}
 
 /// From what a checkpoint holds.
 void Session::goOn(Part part) {
@@ -230,94 +175,60 @@ int Session::run() {
 /// The next iteration is taken to last as long as the last ones. It is begun if it ends in time, or
 /// passes the limit by no more than half of itself and a tenth of the limit.
 bool Session::mayBegin() const {
-    const double limit = *options_.timeSeconds;
-    const double spent = report_.seconds + (options_.countSetup ? report_.setupSeconds : 0.0);
-    return spent < limit &&
-           spent + expectedSeconds_ <= limit + std::min(0.5 * expectedSeconds_, 0.1 * limit);
+    const double limit = *options_.timeSeconds, expected = crew_->iterationSeconds();
+    const double spent = totals_.seconds + (options_.countSetup ? report_.setupSeconds : 0.0);
+    return spent < limit && spent + expected <= limit + std::min(0.5 * expected, 0.1 * limit);
 }
 
-/// A method as new, warmed up. False where an interrupt came first.
-bool Session::beginBlock() {
-    std::unique_ptr<Method> fresh = freshMethod();
-    // What a block's warm-up counts is counted once, whoever goes on in the middle of it.
-    const bool first = film_.iterations() == 0, again = film_.inBlock() > 0;
-    Totals ofWarmUp;
-    bool complete = false;
-    {
-        const Stopwatch watch(ofWarmUp.seconds);
-        complete = integrator_->beginBlock(
-            film_.block(), *fresh, first ? kNever : interrupt_.requested(), ofWarmUp.statistics);
-    }
-    method_ = std::move(fresh);
-    if (complete && !again) {
-        totals_.seconds += ofWarmUp.seconds;
-        totals_.statistics.add(ofWarmUp.statistics);
-    }
-    return complete;
+/// Empty: nothing yet.
+std::string Session::whyStop() const {
+    const bool some = film_.iterations() > 0;
+    if (some && (interrupt_.requested() || crew_->interrupted())) return "interrupt";
+    if (end_ > 0 && film_.nextIteration() >= end_) return "iterations";
+    if (some && options_.timeSeconds && !mayBegin()) return "time";
+    return "";
 }
 
-/// False where an interrupt came first.
-bool Session::renderIteration() {
-    // The first iteration is always finished, so that there is something to save. So is every one
-    // with layers: a part of one in them could not be taken out again.
-    const bool first = film_.iterations() == 0;
-    const std::atomic<bool>& cancel = first || techniques_ ? kNever : interrupt_.requested();
-    Totals ofIteration;
-    {
-        const Stopwatch watch(ofIteration.seconds);
-        if (!integrator_->render(std::uint32_t(film_.nextIteration()), pixels_, cancel,
-                                 ofIteration.statistics)) {
-            return false;
-        }
-        if (proposalLayers_) proposalLayers_->countIteration();
-        film_.add(pixels_, pool_);
-    }
-    totals_.seconds += ofIteration.seconds;
-    totals_.statistics.add(ofIteration.statistics);
+/// What there is now, for everyone who is told while the render goes on.
+void Session::tell() {
+    report_.iterations = film_.iterations();
+    report_.seconds = totals_.seconds;
+    const std::uint64_t limit = end_ > 0 ? end_ - report_.firstBlock * plan_.iterations : 0;
+    progress_.iterations({report_.iterations, limit, totals_.statistics.totalRays(),
+                          report_.seconds, options_.timeSeconds.value_or(0.0)});
+}
+
+/// Behind iterations that are new in the film.
+void Session::keep() {
     if (film_.inBlock() == 0) ofBlocks_ = totals_;
-    expectedSeconds_ = first ? ofIteration.seconds : 0.5 * (expectedSeconds_ + ofIteration.seconds);
-    return true;
+    tell();
+    if (log_ && log_->wants(report_.seconds)) logRow();
+    if (checkpoint_) saveCheckpoint();
 }
 
 void Session::render() {
-    const std::uint64_t limit = end_ > 0 ? end_ - report_.firstBlock * plan_.iterations : 0;
-    const auto tell = [&] {
-        report_.iterations = film_.iterations();
-        report_.seconds = totals_.seconds;
-        progress_.iterations({report_.iterations, limit, totals_.statistics.totalRays(),
-                              report_.seconds, options_.timeSeconds.value_or(0.0)});
-    };
     tell();
-    bool begun = false;
-    for (;;) {
-        if (interrupt_.requested() && film_.iterations() > 0) {
-            report_.stopped = "interrupt";
-        } else if (end_ > 0 && film_.nextIteration() >= end_) {
-            report_.stopped = "iterations";
-        } else if (options_.timeSeconds && film_.iterations() > 0 && !mayBegin()) {
-            report_.stopped = "time";
-        }
-        if (!report_.stopped.empty()) break;
-        if (!begun) {
-            if (report_.warmupIterations > 0) progress_.phase("warm-up");
-            if (!beginBlock()) continue;
-            progress_.phase("rendering");
-            begun = true;
-            tell();
-        }
-        if (!renderIteration()) continue;
-        begun = film_.inBlock() > 0;
-        tell();
-        if (log_ && log_->wants(report_.seconds)) logRow();
-        if (checkpoint_) saveCheckpoint();
+    if (together_) progress_.phase("rendering");
+    while ((report_.stopped = whyStop()).empty()) {
+        if (crew_->advance(film_, totals_)) keep();
     }
+    crew_->stop();
+    for (;;) {
+        if (crew_->advance(film_, totals_)) {
+            keep();
+        } else if (!crew_->busy()) {
+            break;
+        }
+    }
+    tell();
     report_.statistics = totals_.statistics;
+    if (together_) report_.receivedBytes = together_->receivedBytes();
 }
 
 /// What the checkpoint holds now.
 Part Session::part() const {
     // What a method has learned in an open block, and what the layers hold of it, is not saved.
-    const bool withOpen = !method_->learns() && !techniques_;
+    const bool withOpen = !maker_.blocksAreWhole();
     const Totals& totals = withOpen ? totals_ : ofBlocks_;
     return {inputs_,        film_.width(),      film_.height(),
             plan_,          report_.firstBlock, film_.state(withOpen),
@@ -382,7 +293,7 @@ void Session::save() {
     const FilmSum sum = film_.sum(&pool_);
     report_.mean = sum.meanColour();
     warnIfBlack();
-    if (verifier_) report_.verify = verifier_->result();
+    report_.verify = maker_.verified();
 
     progress_.phase("saving");
     std::optional<FeatureLayers> features;

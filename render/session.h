@@ -1,26 +1,31 @@
-// One render from the loaded scene to the saved image: warm-up, iterations, curve, result.
+// One render from what is loaded to the saved image: iterations, curve, checkpoints, result.
 #pragma once
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "libcore/image/error_metrics.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
-#include "render/caches.h"
+#include "render/block_maker.h"
 #include "render/checkpoint.h"
+#include "render/crew.h"
 #include "render/curve_log.h"
 #include "render/options.h"
 #include "render/output.h"
-#include "render/proposal_layers.h"
-#include "render/stage.h"
+#include "render/ranks/ranks.h"
 
 namespace lacuna {
 
+class Together;
+
 class Session {
   public:
-    /// All references must outlive the session. Loads the scene.
+    /// All references must outlive the session. With more than one rank: on rank 0, while the others
+    /// serve().
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+            Stage& stage, const Caches& caches, BlockMaker& maker, const Ranks& ranks,
             const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress);
     ~Session();
 
@@ -28,15 +33,14 @@ class Session {
     int run();
 
   private:
-    std::unique_ptr<Method> freshMethod() const;
-    CacheStamp inputs() const;
     void loadReference();
     void describeStage() const;
     void goOn(Part part);
-    bool beginBlock();
     void render();
-    bool renderIteration();
+    std::string whyStop() const;
     bool mayBegin() const;
+    void tell();
+    void keep();
     Part part() const;
     void saveCheckpoint();
     void finishCheckpoint();
@@ -52,32 +56,21 @@ class Session {
     const InterruptGuard& interrupt_;
     Progress& progress_;
 
-    Stage stage_;
-    Caches caches_;
-    const MethodRow& row_;
-    const Settings& methodSettings_;
-    std::unique_ptr<Method> method_;  ///< of the open block
+    const Stage& stage_;
+    const Caches& caches_;
+    BlockMaker& maker_;
     BlockPlan plan_;
     Film film_;
-    std::unique_ptr<BidirIntegrator> integrator_;
-    std::vector<Rgb> pixels_;  ///< of an iteration
-    std::optional<TechniqueFilm> techniques_;
-    std::optional<ProposalLayers> proposalLayers_;
-    std::unique_ptr<WeightVerifier> verifier_;
+    std::unique_ptr<Crew> crew_;
+    Together* together_ = nullptr;  ///< the crew, where there are other ranks
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;
     CacheStamp inputs_;  ///< where parts are written or read
     std::optional<Checkpoint> checkpoint_;
-    std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
-    std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
-    double expectedSeconds_ = 0.0;  ///< of the next iteration
-    /// Of iterations that are in the film, and of their blocks' warm-ups.
-    struct Totals {
-        double seconds = 0.0;
-        IterationStatistics statistics;
-    };
-    Totals totals_;
-    Totals ofBlocks_;  ///< of whole blocks alone
+    std::string failure_;    ///< of log or checkpoint: a full disk must not cost the picture
+    std::uint64_t end_ = 0;  ///< iteration behind the last one; 0: none
+    Totals totals_;          ///< of iterations that are in the film
+    Totals ofBlocks_;        ///< of whole blocks alone
     RenderReport report_;
 };
 

@@ -31,7 +31,7 @@ install_packages build test
 (install_packages browser) || say "No browser: the test of lacuna-study's page will be skipped"
 SECONDS=0
 # An earlier demo may have configured the same directory without them.
-configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON
+configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON -DLACUNA_MPI=ON
 build_targets
 say "Built in $SECONDS s"
 

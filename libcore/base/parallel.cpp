@@ -4,14 +4,23 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <sched.h>
+
 #include <algorithm>
 #include <thread>
 
 namespace lacuna {
 
 namespace {
+/// Those that this process may run on: mpirun, taskset and containers leave it some of them.
+int processors() {
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+    return std::max(1, int(std::thread::hardware_concurrency()));
+}
+
 int resolved(int threads) {
-    return threads > 0 ? threads : std::max(1, int(std::thread::hardware_concurrency()));
+    return threads > 0 ? threads : processors();
 }
 }  // namespace
 

@@ -8,7 +8,8 @@
 
 namespace lacuna {
 
-/// The worker threads of one tool run. `threads` = 0 means all of the machine's. Keeps the floating
+/// The worker threads of one tool run. `threads` = 0 means one for each
+/// processor that the process may run on. Keeps the floating
 /// point environment of the constructing thread in every worker (Embree would otherwise leave
 /// flush-to-zero set in some of them, so that denormals depended on the order of calls).
 class ThreadPool {

@@ -33,12 +33,26 @@ std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rg
 Film::Film(int width, int height, BlockPlan plan, std::uint64_t first)
     : width_(width), height_(height), plan_(plan), open_(plan.areSamples), block_(first) {}
 
+FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
+                   const ThreadPool* threads) {
+    FilmSum sum;
+    open.addTo(sum, threads);
+    for (const BlockLayers* of : layers) sum.layers.merge(of->means());
+    return sum;
+}
+
 void Film::add(std::span<const Rgb> pixels, const ThreadPool& threads) {
     auto one = std::make_shared<FilmSum>(FilmSum::ofIteration(pixels, width_, threads));
-    open_.add({inBlock_, 1, std::move(one)}, threads);
-    ++iterations_;
-    if (++inBlock_ < plan_.iterations) return;
-    blocks_.add({block_, 1, std::make_shared<FilmSum>(openSum(&threads))}, threads);
+    add({inBlock_, 1, std::move(one)}, &threads);
+}
+
+void Film::add(SumTree::Node node, const ThreadPool* threads) {
+    const std::uint64_t added = node.sum->iterations;
+    open_.add(std::move(node), threads);
+    iterations_ += added;
+    inBlock_ += added;
+    if (inBlock_ < plan_.iterations) return;
+    blocks_.add({block_, 1, std::make_shared<FilmSum>(openSum(threads))}, threads);
     open_.clear();
     for (BlockLayers* layers : layers_) layers->clear();
     ++block_;
@@ -46,10 +60,7 @@ void Film::add(std::span<const Rgb> pixels, const ThreadPool& threads) {
 }
 
 FilmSum Film::openSum(const ThreadPool* threads) const {
-    FilmSum sum;
-    open_.addTo(sum, threads);
-    for (const BlockLayers* layers : layers_) sum.layers.merge(layers->means());
-    return sum;
+    return sumOfBlock(open_, layers_, threads);
 }
 
 FilmSum Film::sum(const ThreadPool* threads) const {
@@ -77,11 +88,11 @@ void Film::restore(State state, const ThreadPool& threads) {
     block_ = state.openBlock;
     for (SumTree::Node& node : state.blocks) {
         iterations_ += node.sum->iterations;
-        blocks_.add(std::move(node), threads);
+        blocks_.add(std::move(node), &threads);
     }
     for (SumTree::Node& node : state.open) {
         inBlock_ += node.sum->iterations;
-        open_.add(std::move(node), threads);
+        open_.add(std::move(node), &threads);
     }
     iterations_ += inBlock_;
 }

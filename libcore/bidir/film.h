@@ -51,6 +51,10 @@ struct BlockPlan {
     bool areSamples = false;
 };
 
+/// The open block's iterations as one sum, with what its layers hold. `threads` may be null.
+FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
+                   const ThreadPool* threads);
+
 /// The picture of the iterations so far: whole blocks, and an open one. Iteration i is the i % B-th
 /// of block i / B.
 class Film {
@@ -63,6 +67,8 @@ class Film {
 
     /// The next iteration: `pixels` = width * height values. Ends the block with its last one.
     void add(std::span<const Rgb> pixels, const ThreadPool& threads);
+    /// The next iterations of the open block, a node of its tree. `threads` may be null.
+    void add(SumTree::Node node, const ThreadPool* threads);
 
     int width() const { return width_; }
     int height() const { return height_; }

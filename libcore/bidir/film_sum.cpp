@@ -140,7 +140,7 @@ void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool*
     left.samples = oneSample ? 1 : left.samples + right.samples;
 }
 
-void SumTree::add(Node node, const ThreadPool& threads) {
+void SumTree::add(Node node, const ThreadPool* threads) {
     nodes_.push_back(std::move(node));
     while (nodes_.size() >= 2) {
         Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
@@ -149,7 +149,7 @@ void SumTree::add(Node node, const ThreadPool& threads) {
         if (!siblings) return;
         if (left.sum.use_count() > 1) left.sum = std::make_shared<FilmSum>(*left.sum);
         std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read it
-        join(*left.sum, *right.sum, oneSample_, &threads);
+        join(*left.sum, *right.sum, oneSample_, threads);
         left.size *= 2;
         nodes_.pop_back();
     }

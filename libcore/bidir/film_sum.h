@@ -65,8 +65,8 @@ class SumTree {
     /// `oneSample`: all items are parts of one sample.
     explicit SumTree(bool oneSample) : oneSample_(oneSample) {}
 
-    /// A node behind all others.
-    void add(Node node, const ThreadPool& threads);
+    /// A node behind all others. `threads` may be null.
+    void add(Node node, const ThreadPool* threads);
     /// What a copy of this holds stays as it is.
     const std::vector<Node>& nodes() const { return nodes_; }
     bool empty() const { return nodes_.empty(); }

@@ -55,6 +55,11 @@ Progress::~Progress() {
     clearLine();
 }
 
+void Progress::mute() {
+    const std::lock_guard lock(mutex_);
+    quiet_ = mute_ = true;
+}
+
 void Progress::phase(const std::string& name) {
     const std::lock_guard lock(mutex_);
     sayInterrupt();
@@ -69,8 +74,8 @@ void Progress::iterations(const Iterations& iterations) {
 }
 
 void Progress::remark(const std::string& text) {
-    if (quiet_) return;
     const std::lock_guard lock(mutex_);
+    if (quiet_) return;
     print(text);
 }
 
@@ -83,6 +88,7 @@ void Progress::warning(const std::string& text) {
 }
 
 void Progress::print(const std::string& text) {
+    if (mute_) return;
     clearLine();
     std::fprintf(stderr, "%s\n", text.c_str());
 }
@@ -130,7 +136,7 @@ void Progress::run() {
     Clock::time_point nextPlain = Clock::now() + kPlainEvery;
     while (!wake_.wait_for(lock, kTick, [this] { return stop_; })) {
         sayInterrupt();
-        if (phase_.empty()) continue;
+        if (phase_.empty() || mute_) continue;
         if (terminal_) {
             std::fprintf(stderr, "\r%s\x1b[K", line().c_str());
             std::fflush(stderr);

@@ -26,6 +26,8 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    /// Nothing at all is printed from now on: another process speaks.
+    void mute();
     /// What is being done: "loading", "rendering", ...
     void phase(const std::string& name);
 
@@ -53,7 +55,8 @@ class Progress {
     void print(const std::string& text);
     void sayInterrupt();
 
-    const bool quiet_;
+    bool quiet_;
+    bool mute_ = false;
     const bool terminal_;
     const std::atomic<bool>& interrupted_;
     const char* const onInterrupt_;

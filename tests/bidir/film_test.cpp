@@ -130,7 +130,7 @@ TEST(SumTree, neighboursJoinToTheSumOfBoth) {
             SumTree tree(false);
             for (const auto& [begin, end] : {std::pair{std::uint64_t(0), a}, {a, b}, {b, 13ul}}) {
                 const Film part = filmOf(begin * 3, end * 3, plan, begin);
-                for (const SumTree::Node& node : part.state(false).blocks) tree.add(node, threads);
+                for (const SumTree::Node& node : part.state(false).blocks) tree.add(node, &threads);
             }
             FilmSum sum;
             tree.addTo(sum, nullptr);

@@ -205,7 +205,7 @@ FAULTS = [
           {"bidir": "Blocks.*"}),
     Fault("learners-go-on-inside-a-block", "a checkpoint goes on with a block whose first half the method has not seen",
           "render/session.cpp",
-          "!method_->learns() && !techniques_", "!techniques_",
+          "const bool withOpen = !maker_.blocksAreWhole();", "const bool withOpen = !options_.techniques;",
           {"render": "RenderPiecesOf.moreIterationsGoOnFromTheCheckpoint"}),
     Fault("checkpoint-of-any-command", "a checkpoint of another command is taken",
           "render/checkpoint.cpp",
@@ -219,6 +219,20 @@ FAULTS = [
           "render/merge.cpp",
           "right.part.firstBlock < left.end()", "right.part.firstBlock < left.part.firstBlock",
           {"render": "RenderPieces.partsThatDoNotFitAreRefused"}),
+
+    # Ranks
+    Fault("pieces-in-any-order", "rank 0 adds the pieces as they come",
+          "render/ranks/together.cpp",
+          "made_.find(film.nextIteration())", "made_.begin()",
+          {"render": "RenderRanks.makeThePictureOfOneProcess:RenderRanks.goOnFrom*"}),
+    Fault("pieces-across-the-tree", "a piece is no node of its block's tree",
+          "render/ranks/together.cpp",
+          "inBlock == 0 ? size :", "inBlock + 1 > 0 ? size :",
+          {"render": "PieceSize.*"}),
+    Fault("ranks-count-warm-ups", "every rank counts the warm-up of a block that it makes a part of",
+          "render/ranks/piece.cpp",
+          "if (inBlock == 0) totals.add(ofWarmUp);", "totals.add(ofWarmUp);",
+          {"render": "RenderRanks.makeThePictureOfOneProcess"}),
 
     # Resampling
     Fault("light-tree-without-cosines", "a cut does not ask where lamps face",

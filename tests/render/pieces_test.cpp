@@ -21,17 +21,6 @@ class RenderPieces : public RenderTool {
   protected:
     Outcome merge(const std::string& arguments) const { return run(arguments, LACUNA_MERGE); }
 
-    /// Everything but what tells when and by which command it was made.
-    void expectSamePicture(const std::string& a, const std::string& b) const {
-        LayeredImage one = readExrLayers(path(a)), other = readExrLayers(path(b));
-        for (LayeredImage* image : {&one, &other}) {
-            for (const char* name : {"commandLine", "renderTimeSeconds", "setupTimeSeconds"}) {
-                EXPECT_EQ(image->attributes.erase(name), 1u) << name;
-            }
-        }
-        EXPECT_EQ(one.attributes, other.attributes);
-        EXPECT_TRUE(one.channels() == other.channels()) << a << " and " << b;
-    }
     std::string bytes(const std::string& name) const { return read(name); }
 };
 

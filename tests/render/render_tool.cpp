@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "libcore/image/exr.h"
 #include "libcore/methods/registry.h"
 
 namespace lacuna::test {
@@ -95,6 +96,17 @@ void RenderTool::expectFailure(const std::string& arguments, int exitCode, const
 
 nlohmann::json RenderTool::json(const std::string& name) const {
     return nlohmann::json::parse(read(name));
+}
+
+void RenderTool::expectSamePicture(const std::string& a, const std::string& b) const {
+    LayeredImage one = readExrLayers(path(a)), other = readExrLayers(path(b));
+    for (LayeredImage* image : {&one, &other}) {
+        for (const char* name : {"commandLine", "renderTimeSeconds", "setupTimeSeconds"}) {
+            EXPECT_EQ(image->attributes.erase(name), 1u) << name;
+        }
+    }
+    EXPECT_EQ(one.attributes, other.attributes);
+    EXPECT_TRUE(one.channels() == other.channels()) << a << " and " << b;
 }
 
 std::string RenderTool::quick(const std::string& method, const std::string& more) const {

@@ -41,6 +41,8 @@ class RenderTool : public ::testing::Test {
     void expectFailure(const std::string& arguments, int exitCode, const std::string& part,
                        const char* tool = nullptr) const;
     nlohmann::json json(const std::string& name) const;
+    /// Two .exr of the directory: all but what tells when and by which command they were made.
+    void expectSamePicture(const std::string& a, const std::string& b) const;
     /// A quick render of @room.gltf (written by SetUp) to @out.exr.
     std::string quick(const std::string& method, const std::string& more = "") const;
 

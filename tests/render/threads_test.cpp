@@ -1,5 +1,8 @@
 // The same command gives the same pixels, bit for bit, whatever the number of threads.
+#include <sched.h>
+
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "libcore/image/exr.h"
 #include "libcore/methods/registry.h"
@@ -72,7 +75,7 @@ TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOurScenes) {
 }
 INSTANTIATE_TEST_SUITE_P(Methods, RenderThreadsSlow, ::testing::ValuesIn(names()), nameOf);
 
-class RenderSeed : public RenderTool {};
+using RenderSeed = RenderTool;
 
 TEST_F(RenderSeed, AnotherSeedIsAnotherPicture) {
     ASSERT_EQ(run(quick("pt", "--quiet --seed 1")).exitCode, 0);
@@ -83,6 +86,21 @@ TEST_F(RenderSeed, AnotherSeedIsAnotherPicture) {
         ASSERT_EQ(run(quick("pt", std::string("--quiet --seed ") + seed)).exitCode, 0) << seed;
         EXPECT_NE(*readExrLayers(path("out.exr")).find("R"), one) << seed;
     }
+}
+
+using RenderProcessors = RenderTool;
+
+/// mpirun and containers give a process some of the machine's processors.
+TEST_F(RenderProcessors, threadsAreThoseThatTheProcessMayHave) {
+    cpu_set_t allowed;
+    ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+    int first = 0;
+    while (!CPU_ISSET(first, &allowed)) ++first;
+    const std::string tool = "taskset -c " + std::to_string(first) + " " + ownTool();
+    ASSERT_EQ(run(quick("pt", "--quiet --json @o.json"), tool.c_str()).exitCode, 0);
+    EXPECT_EQ(json("o.json")["threads"], 1);
+    ASSERT_EQ(run(quick("pt", "--quiet --json @o.json")).exitCode, 0);
+    EXPECT_EQ(json("o.json")["threads"], CPU_COUNT(&allowed));
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+#include "render/block_maker.h"
+
+#include "render/block_plan.h"
+#include "render/stopwatch.h"
+
+namespace lacuna {
+namespace {
+const std::atomic<bool> kNever{false};
+}
+
+BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const Settings& settings,
+                       Stage& stage, const Caches& caches, const ThreadPool& pool)
+    : row_(row),
+      settings_(settings),
+      caches_(caches),
+      method_(freshMethod()),
+      plan_(planOf(options, *method_)) {
+    stage.settings.blockIterations = plan_.iterations;
+    integrator_ = std::make_unique<BidirIntegrator>(*stage.scene, *stage.camera, stage.techniques,
+                                                    *method_, stage.settings, pool);
+    const PixelRect& crop = stage.settings.crop;
+    if (options.techniques) {
+        techniques_ = std::make_unique<TechniqueFilm>(crop.width(), crop.height(),
+                                                      stage.settings.limits.maxDepth);
+        integrator_->delivery().setTechniqueFilm(techniques_.get());
+        layers_.push_back(techniques_.get());
+    }
+    if (options.verify) {
+        verifier_ = std::make_unique<WeightVerifier>(*stage.scene, *stage.camera,
+                                                     stage.settings.limits, pool);
+    }
+    if (options.techniques && !row.proposalLabels.empty()) {
+        proposals_ =
+            std::make_unique<ProposalLayers>(row.proposalLabels, crop.width(), crop.height());
+        layers_.push_back(proposals_.get());
+    }
+    if (verifier_ || proposals_) {
+        integrator_->delivery().setObserver([this](const PathEvent& event) {
+            if (verifier_) verifier_->check(event);
+            if (proposals_) proposals_->add(event);
+        });
+    }
+}
+
+std::unique_ptr<Method> BlockMaker::freshMethod() const {
+    std::unique_ptr<Method> method = row_.create(settings_);
+    caches_.giveTo(*method);
+    return method;
+}
+
+std::optional<WeightVerifier::Result> BlockMaker::verified() const {
+    if (!verifier_) return std::nullopt;
+    return verifier_->result();
+}
+
+bool BlockMaker::beginBlock(std::uint64_t block, const std::atomic<bool>& cancel, Totals& totals) {
+    std::unique_ptr<Method> fresh = freshMethod();
+    const Stopwatch watch(totals.seconds);
+    const bool complete = integrator_->beginBlock(block, *fresh, cancel, totals.statistics);
+    method_ = std::move(fresh);
+    return complete;
+}
+
+bool BlockMaker::render(std::uint64_t iteration, std::span<Rgb> pixels,
+                        const std::atomic<bool>& cancel, Totals& totals) {
+    const Stopwatch watch(totals.seconds);
+    if (!integrator_->render(std::uint32_t(iteration), pixels, techniques_ ? kNever : cancel,
+                             totals.statistics)) {
+        return false;
+    }
+    if (proposals_) proposals_->countIteration();
+    return true;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,52 @@
+// Who makes the iterations of a picture: this process alone, or several together (render/ranks).
+#pragma once
+
+#include <vector>
+
+#include "libcore/bidir/film.h"
+#include "libcore/tool/interrupt.h"
+#include "libcore/tool/progress.h"
+#include "render/block_maker.h"
+
+namespace lacuna {
+
+class Crew {
+  public:
+    virtual ~Crew() = default;
+    /// Adds the film's next iterations to it, those of one block at most, and to `totals` what they
+    /// counted and the time that has gone. False: there are none, because of an interrupt or because
+    /// they are not made yet. Throws what stopped a member of the crew.
+    virtual bool advance(Film& film, Totals& totals) = 0;
+    /// Nothing new begins from now on.
+    virtual void stop() = 0;
+    /// Whether something is still being made.
+    virtual bool busy() const { return false; }
+    /// Whether a member was asked to end, who is not asked here.
+    virtual bool interrupted() const { return false; }
+    /// What a member takes for an iteration; 0: not known yet.
+    virtual double iterationSeconds() const = 0;
+};
+
+/// One process. The film's first iteration is made whatever happens, so that there is something to
+/// save.
+class Alone final : public Crew {
+  public:
+    /// All references must outlive the crew.
+    Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPool& pool,
+          Progress& progress);
+    bool advance(Film& film, Totals& totals) override;
+    void stop() override { stopped_ = true; }
+    double iterationSeconds() const override { return iterationSeconds_; }
+
+  private:
+    BlockMaker& maker_;
+    const std::atomic<bool>& interrupted_;
+    const ThreadPool& pool_;
+    Progress& progress_;
+    bool stopped_ = false;
+    bool begun_ = false;  ///< a block
+    std::vector<Rgb> pixels_;
+    double iterationSeconds_ = 0.0;
+};
+
+}  // namespace lacuna

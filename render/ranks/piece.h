@@ -1,0 +1,44 @@
+// A piece of a picture: some iterations of one block, made by one rank and sent to rank 0.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/block_maker.h"
+#include "render/part.h"
+
+namespace lacuna {
+
+/// What a rank is asked to make.
+struct Work {
+    std::uint64_t begin = 0, count = 0;  ///< iterations, all of one block
+    /// Nothing is there to be saved yet: the first iteration is finished whatever happens.
+    bool first = false;
+};
+
+class PieceMaker {
+  public:
+    /// All references must outlive it. `interrupted`: ends a piece in the middle of an iteration.
+    PieceMaker(BlockMaker& maker, const PixelRect& crop, const std::atomic<bool>& interrupted,
+               const ThreadPool& pool);
+
+    /// The iterations as nodes of their block's tree, which is the part's open one. Fewer than asked
+    /// for after an interrupt, or where `stop`, asked between two iterations, says so.
+    Part make(const Work& work, const std::function<bool()>& stop);
+
+  private:
+    BlockMaker& maker_;
+    const int width_, height_;
+    const std::atomic<bool>& interrupted_;
+    const ThreadPool& pool_;
+    std::optional<std::uint64_t> open_;  ///< block
+    std::vector<Rgb> pixels_;
+};
+
+std::vector<std::byte> bytesOf(const Part& part);
+/// Throws RunError for what bytesOf did not make.
+Part partOf(std::span<const std::byte> bytes);
+
+}  // namespace lacuna

@@ -1,0 +1,36 @@
+#include "render/render_inputs.h"
+
+#include <string>
+
+#include "libcore/base/content_hash.h"
+
+namespace lacuna {
+
+CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
+                        const Settings& settings, const Stage& stage, const Caches& caches,
+                        const BlockPlan& plan) {
+    CacheStamp stamp{sceneInputs(stage)};
+    const auto add = [&](const std::string& name, const std::string& value) {
+        stamp.inputs[name] = value;
+    };
+    for (const auto& [name, value] : stage.viewInputs) add(name, value);
+    for (const Effect& e : stage.effects) {
+        if (e.forced && !e.ofScene) add("effect " + e.name, e.simulated ? "on" : "off");
+    }
+    for (const auto& [name, value] : settings) add(name, value);
+    for (const auto& [name, hash] : caches.hashes) add("cache " + name, hash);
+    const Camera::Film film = stage.camera->film();
+    const PixelRect& crop = stage.settings.crop;
+    add("version", LACUNA_VERSION);
+    add("program", hashOfFile("/proc/self/exe"));  // another build may round in another way
+    add("method", row.name);
+    add("seed", std::to_string(options.common.seed));
+    add("film", std::to_string(film.width) + " x " + std::to_string(film.height));
+    add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
+                    std::to_string(crop.y0) + "," + std::to_string(crop.y1));
+    add("technique layers", options.techniques ? "yes" : "no");
+    add("iterations of a block", std::to_string(plan.iterations));
+    return stamp;
+}
+
+}  // namespace lacuna
