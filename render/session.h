@@ -7,9 +7,11 @@
 #include "libcore/image/error_metrics.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
+#include "render/background_job.h"
 #include "render/caches.h"
 #include "render/checkpoint.h"
 #include "render/curve_log.h"
+#include "render/live/live_view.h"
 #include "render/options.h"
 #include "render/output.h"
 #include "render/proposal_layers.h"
@@ -38,6 +40,13 @@ class Session {
     bool renderIteration();
     bool mayBegin() const;
     Part part() const;
+    const LayeredImage& still();
+    void beginLiveView();
+    std::vector<std::string> channelNames();
+    LayeredImage shown(const FilmSum& sum);
+    void showLive();
+    void refreshOutput();
+    LayeredImage output(const RenderReport& report, const FilmSum& sum);
     void saveCheckpoint();
     void finishCheckpoint();
     void measure();
@@ -68,6 +77,9 @@ class Session {
     std::optional<CurveLog> log_;
     CacheStamp inputs_;  ///< where parts are written or read
     std::optional<Checkpoint> checkpoint_;
+    std::optional<LayeredImage> still_;     ///< layers that no iteration changes, once needed
+    std::optional<BackgroundJob> refresh_;  ///< of the output
+    std::optional<LiveView> live_;
     std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
     std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
     double expectedSeconds_ = 0.0;  ///< of the next iteration
