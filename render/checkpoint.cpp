@@ -29,11 +29,7 @@ LayeredImage readLayers(const std::string& path) {
 }  // namespace
 
 Checkpoint::Checkpoint(std::string path, double seconds)
-    : path_(std::move(path)), every_(seconds) {}
-
-Checkpoint::~Checkpoint() {
-    if (writing_.valid()) writing_.wait();
-}
+    : path_(std::move(path)), saving_(seconds) {}
 
 std::optional<Part> Checkpoint::load(const CacheStamp& inputs, std::uint64_t firstBlock) const {
     std::error_code ignored;
@@ -53,34 +49,13 @@ std::optional<Part> Checkpoint::load(const CacheStamp& inputs, std::uint64_t fir
     return part;
 }
 
-bool Checkpoint::due() const {
-    const bool idle = !writing_.valid() ||
-                      writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    return idle && Clock::now() - last_ >= every_;
-}
-
 void Checkpoint::save(Part part) {
-    last_ = Clock::now();
-    writing_ =
-        std::async(std::launch::async, [this, part = std::move(part)] { write(path_, part); });
+    saving_.begin([this, part = std::move(part)] { write(path_, part); });
 }
 
 void Checkpoint::finish(Part part) {
-    if (writing_.valid()) writing_.wait();
+    saving_.wait();
     write(path_, part);
-}
-
-std::optional<std::string> Checkpoint::failure() {
-    if (!writing_.valid() ||
-        writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-        return std::nullopt;
-    }
-    try {
-        writing_.get();
-    } catch (const std::exception& e) {
-        return e.what();
-    }
-    return std::nullopt;
 }
 
 }  // namespace lacuna

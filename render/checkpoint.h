@@ -2,11 +2,10 @@
 // command goes on from it.
 #pragma once
 
-#include <chrono>
-#include <future>
 #include <optional>
 #include <string>
 
+#include "render/background_job.h"
 #include "render/part.h"
 
 namespace lacuna {
@@ -15,10 +14,6 @@ class Checkpoint {
   public:
     /// `seconds` between two saves.
     Checkpoint(std::string path, double seconds);
-    /// Waits for what is being written.
-    ~Checkpoint();
-    Checkpoint(const Checkpoint&) = delete;
-    Checkpoint& operator=(const Checkpoint&) = delete;
 
     /// What the file holds; empty if there is none. Throws InputError if it is no checkpoint, is
     /// damaged, of another render than `inputs` or begins with another block: the message says what
@@ -26,22 +21,18 @@ class Checkpoint {
     std::optional<Part> load(const CacheStamp& inputs, std::uint64_t firstBlock) const;
 
     /// Whether it is time to save and the last save is done.
-    bool due() const;
+    bool due() const { return saving_.due(); }
     /// Writes in the background: whole or not at all. Rendering may go on meanwhile, the part's
     /// sums are not changed.
     void save(Part part);
     /// Writes and waits. Throws RunError.
     void finish(Part part);
     /// Why the last save in the background failed; told once.
-    std::optional<std::string> failure();
+    std::optional<std::string> failure() { return saving_.failure(); }
 
   private:
-    using Clock = std::chrono::steady_clock;
-
     std::string path_;
-    std::chrono::duration<double> every_;
-    Clock::time_point last_ = Clock::now();
-    std::future<void> writing_;
+    BackgroundJob saving_;
 };
 
 }  // namespace lacuna

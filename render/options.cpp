@@ -10,6 +10,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
 #include "libcore/image/image_io.h"
+#include "render/live/layer_names.h"
 
 namespace lacuna {
 namespace {
@@ -69,6 +70,19 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("N")
         ->group(pieces);
 
+    const std::string live = "While it renders";
+    app.add_option("--display-server", o.displayServerText,
+                   "Show the picture in tev as it is (default port: 14158)")
+        ->type_name("H:P")
+        ->group(live);
+    app.add_option("--display-layers", o.displayLayersText,
+                   "Show these layers of the .exr as well, by name: variance,albedo")
+        ->type_name("NAMES")
+        ->group(live);
+    app.add_option("--write-every", o.writeEveryText, "Write the image anew every so often: 30s")
+        ->type_name("T")
+        ->group(live);
+
     const std::string check = "Measuring and checking";
     app.add_option("--reference", o.reference, "Image to compare with: .exr, .hdr, .pfm, .png")
         ->type_name("FILE")
@@ -84,9 +98,6 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("x,y,i|light:PATH,i")
         ->group(check);
     app.add_flag("--effects", o.effects, "Print what the scene calls for; renders nothing")
-        ->group(check);
-    app.add_option("--display-server", o.displayServer, "Not there yet")
-        ->type_name("H:P")
         ->group(check);
     addCommonOptions(app, o.common);
     app.footer(
@@ -138,6 +149,24 @@ void checkPieces(const RenderOptions& o) {
     }
     if (o.blocks && !o.output.empty() && endingOf(o.output) != ".exr") {
         throw UsageError("--blocks: expected an .exr to hold the part, found '" + o.output + "'");
+    }
+}
+
+/// What there is to see while it renders.
+void parseLive(RenderOptions& o) {
+    if (!o.displayServerText.empty()) {
+        o.displayServer = parseServerAddress("--display-server", o.displayServerText);
+    }
+    if (!o.displayLayersText.empty()) {
+        o.displayLayers = parseLayers("--display-layers", o.displayLayersText);
+        if (!o.displayServer) {
+            throw UsageError(
+                "--display-layers: expected together with --display-server; add --display-server "
+                "localhost:14158 or leave it out");
+        }
+    }
+    if (!o.writeEveryText.empty()) {
+        o.writeEverySeconds = parseDuration("--write-every", o.writeEveryText);
     }
 }
 
@@ -197,10 +226,6 @@ ReplayRequest parseReplay(const std::string& text) {
 }
 
 void checkOptions(RenderOptions& o) {
-    if (!o.displayServer.empty()) {
-        throw UsageError(
-            "--display-server: not there yet; leave it out and open the image that is written");
-    }
     checkSceneOptions(o);
     for (const std::string& text : o.assignments) {
         if (!text.starts_with("effects.")) continue;
@@ -216,6 +241,7 @@ void checkOptions(RenderOptions& o) {
     if (!o.checkpointEveryText.empty()) {
         o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
     }
+    parseLive(o);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
     if (o.countSetup && !o.timeSeconds) {

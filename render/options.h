@@ -8,6 +8,7 @@
 
 #include "libcore/bidir/film.h"
 #include "libcore/tool/scene_options.h"
+#include "render/live/server_address.h"
 
 namespace lacuna {
 
@@ -37,7 +38,8 @@ struct RenderOptions : SceneOptions {
     double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;
-    std::string displayServer, checkpoint, checkpointEveryText, blocksText;
+    std::string displayServerText, displayLayersText, writeEveryText;
+    std::string checkpoint, checkpointEveryText, blocksText;
     std::optional<std::int64_t> blockIterations;
 
     // Made from the texts above by checkOptions.
@@ -46,6 +48,9 @@ struct RenderOptions : SceneOptions {
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;
     std::optional<BlockRange> blocks;
+    std::optional<ServerAddress> displayServer;
+    std::vector<std::string> displayLayers;
+    std::optional<double> writeEverySeconds;
 };
 
 /// Declares every option. Both must outlive the parsing.

@@ -50,7 +50,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["invalidSamples"] = integerAttribute(r.statistics.invalidSamples);
     a["sceneHash"] = r.sceneHash;
     a["cacheHashes"] = json(r.cacheHashes).dump();
-    a["stopped"] = r.stopped;
+    a["stopped"] = r.stopped.empty() ? "no: still rendering" : r.stopped;
     a["maxDepth"] = r.limits.maxDepth;
     a["effects"] = utf8Text(effectsJson(r.effects), -1);
     if (r.tolerance > 0.0) a["tolerance"] = r.tolerance;
@@ -99,22 +99,26 @@ void setPicture(LayeredImage& image, const FilmSum& sum) {
     for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
 }
 
+void setFeatures(LayeredImage& image, const FeatureLayers& features) {
+    image.setRgb("albedo", features.albedo);
+    const std::vector<Rgb>& normals = features.normal.pixels;
+    auto &x = image.channel("normal.X"), &y = image.channel("normal.Y"),
+         &z = image.channel("normal.Z");
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        x[i] = normals[i].r;
+        y[i] = normals[i].g;
+        z[i] = normals[i].b;
+    }
+    image.channel("Z") = features.z;
+}
+
 LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
-                          const FeatureLayers* features) {
+                          const LayeredImage* still) {
     LayeredImage image(report.crop.width(), report.crop.height());
     setPicture(image, sum);
     if (report.techniques) addShareOfFirstConnections(image, report.limits.maxDepth);
-    if (features) {
-        image.setRgb("albedo", features->albedo);
-        const std::vector<Rgb>& normals = features->normal.pixels;
-        auto &x = image.channel("normal.X"), &y = image.channel("normal.Y"),
-             &z = image.channel("normal.Z");
-        for (std::size_t i = 0; i < normals.size(); ++i) {
-            x[i] = normals[i].r;
-            y[i] = normals[i].g;
-            z[i] = normals[i].b;
-        }
-        image.channel("Z") = features->z;
+    if (still) {
+        for (const auto& [name, plane] : still->channels()) image.channel(name) = plane;
     }
     setHeader(image, report);
     return image;

@@ -39,7 +39,7 @@ struct RenderReport {
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;
-    std::string stopped;  ///< iterations, time, interrupt
+    std::string stopped;  ///< iterations, time, interrupt; empty: not yet
     FilmSum::MeanColour mean;
     std::optional<WeightVerifier::Result> verify;
     std::optional<ErrorMeasures> error;  ///< against --reference
@@ -57,9 +57,12 @@ nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 /// The picture with its variance and layers.
 void setPicture(LayeredImage& image, const FilmSum& sum);
 
-/// The picture with features (may be null) and header.
+/// Adds layers albedo and normal, and Z.
+void setFeatures(LayeredImage& image, const FeatureLayers& features);
+
+/// The picture with header; `still`: layers that no iteration changes, may be null.
 LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
-                          const FeatureLayers* features);
+                          const LayeredImage* still);
 
 /// Three numbers; what is not finite is the text "inf" or "nan", which JSON has no number for.
 nlohmann::json numbersJson(const double (&values)[3]);

@@ -12,6 +12,7 @@
 #include "libcore/image/image_io.h"
 #include "render/black_picture.h"
 #include "render/block_plan.h"
+#include "render/live/layer_names.h"
 #include "render/ranks/together.h"
 #include "render/render_inputs.h"
 #include "render/stopwatch.h"
@@ -37,7 +38,9 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
     const double layers = options.techniques ? depth * (depth + 3.0) : 0.0;
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
-    const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 3.0 * sizeof(Rgb);
+    const bool beside = options.displayServer || options.writeEverySeconds;
+    const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 3.0 * sizeof(Rgb) +
+                            (beside ? 104.0 + layers * 2.0 * sizeof(Rgb) : 0.0);
     const double bytes = perPixel * double(crop.width()) * double(crop.height());
     const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (available > 0.0 && bytes > available) {
@@ -100,6 +103,8 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
         }
     }
     loadReference();
+    if (options_.writeEverySeconds) refresh_.emplace(*options_.writeEverySeconds);
+    if (options_.displayServer) beginLiveView();
     if (ranks.many()) {
         const double limit =
             options.timeSeconds.value_or(0.0) - (options.countSetup ? r.setupSeconds : 0.0);
@@ -204,6 +209,8 @@ void Session::keep() {
     tell();
     if (log_ && log_->wants(report_.seconds)) logRow();
     if (checkpoint_) saveCheckpoint();
+    if (refresh_) refreshOutput();
+    if (live_ && live_->wants()) showLive();
 }
 
 void Session::render() {
@@ -223,6 +230,96 @@ void Session::render() {
     tell();
     report_.statistics = totals_.statistics;
     if (together_) report_.receivedBytes = together_->receivedBytes();
+}
+
+/// Layers that no iteration changes: what the lens sees first, and what belongs to it.
+const LayeredImage& Session::still() {
+    if (still_) return *still_;
+    const Stopwatch watch(report_.phaseSeconds["features"]);
+    still_.emplace(film_.width(), film_.height());
+    setFeatures(*still_, renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                        options_.common.seed, pool_));
+    for (const auto& asset : caches_.assets) {
+        asset->draw(*still_, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
+    }
+    return *still_;
+}
+
+/// Of every channel that the picture may come to have.
+std::vector<std::string> Session::channelNames() {
+    std::vector<std::string> names;
+    const auto addRgb = [&](const std::string& layer) {
+        for (const char* part : {".R", ".G", ".B"}) names.push_back(layer + part);
+    };
+    addRgb("variance");
+    for (const auto& [name, plane] : still().channels()) names.push_back(name);
+    if (!options_.techniques) return names;
+    for (const std::string& label : report_.method->proposalLabels) addRgb("part." + label);
+    for (int k = 1; k <= report_.limits.maxDepth; ++k) {
+        for (int s = 0; s <= k; ++s) {
+            const std::string technique = TechniqueFilm::layerName(s, k + 1 - s);
+            addRgb("weighted." + technique);
+            addRgb("unweighted." + technique);
+        }
+    }
+    names.push_back("share.t02");
+    return names;
+}
+
+void Session::beginLiveView() {
+    const std::vector<std::string>& layers = options_.displayLayers;
+    const std::vector<std::string> all = layers.empty() ? layers : channelNames();
+    live_.emplace(*options_.displayServer,
+                  TevImage{options_.output, film_.width(), film_.height(),
+                           channelsOfLayers("--display-layers", layers, all)},
+                  [this](const std::string& text) { progress_.warning(text); });
+}
+
+/// What the viewer shows of it, and maybe more.
+LayeredImage Session::shown(const FilmSum& sum) {
+    if (!options_.displayLayers.empty()) return composeImage(report_, sum, &still());
+    LayeredImage image(film_.width(), film_.height());
+    image.setRgb("", sum.image(film_.width(), film_.height()));
+    return image;
+}
+
+void Session::showLive() {
+    double seconds = 0.0;
+    LayeredImage image;
+    {
+        const Stopwatch watch(seconds);
+        image = shown(film_.sum(idlePool()));
+    }
+    live_->show(std::move(image), LiveView::Seconds(seconds));
+}
+
+/// --write-every: as it would be saved now.
+void Session::refreshOutput() {
+    if (const auto failure = refresh_->failure()) {
+        progress_.warning("warning: " + *failure + " (the render goes on)");
+    }
+    if (!refresh_->due()) return;
+    RenderReport now = report_;
+    now.statistics = totals_.statistics;
+    refresh_->begin([this, image = output(now, film_.sum(idlePool()))] {
+        writeImage(options_.output, image, options_.exposure);
+    });
+}
+
+/// What is written.
+LayeredImage Session::output(const RenderReport& report, const FilmSum& sum) {
+    const bool layers = endingOf(options_.output) == ".exr";
+    LayeredImage image = composeImage(report, sum, layers ? &still() : nullptr);
+    if (options_.blocks) {
+        addPart(image, {inputs_, film_.width(), film_.height(), plan_, report_.firstBlock,
+                        film_.finalState(pool_), totals_.seconds, totals_.statistics});
+    }
+    return image;
+}
+
+/// For sums between iterations; null where this process makes pieces meanwhile.
+const ThreadPool* Session::idlePool() const {
+    return together_ ? nullptr : &pool_;
 }
 
 /// What the checkpoint holds now.
@@ -261,8 +358,8 @@ void Session::measure() {
     if (!reference_) return;
     const Stopwatch watch(report_.phaseSeconds["compare"]);
     try {
-        report_.error = reference_->compare(film_.sum(&pool_).image(film_.width(), film_.height()),
-                                            options_.output);
+        report_.error = reference_->compare(
+            film_.sum(idlePool()).image(film_.width(), film_.height()), options_.output);
     } catch (const InputError& e) {
         report_.error.reset();
         failure_ = e.what();
@@ -296,29 +393,17 @@ void Session::save() {
     report_.verify = maker_.verified();
 
     progress_.phase("saving");
-    std::optional<FeatureLayers> features;
-    if (endingOf(options_.output) == ".exr") {
-        const Stopwatch watch(report_.phaseSeconds["features"]);
-        features = renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                  options_.common.seed, pool_);
-    }
+    if (live_) live_->showLast(shown(sum));
+    const LayeredImage image = output(report_, sum);
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
-        LayeredImage image = composeImage(report_, sum, features ? &*features : nullptr);
-        if (features) {
-            for (const auto& asset : caches_.assets) {
-                asset->draw(image, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
-            }
-        }
-        if (options_.blocks) {
-            addPart(image, {inputs_, film_.width(), film_.height(), plan_, report_.firstBlock,
-                            film_.finalState(pool_), totals_.seconds, totals_.statistics});
-        }
+        if (refresh_) refresh_->wait();  // or the older image would come last
         writeImage(options_.output, image, options_.exposure);
     }
     if (!options_.common.json.empty()) {
         writeJson(options_.common.json, reportJson(report_));
     }
+    if (live_) live_->leave();
     const double rays = double(report_.statistics.totalRays());
     std::printf("%s: %d x %d pixels, %s, %llu iteration%s in %.3g s (setup %.3g s), %.4g rays%s\n",
                 options_.output.c_str(), film_.width(), film_.height(),

@@ -8,10 +8,12 @@
 #include "libcore/image/error_metrics.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
+#include "render/background_job.h"
 #include "render/block_maker.h"
 #include "render/checkpoint.h"
 #include "render/crew.h"
 #include "render/curve_log.h"
+#include "render/live/live_view.h"
 #include "render/options.h"
 #include "render/output.h"
 #include "render/ranks/ranks.h"
@@ -42,6 +44,14 @@ class Session {
     void tell();
     void keep();
     Part part() const;
+    const ThreadPool* idlePool() const;
+    const LayeredImage& still();
+    void beginLiveView();
+    std::vector<std::string> channelNames();
+    LayeredImage shown(const FilmSum& sum);
+    void showLive();
+    void refreshOutput();
+    LayeredImage output(const RenderReport& report, const FilmSum& sum);
     void saveCheckpoint();
     void finishCheckpoint();
     void measure();
@@ -67,6 +77,9 @@ class Session {
     std::optional<CurveLog> log_;
     CacheStamp inputs_;  ///< where parts are written or read
     std::optional<Checkpoint> checkpoint_;
+    std::optional<LayeredImage> still_;     ///< layers that no iteration changes, once needed
+    std::optional<BackgroundJob> refresh_;  ///< of the output
+    std::optional<LiveView> live_;
     std::string failure_;    ///< of log or checkpoint: a full disk must not cost the picture
     std::uint64_t end_ = 0;  ///< iteration behind the last one; 0: none
     Totals totals_;          ///< of iterations that are in the film

@@ -60,8 +60,7 @@ Outcome RenderTool::run(const std::string& arguments, const char* tool) const {
     return runAndSignal(arguments, {}, {}, tool);
 }
 
-Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
-                                 std::chrono::milliseconds delay, const char* tool) const {
+pid_t RenderTool::start(const std::string& arguments, const char* tool) const {
     // The shell is replaced by the tool, so that the signals reach it.
     const std::string command =
         "exec " + (tool ? tool : ownTool()) + " " + withDirectory(arguments, path(""));
@@ -75,13 +74,23 @@ Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector
         execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
         _exit(127);
     }
+    return child;
+}
+
+Outcome RenderTool::end(pid_t child) const {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
+}
+
+Outcome RenderTool::runAndSignal(const std::string& arguments, const std::vector<int>& signals,
+                                 std::chrono::milliseconds delay, const char* tool) const {
+    const pid_t child = start(arguments, tool);
     for (const int signal : signals) {
         std::this_thread::sleep_for(delay);
         kill(child, signal);
     }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
+    return end(child);
 }
 
 void RenderTool::expectFailure(const std::string& arguments, int exitCode, const std::string& part,

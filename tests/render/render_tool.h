@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -37,6 +39,10 @@ class RenderTool : public ::testing::Test {
     /// Starts it, sends `signals` one after the other, `delay` before each; waits for the end.
     Outcome runAndSignal(const std::string& arguments, const std::vector<int>& signals,
                          std::chrono::milliseconds delay, const char* tool = nullptr) const;
+    /// Starts it and does not wait. One at a time.
+    pid_t start(const std::string& arguments, const char* tool = nullptr) const;
+    /// Waits for its end.
+    Outcome end(pid_t child) const;
     /// Must fail with this code, `part` in one line on stderr, nothing on stdout.
     void expectFailure(const std::string& arguments, int exitCode, const std::string& part,
                        const char* tool = nullptr) const;

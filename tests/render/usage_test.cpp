@@ -14,14 +14,42 @@ class RenderUsage : public RenderTool {};
 TEST_F(RenderUsage, HelpNamesEveryOption) {
     const Outcome o = run("--help");
     EXPECT_EQ(o.exitCode, 0);
-    for (const char* option :
-         {"--method",      "--set",         "--width",     "--height",     "--iterations",
-          "--time",        "--count-setup", "--max-depth", "--rr-depth",   "--aperture",
-          "--focus",       "--camera",      "--env",       "--env-rotate", "--env-scale",
-          "--crop",        "--reference",   "--log",       "--prepare",    "--techniques",
-          "--verify",      "--replay",      "--effects",   "--exposure",   "--list-methods",
-          "--help-method", "--threads",     "--seed",      "--json",       "--quiet",
-          "--cache",       "--version",     "Exit codes"}) {
+    for (const char* option : {"--method",
+                               "--set",
+                               "--width",
+                               "--height",
+                               "--iterations",
+                               "--time",
+                               "--count-setup",
+                               "--max-depth",
+                               "--rr-depth",
+                               "--aperture",
+                               "--focus",
+                               "--camera",
+                               "--env",
+                               "--env-rotate",
+                               "--env-scale",
+                               "--crop",
+                               "--reference",
+                               "--log",
+                               "--prepare",
+                               "--techniques",
+                               "--verify",
+                               "--replay",
+                               "--effects",
+                               "--exposure",
+                               "--list-methods",
+                               "--help-method",
+                               "--threads",
+                               "--seed",
+                               "--json",
+                               "--quiet",
+                               "--cache",
+                               "--version",
+                               "--display-server",
+                               "--display-layers",
+                               "--write-every",
+                               "Exit codes"}) {
         EXPECT_NE(o.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").exitCode, 0);
@@ -84,7 +112,17 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     }
     expectFailure(start + "--count-setup", 2, "--time");
     expectFailure("@none.glb -o @out.png --method pt --techniques", 2, ".exr");
-    expectFailure(start + "--display-server localhost:14158", 2, "not there yet");
+    for (const char* server : {"localhost:", ":0", ":65536", "::1", "[::1", "[]:1", "http://tev"}) {
+        expectFailure(start + "--display-server " + server, 2, "[::1]:14158");
+    }
+    expectFailure(start + "--display-layers variance", 2, "--display-server");
+    for (const char* layers : {",", "variance,", ",Z", "variance,,Z"}) {
+        expectFailure(start + "--display-server :1 --display-layers " + layers, 2, "names of");
+    }
+    for (const char* time : {"0s", "-1", "soon"}) {
+        expectFailure(start + "--write-every " + time, 2, "--write-every");
+    }
+    expectFailure("@none.glb --method pt --write-every 30s", 2, "-o");
     expectFailure(start + "--json @out.exr", 2, "file of its own");
 }
 
@@ -116,6 +154,8 @@ TEST_F(RenderUsage, EmptyTextsExitWith2) {
                                "--threads",
                                "--help-method",
                                "--display-server",
+                               "--display-layers",
+                               "--write-every",
                                "--checkpoint",
                                "--checkpoint-every",
                                "--blocks",

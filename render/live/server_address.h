@@ -1,0 +1,21 @@
+// Where a viewer listens.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace lacuna {
+
+struct ServerAddress {
+    std::string host = "localhost";
+    std::uint16_t port = 14158;  ///< tev's
+
+    /// As it is written on a command line.
+    std::string text() const;
+    friend bool operator==(const ServerAddress&, const ServerAddress&) = default;
+};
+
+/// "host:port", "host", ":port", "[::1]:port" or "[::1]". Throws UsageError that names `option`.
+ServerAddress parseServerAddress(const std::string& option, const std::string& text);
+
+}  // namespace lacuna
