@@ -170,6 +170,13 @@ json reportJson(const RenderReport& r) {
            {"cache_hashes", r.cacheHashes},
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
+    j["estimated_error"] = json::object();
+    j["estimate_doubts"] = json::object();
+    for (const char* measure : {"mape", "relmse", "rmse"}) {
+        const Measured& m = *r.estimate.find(measure);
+        j["estimated_error"][measure] = number(m.error);
+        if (!m.doubt.empty()) j["estimate_doubts"][measure] = m.doubt;
+    }
     if (r.verify) {
         j["verify"] = {{"max_difference", r.verify->maxDifference},
                        {"paths", r.verify->paths},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libcore/bidir/error_estimate.h"
 #include "libcore/bidir/features.h"
 #include "libcore/bidir/integrator.h"
 #include "libcore/bidir/verify.h"
@@ -37,7 +38,8 @@ struct RenderReport {
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;
-    std::string stopped;  ///< iterations, time, interrupt
+    std::string stopped;  ///< iterations, time, error, interrupt
+    ErrorEstimate estimate;
     FilmSum::MeanColour mean;
     std::optional<WeightVerifier::Result> verify;
     std::optional<ErrorMeasures> error;  ///< against --reference

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kVerifyTolerance = 1e-4;
 const std::atomic<bool> kNever{false};
+constexpr double kEstimateSeconds = 5.0;  // of rendering, before --estimate says something
 
 /// Adds the time of its life to `seconds`.
 class Stopwatch {
@@ -128,6 +129,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
     if (options.common.verbose) describeStage();
+    prepareMeter();
     if (options.blocks || !options.checkpoint.empty()) inputs_ = inputs();
     if (!options.checkpoint.empty()) {
         checkpoint_.emplace(options.checkpoint, options.checkpointSeconds);
@@ -169,6 +171,16 @@ CacheStamp Session::inputs() const {
     add("technique layers", options_.techniques ? "yes" : "no");
     add("iterations of a block", std::to_string(plan_.iterations));
     return stamp;
+}
+
+/// What the error's estimate needs to know of the pixels; the features are saved at the end too.
+void Session::prepareMeter() {
+    progress_.phase("features");
+    const Stopwatch watch(report_.phaseSeconds["features"]);
+    features_ = renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                               options_.common.seed, pool_);
+    meter_.emplace(*features_);
+    film_.measure(*meter_);
 }
 
 /// From what a checkpoint holds.
@@ -220,6 +232,7 @@ void Session::loadReference() {
 
 int Session::run() {
     render();
+    if (options_.estimate) return printCost();
     if (checkpoint_) finishCheckpoint();
     save();
     warnAboutDefects();
@@ -284,14 +297,22 @@ void Session::render() {
     const auto tell = [&] {
         report_.iterations = film_.iterations();
         report_.seconds = totals_.seconds;
+        const double bound = options_.until ? options_.until->error : 0.0;
+        const ErrorNow now = errorNow().after(report_.seconds - estimateSeconds_);
         progress_.iterations({report_.iterations, limit, totals_.statistics.totalRays(),
-                              report_.seconds, options_.timeSeconds.value_or(0.0)});
+                              report_.seconds, options_.timeSeconds.value_or(0.0),
+                              estimateSeconds_ > 0.0 ? accuracyText(now, bound) : ""});
     };
+    if (isMeasured(film_.iterations())) estimateErrorNow();
     tell();
     bool begun = false;
     for (;;) {
         if (interrupt_.requested() && film_.iterations() > 0) {
             report_.stopped = "interrupt";
+        } else if (isAccurate()) {
+            report_.stopped = "error";
+        } else if (isEstimated()) {
+            report_.stopped = "estimate";
         } else if (end_ > 0 && film_.nextIteration() >= end_) {
             report_.stopped = "iterations";
         } else if (options_.timeSeconds && film_.iterations() > 0 && !mayBegin()) {
@@ -307,11 +328,59 @@ void Session::render() {
         }
         if (!renderIteration()) continue;
         begun = film_.inBlock() > 0;
+        if (isMeasured(film_.iterations())) estimateErrorNow();
         tell();
         if (log_ && log_->wants(report_.seconds)) logRow();
         if (checkpoint_) saveCheckpoint();
     }
     report_.statistics = totals_.statistics;
+}
+
+/// At set times only, from what a checkpoint holds as well: where a render stops by its error, it
+/// does so on any machine.
+void Session::estimateErrorNow() {
+    {
+        const Stopwatch watch(totals_.seconds);
+        report_.estimate = estimateError(film_.sum(&pool_), *meter_, &pool_);
+    }
+    estimateSeconds_ = totals_.seconds;
+}
+
+ErrorNow Session::errorNow() const {
+    const std::string measure = options_.until ? options_.until->measure : "mape";
+    const Measured& m = *report_.estimate.find(measure);
+    return {measure, m.error, estimateSeconds_, !m.doubt.empty()};
+}
+
+/// Whether --until is reached. A picture without light is black, and that is known.
+bool Session::isAccurate() {
+    if (!options_.until || !isMeasured(film_.iterations())) return false;
+    if (stage_.scene->lights().empty()) return true;
+    const Measured& m = *report_.estimate.find(options_.until->measure);
+    if (!(m.error < options_.until->error)) return false;
+    if (!m.doubt.empty() && !doubtSaid_) {
+        doubtSaid_ = true;
+        progress_.remark("--until: cannot be promised yet: " + m.doubt);
+    }
+    return m.doubt.empty();
+}
+
+/// Whether --estimate has seen enough: some seconds, and more where they do not suffice.
+bool Session::isEstimated() const {
+    if (!options_.estimate || !isMeasured(film_.iterations())) return false;
+    const double seconds = report_.seconds,
+                 atLeast = options_.timeSeconds.value_or(kEstimateSeconds);
+    return seconds >= (report_.estimate.mape.doubt.empty() ? atLeast : 4.0 * atLeast);
+}
+
+int Session::printCost() {
+    const Measured& mape = report_.estimate.mape;
+    const AccuracyCost cost{options_.scene, row_.name,          film_.width(),
+                            film_.height(), report_.iterations, report_.setupSeconds,
+                            errorNow(),     mape.doubt};
+    if (!options_.common.json.empty()) writeJson(options_.common.json, costJson(cost));
+    std::fputs(costTable(cost).c_str(), stdout);
+    return report_.stopped == "interrupt" ? kInterruptedExit : 0;
 }
 
 /// What the checkpoint holds now.
@@ -381,20 +450,16 @@ void Session::save() {
     }
     const FilmSum sum = film_.sum(&pool_);
     report_.mean = sum.meanColour();
+    report_.estimate = estimateError(sum, *meter_, &pool_);
     warnIfBlack();
     if (verifier_) report_.verify = verifier_->result();
 
     progress_.phase("saving");
-    std::optional<FeatureLayers> features;
-    if (endingOf(options_.output) == ".exr") {
-        const Stopwatch watch(report_.phaseSeconds["features"]);
-        features = renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                  options_.common.seed, pool_);
-    }
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
-        LayeredImage image = composeImage(report_, sum, features ? &*features : nullptr);
-        if (features) {
+        const bool layers = endingOf(options_.output) == ".exr";
+        LayeredImage image = composeImage(report_, sum, layers ? &*features_ : nullptr);
+        if (layers) {
             for (const auto& asset : caches_.assets) {
                 asset->draw(image, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
             }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "libcore/bidir/error_estimate.h"
 #include "libcore/image/error_metrics.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
@@ -40,6 +41,12 @@ class Session {
     Part part() const;
     void saveCheckpoint();
     void finishCheckpoint();
+    void prepareMeter();
+    void estimateErrorNow();
+    bool isAccurate();
+    bool isEstimated() const;
+    ErrorNow errorNow() const;
+    int printCost();
     void measure();
     void logRow();
     void save();
@@ -61,6 +68,8 @@ class Session {
     Film film_;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::vector<Rgb> pixels_;  ///< of an iteration
+    std::optional<FeatureLayers> features_;
+    std::optional<ErrorMeter> meter_;
     std::optional<TechniqueFilm> techniques_;
     std::optional<ProposalLayers> proposalLayers_;
     std::unique_ptr<WeightVerifier> verifier_;
@@ -77,7 +86,9 @@ class Session {
         IterationStatistics statistics;
     };
     Totals totals_;
-    Totals ofBlocks_;  ///< of whole blocks alone
+    Totals ofBlocks_;               ///< of whole blocks alone
+    double estimateSeconds_ = 0.0;  ///< of the totals, when the error was last estimated
+    bool doubtSaid_ = false;
     RenderReport report_;
 };
 

@@ -21,7 +21,7 @@ TEST_F(RenderUsage, HelpNamesEveryOption) {
           "--crop",        "--reference",   "--log",       "--prepare",    "--techniques",
           "--verify",      "--replay",      "--effects",   "--exposure",   "--list-methods",
           "--help-method", "--threads",     "--seed",      "--json",       "--quiet",
-          "--cache",       "--version",     "Exit codes"}) {
+          "--cache",       "--version",     "--until",     "--estimate",   "Exit codes"}) {
         EXPECT_NE(o.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").exitCode, 0);
