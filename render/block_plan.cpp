@@ -31,9 +31,10 @@ BlockPlan planOf(const RenderOptions& options, const Method& method) {
 }
 
 std::uint64_t endOf(const RenderOptions& options, const BlockPlan& plan) {
-    const std::uint64_t limit = options.iterations    ? std::uint64_t(*options.iterations)
-                                : options.timeSeconds ? 0
-                                                      : kDefaultIterations;
+    const std::uint64_t limit = options.iterations ? std::uint64_t(*options.iterations)
+                                : options.timeSeconds || options.until || options.estimate
+                                    ? 0
+                                    : kDefaultIterations;
     if (!options.blocks) return limit;
     const std::uint64_t end = options.blocks->end * plan.iterations;
     if (!options.iterations) return end;

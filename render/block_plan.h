@@ -13,7 +13,7 @@ namespace lacuna {
 /// The method's blocks, or those of --block-iterations.
 BlockPlan planOf(const RenderOptions& options, const Method& method);
 
-/// Behind the last iteration that is asked for; 0: time alone ends the render. Throws UsageError
+/// Behind the last iteration that is asked for; 0: time or error alone end the render. Throws UsageError
 /// for blocks behind the picture's end.
 std::uint64_t endOf(const RenderOptions& options, const BlockPlan& plan);
 

@@ -41,12 +41,19 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
 
     const std::string effort = "Effort";
     app.add_option("--iterations", o.iterations,
-                   "One eye path per pixel each (default: 64; unlimited with --time)")
+                   "One eye path per pixel each (default: 64; unlimited with --time, --until)")
         ->type_name("N")
         ->group(effort);
     app.add_option("--time", o.timeText,
                    "Wall clock from the first iteration on: 90s (or 90), 10m, 1h")
         ->type_name("T")
+        ->group(effort);
+    app.add_option("--until", o.untilText,
+                   "Until the error, estimated without a reference, is below E: mape, relmse, rmse")
+        ->type_name("MEASURE=E")
+        ->group(effort);
+    app.add_flag("--estimate", o.estimate,
+                 "Print what accuracy costs, after some seconds; writes no image")
         ->group(effort);
     app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
         ->group(effort);
@@ -127,6 +134,29 @@ std::vector<std::string_view> splitAtCommas(std::string_view text) {
         parts.push_back(text.substr(0, comma));
         if (comma == std::string_view::npos) return parts;
         text.remove_prefix(comma + 1);
+    }
+}
+
+/// --estimate writes no image, and --until judges the whole one.
+void checkAccuracy(const RenderOptions& o) {
+    if (o.until && (o.blocks || o.estimate)) {
+        throw UsageError("--until: expected a whole picture, found " +
+                         std::string(o.blocks ? "--blocks" : "--estimate") +
+                         "; leave one of them out");
+    }
+    const char* const other = o.blocks                ? "--blocks"
+                              : !o.checkpoint.empty() ? "--checkpoint"
+                              : o.replay              ? "--replay"
+                              : o.verify              ? "--verify"
+                              : o.techniques          ? "--techniques"
+                              : !o.log.empty()        ? "--log"
+                              : !o.reference.empty()  ? "--reference"
+                              : o.displayServer       ? "--display-server"
+                              : o.writeEverySeconds   ? "--write-every"
+                                                      : nullptr;
+    if (o.estimate && other) {
+        throw UsageError("--estimate: expected a render that writes no image, found " +
+                         std::string(other) + "; leave one of them out");
     }
 }
 
@@ -237,6 +267,7 @@ void checkOptions(RenderOptions& o) {
     requireRange("--block-iterations", o.blockIterations, 1, std::int64_t(kMaxIterations));
     requireReal("--exposure", o.exposure, -1000.0, 1000.0, "stops from -1000 to 1000");
     if (!o.timeText.empty()) o.timeSeconds = parseDuration("--time", o.timeText);
+    if (!o.untilText.empty()) o.until = parseUntil(o.untilText);
     if (!o.blocksText.empty()) o.blocks = parseBlocks(o.blocksText);
     if (!o.checkpointEveryText.empty()) {
         o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
@@ -249,6 +280,7 @@ void checkOptions(RenderOptions& o) {
             "--count-setup: expected together with --time; add --time or leave it out");
     }
     checkPieces(o);
+    checkAccuracy(o);
     if (o.scene.empty()) {
         throw UsageError("SCENE.glb: expected the scene to render, found none; see --help");
     }
@@ -256,7 +288,7 @@ void checkOptions(RenderOptions& o) {
     if (o.method.empty()) {
         throw UsageError("--method: expected a method's name, found none: see --list-methods");
     }
-    if (o.output.empty() && !o.replay) {
+    if (o.output.empty() && !o.replay && !o.estimate) {
         throw UsageError("-o: expected the image to write, found none; add -o OUT.exr");
     }
     if (o.techniques && !o.replay && endingOf(o.output) != ".exr") {
@@ -297,7 +329,7 @@ void checkOutputs(const RenderOptions& o) {
             }
         }
     }
-    if (!o.output.empty()) requireWritable(o.output);
+    if (!o.output.empty() && !o.estimate) requireWritable(o.output);
     for (const std::string* path : {&o.log, &o.common.json, &o.checkpoint}) {
         if (!path->empty()) const AtomicFile probe(*path);
     }

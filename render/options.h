@@ -8,6 +8,7 @@
 
 #include "libcore/bidir/film.h"
 #include "libcore/tool/scene_options.h"
+#include "render/accuracy.h"
 #include "render/live/server_address.h"
 
 namespace lacuna {
@@ -32,7 +33,8 @@ struct RenderOptions : SceneOptions {
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
     std::string timeText, cropText, replayText;
-    bool countSetup = false;
+    std::string untilText;
+    bool countSetup = false, estimate = false;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false;
     double exposure = 0.0;
@@ -44,6 +46,7 @@ struct RenderOptions : SceneOptions {
 
     // Made from the texts above by checkOptions.
     std::optional<double> timeSeconds;
+    std::optional<UntilRequest> until;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;

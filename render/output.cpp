@@ -176,6 +176,13 @@ json reportJson(const RenderReport& r) {
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
     if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
+    j["estimated_error"] = json::object();
+    j["estimate_doubts"] = json::object();
+    for (const char* measure : {"mape", "relmse", "rmse"}) {
+        const Measured& m = *r.estimate.find(measure);
+        j["estimated_error"][measure] = number(m.error);
+        if (!m.doubt.empty()) j["estimate_doubts"][measure] = m.doubt;
+    }
     if (r.verify) {
         j["verify"] = {{"max_difference", r.verify->maxDifference},
                        {"paths", r.verify->paths},

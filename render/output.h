@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libcore/bidir/error_estimate.h"
 #include "libcore/bidir/features.h"
 #include "libcore/bidir/integrator.h"
 #include "libcore/bidir/verify.h"
@@ -39,7 +40,8 @@ struct RenderReport {
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;
-    std::string stopped;  ///< iterations, time, interrupt; empty: not yet
+    std::string stopped;  ///< iterations, time, error, interrupt; empty: not yet
+    ErrorEstimate estimate;
     FilmSum::MeanColour mean;
     std::optional<WeightVerifier::Result> verify;
     std::optional<ErrorMeasures> error;  ///< against --reference

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr const char* kAttributes[] = {"partInputs", "partSums", "partTotals"};
 constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
@@ -55,6 +55,23 @@ std::vector<Rgb> takePlanes(LayeredImage& image, const std::string& layer) {
     return pixels;
 }
 
+json halvesText(const std::vector<HalfDifference>& differences) {
+    json list = json::array();
+    for (const HalfDifference& d : differences) {
+        list.push_back({d.iterations, d.nodes, numberText(d.sum), numberText(d.squares),
+                        numberText(d.unevenness)});
+    }
+    return list;
+}
+std::vector<HalfDifference> halvesOf(const json& list) {
+    std::vector<HalfDifference> differences;
+    for (const json& d : list) {
+        differences.push_back(
+            {d.at(0), d.at(1), numberOf(d.at(2)), numberOf(d.at(3)), numberOf(d.at(4))});
+    }
+    return differences;
+}
+
 /// `layer`: "sum.0."
 json addNode(LayeredImage& image, const std::string& layer, const SumTree::Node& node) {
     const FilmSum& sum = *node.sum;
@@ -72,6 +89,7 @@ json addNode(LayeredImage& image, const std::string& layer, const SumTree::Node&
             {"spreads", !sum.spread.empty()},
             {"whole_mean", numbersText(sum.wholeMean)},
             {"whole_squares", numbersText(sum.wholeSquares)},
+            {"differences", halvesText(sum.differences)},
             {"layers", names}};
 }
 
@@ -83,6 +101,7 @@ SumTree::Node takeNode(LayeredImage& image, const std::string& layer, const json
     if (text.at("spreads").get<bool>()) sum->spread = takePlanes(image, layer + "spread");
     sum->wholeMean = numbersOf(text.at("whole_mean"));
     sum->wholeSquares = numbersOf(text.at("whole_squares"));
+    sum->differences = halvesOf(text.at("differences"));
     for (const std::string name : text.at("layers")) sum->layers[name] = image.take(layer + name);
     const SumTree::Node node{text.at("begin"), text.at("size"), std::move(sum)};
     if (!std::has_single_bit(node.size) || node.begin % node.size != 0) {

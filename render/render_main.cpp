@@ -90,7 +90,13 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
     Progress progress(options.common.quiet, interrupt.requested());
     if (!ranks.leads()) progress.mute();
     std::optional<Stage> stage;
-    if (!ranks.agree([&] { stage = loadStage(options, *row, settings, pool, progress); })) return 0;
+    std::optional<FirstLook> look;
+    const bool loaded = ranks.agree([&] {
+        stage = loadStage(options, *row, settings, pool, progress);
+        progress.phase("features");
+        look.emplace(*stage, pool);
+    });
+    if (!loaded) return 0;
     // Rank 0 makes the caches that are missing, the others read them.
     Caches caches;
     const auto load = [&] {
@@ -115,12 +121,12 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
     std::optional<Session> session;
     const bool ready = ranks.agree([&] {
         if (!ranks.leads()) return;
-        session.emplace(options, *row, settings, *stage, caches, maker, ranks, pool, interrupt,
-                        progress);
+        session.emplace(options, *row, settings, *stage, caches, *look, maker, ranks, pool,
+                        interrupt, progress);
     });
     if (!ready) return 0;
     if (session) return session->run();
-    serve(ranks, maker, stage->settings.crop, interrupt, pool);
+    serve(ranks, maker, look->meter, stage->settings.crop, interrupt, pool);
     return 0;
 }
 

@@ -21,6 +21,7 @@ namespace lacuna {
 namespace {
 
 constexpr double kVerifyTolerance = 1e-4;
+constexpr double kEstimateSeconds = 5.0;  // of rendering, before --estimate says something
 
 Image cropped(const Image& image, const PixelRect& rect) {
     Image part(rect.width(), rect.height());
@@ -56,14 +57,16 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
 }  // namespace
 
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-                 Stage& stage, const Caches& caches, BlockMaker& maker, const Ranks& ranks,
-                 const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress)
+                 const Stage& stage, const Caches& caches, const FirstLook& look, BlockMaker& maker,
+                 const Ranks& ranks, const ThreadPool& pool, const InterruptGuard& interrupt,
+                 Progress& progress)
     : options_(options),
       pool_(pool),
       interrupt_(interrupt),
       progress_(progress),
       stage_(stage),
       caches_(caches),
+      look_(look),
       maker_(maker),
       plan_(maker.plan()),
       film_(makeFilm(options, stage_.settings, plan_)),
@@ -93,6 +96,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.effects = stage_.effects;
     r.warnings = stage_.warnings;
     if (options.common.verbose) describeStage();
+    film_.measure(look.meter);
     if (options.blocks || !options.checkpoint.empty()) {
         inputs_ = renderInputs(options, row, settings, stage, caches, plan_);
     }
@@ -108,7 +112,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     if (ranks.many()) {
         const double limit =
             options.timeSeconds.value_or(0.0) - (options.countSetup ? r.setupSeconds : 0.0);
-        auto together = std::make_unique<Together>(ranks, maker_, stage_.settings.crop,
+        auto together = std::make_unique<Together>(ranks, maker_, look.meter, stage_.settings.crop,
                                                    Together::Limits{end_, std::max(0.0, limit)},
                                                    interrupt, pool);
         together_ = together.get();
@@ -170,6 +174,7 @@ void Session::loadReference() {
 
 int Session::run() {
     render();
+    if (options_.estimate) return printCost();
     if (checkpoint_) finishCheckpoint();
     save();
     warnAboutDefects();
@@ -186,9 +191,11 @@ bool Session::mayBegin() const {
 }
 
 /// Empty: nothing yet.
-std::string Session::whyStop() const {
+std::string Session::whyStop() {
     const bool some = film_.iterations() > 0;
     if (some && (interrupt_.requested() || crew_->interrupted())) return "interrupt";
+    if (isAccurate()) return "error";
+    if (isEstimated()) return "estimate";
     if (end_ > 0 && film_.nextIteration() >= end_) return "iterations";
     if (some && options_.timeSeconds && !mayBegin()) return "time";
     return "";
@@ -199,13 +206,17 @@ void Session::tell() {
     report_.iterations = film_.iterations();
     report_.seconds = totals_.seconds;
     const std::uint64_t limit = end_ > 0 ? end_ - report_.firstBlock * plan_.iterations : 0;
+    const double bound = options_.until ? options_.until->error : 0.0;
+    const ErrorNow now = errorNow().after(report_.seconds - estimateSeconds_);
     progress_.iterations({report_.iterations, limit, totals_.statistics.totalRays(),
-                          report_.seconds, options_.timeSeconds.value_or(0.0)});
+                          report_.seconds, options_.timeSeconds.value_or(0.0),
+                          estimateSeconds_ > 0.0 ? accuracyText(now, bound) : ""});
 }
 
 /// Behind iterations that are new in the film.
 void Session::keep() {
     if (film_.inBlock() == 0) ofBlocks_ = totals_;
+    if (isMeasured(film_.iterations())) estimateErrorNow();
     tell();
     if (log_ && log_->wants(report_.seconds)) logRow();
     if (checkpoint_) saveCheckpoint();
@@ -214,13 +225,17 @@ void Session::keep() {
 }
 
 void Session::render() {
+    if (isMeasured(film_.iterations())) estimateErrorNow();
     tell();
     if (together_) progress_.phase("rendering");
     while ((report_.stopped = whyStop()).empty()) {
         if (crew_->advance(film_, totals_)) keep();
     }
     crew_->stop();
-    for (;;) {
+    // What is still being made when the time is over is added as well; who stops by the error does so
+    // where one process would.
+    const bool more = report_.stopped == "time" || report_.stopped == "interrupt";
+    while (more) {
         if (crew_->advance(film_, totals_)) {
             keep();
         } else if (!crew_->busy()) {
@@ -232,13 +247,61 @@ void Session::render() {
     if (together_) report_.receivedBytes = together_->receivedBytes();
 }
 
+/// At set times only, from what a checkpoint holds as well: where a render stops by its error, it
+/// does so on any machine.
+void Session::estimateErrorNow() {
+    double seconds = 0.0;
+    {
+        const Stopwatch watch(seconds);
+        report_.estimate = estimateError(film_.sum(idlePool()), look_.meter, idlePool());
+    }
+    if (!together_) totals_.seconds += seconds;  // else others have gone on meanwhile
+    estimateSeconds_ = totals_.seconds;
+}
+
+ErrorNow Session::errorNow() const {
+    const std::string measure = options_.until ? options_.until->measure : "mape";
+    const Measured& m = *report_.estimate.find(measure);
+    return {measure, m.error, estimateSeconds_, !m.doubt.empty()};
+}
+
+/// Whether --until is reached. A picture without light is black, and that is known.
+bool Session::isAccurate() {
+    if (!options_.until || !isMeasured(film_.iterations())) return false;
+    // Ranks bring such blocks as a whole.
+    if (maker_.blocksAreWhole() && film_.inBlock() > 0) return false;
+    if (stage_.scene->lights().empty()) return true;
+    const Measured& m = *report_.estimate.find(options_.until->measure);
+    if (!(m.error < options_.until->error)) return false;
+    if (!m.doubt.empty() && !doubtSaid_) {
+        doubtSaid_ = true;
+        progress_.remark("--until: cannot be promised yet: " + m.doubt);
+    }
+    return m.doubt.empty();
+}
+
+/// Whether --estimate has seen enough: some seconds, and more where they do not suffice.
+bool Session::isEstimated() const {
+    if (!options_.estimate || !isMeasured(film_.iterations())) return false;
+    const double seconds = report_.seconds,
+                 atLeast = options_.timeSeconds.value_or(kEstimateSeconds);
+    return seconds >= (report_.estimate.mape.doubt.empty() ? atLeast : 4.0 * atLeast);
+}
+
+int Session::printCost() {
+    const Measured& mape = report_.estimate.mape;
+    const AccuracyCost cost{options_.scene,     report_.method->name, film_.width(), film_.height(),
+                            report_.iterations, report_.setupSeconds, errorNow(),    mape.doubt};
+    if (!options_.common.json.empty()) writeJson(options_.common.json, costJson(cost));
+    std::fputs(costTable(cost).c_str(), stdout);
+    return report_.stopped == "interrupt" ? kInterruptedExit : 0;
+}
+
 /// Layers that no iteration changes: what the lens sees first, and what belongs to it.
 const LayeredImage& Session::still() {
     if (still_) return *still_;
-    const Stopwatch watch(report_.phaseSeconds["features"]);
     still_.emplace(film_.width(), film_.height());
-    setFeatures(*still_, renderFeatures(*stage_.scene, *stage_.camera, stage_.settings.crop,
-                                        options_.common.seed, pool_));
+    setFeatures(*still_, look_.features);
     for (const auto& asset : caches_.assets) {
         asset->draw(*still_, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
     }
@@ -389,6 +452,7 @@ void Session::save() {
     }
     const FilmSum sum = film_.sum(&pool_);
     report_.mean = sum.meanColour();
+    report_.estimate = estimateError(sum, look_.meter, &pool_);
     warnIfBlack();
     report_.verify = maker_.verified();
 

@@ -13,6 +13,7 @@
 #include "render/checkpoint.h"
 #include "render/crew.h"
 #include "render/curve_log.h"
+#include "render/first_look.h"
 #include "render/live/live_view.h"
 #include "render/options.h"
 #include "render/output.h"
@@ -27,8 +28,9 @@ class Session {
     /// All references must outlive the session. With more than one rank: on rank 0, while the others
     /// serve().
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-            Stage& stage, const Caches& caches, BlockMaker& maker, const Ranks& ranks,
-            const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress);
+            const Stage& stage, const Caches& caches, const FirstLook& look, BlockMaker& maker,
+            const Ranks& ranks, const ThreadPool& pool, const InterruptGuard& interrupt,
+            Progress& progress);
     ~Session();
 
     /// Renders and saves; what was written goes to stdout. Returns the exit code.
@@ -39,7 +41,12 @@ class Session {
     void describeStage() const;
     void goOn(Part part);
     void render();
-    std::string whyStop() const;
+    std::string whyStop();
+    void estimateErrorNow();
+    bool isAccurate();
+    bool isEstimated() const;
+    ErrorNow errorNow() const;
+    int printCost();
     bool mayBegin() const;
     void tell();
     void keep();
@@ -68,6 +75,7 @@ class Session {
 
     const Stage& stage_;
     const Caches& caches_;
+    const FirstLook& look_;
     BlockMaker& maker_;
     BlockPlan plan_;
     Film film_;
@@ -80,10 +88,12 @@ class Session {
     std::optional<LayeredImage> still_;     ///< layers that no iteration changes, once needed
     std::optional<BackgroundJob> refresh_;  ///< of the output
     std::optional<LiveView> live_;
-    std::string failure_;    ///< of log or checkpoint: a full disk must not cost the picture
-    std::uint64_t end_ = 0;  ///< iteration behind the last one; 0: none
-    Totals totals_;          ///< of iterations that are in the film
-    Totals ofBlocks_;        ///< of whole blocks alone
+    std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
+    std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
+    Totals totals_;                 ///< of iterations that are in the film
+    Totals ofBlocks_;               ///< of whole blocks alone
+    double estimateSeconds_ = 0.0;  ///< of the totals, when the error was last estimated
+    bool doubtSaid_ = false;
     RenderReport report_;
 };
 

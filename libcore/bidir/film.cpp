@@ -41,6 +41,17 @@ FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
     return sum;
 }
 
+void Film::measure(const ErrorMeter& meter) {
+    meter_ = &meter;
+    blocks_.measure(meter_, 0, plan_.iterations);
+    measureOpen();
+}
+
+/// Iterations of the open block: where it lies says which are worth comparing.
+void Film::measureOpen() {
+    open_.measure(meter_, block_ * plan_.iterations, 1);
+}
+
 void Film::add(std::span<const Rgb> pixels, const ThreadPool& threads) {
     auto one = std::make_shared<FilmSum>(FilmSum::ofIteration(pixels, width_, threads));
     add({inBlock_, 1, std::move(one)}, &threads);
@@ -57,6 +68,7 @@ void Film::add(SumTree::Node node, const ThreadPool* threads) {
     for (BlockLayers* layers : layers_) layers->clear();
     ++block_;
     inBlock_ = 0;
+    measureOpen();
 }
 
 FilmSum Film::openSum(const ThreadPool* threads) const {
@@ -86,6 +98,7 @@ Film::State Film::finalState(const ThreadPool& threads) const {
 
 void Film::restore(State state, const ThreadPool& threads) {
     block_ = state.openBlock;
+    measureOpen();
     for (SumTree::Node& node : state.blocks) {
         iterations_ += node.sum->iterations;
         blocks_.add(std::move(node), &threads);

@@ -64,6 +64,9 @@ class Film {
 
     /// Layers to sum up as well; they must outlive the film. Before the first iteration.
     void addLayers(BlockLayers& layers) { layers_.push_back(&layers); }
+    /// Compares the halves of what it adds up: FilmSum::differences. `meter` must outlive the film.
+    /// Before the first iteration.
+    void measure(const ErrorMeter& meter);
 
     /// The next iteration: `pixels` = width * height values. Ends the block with its last one.
     void add(std::span<const Rgb> pixels, const ThreadPool& threads);
@@ -101,10 +104,12 @@ class Film {
 
   private:
     FilmSum openSum(const ThreadPool* threads) const;
+    void measureOpen();
 
     int width_, height_;
     BlockPlan plan_;
     std::vector<BlockLayers*> layers_;
+    const ErrorMeter* meter_ = nullptr;
     SumTree blocks_{false}, open_;
     std::uint64_t block_, inBlock_ = 0, iterations_ = 0;
 };

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "libcore/base/parallel.h"
+#include "libcore/bidir/error_estimate.h"
 
 namespace lacuna {
 namespace {
@@ -62,6 +64,19 @@ void joinLayers(FilmSum& left, const FilmSum& right, const Joint& joint) {
             plane[i] = float(joint.mean(double(plane[i]), double(other[i])));
         }
     }
+}
+
+void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
+    const auto place =
+        std::ranges::lower_bound(list, d.iterations, {}, &HalfDifference::iterations);
+    if (place == list.end() || place->iterations != d.iterations) {
+        list.insert(place, d);
+        return;
+    }
+    place->nodes += d.nodes;
+    place->sum += d.sum;
+    place->squares += d.squares;
+    place->unevenness += d.unevenness;
 }
 
 /// Variance of the mean of weighted samples: their spread squared, over the sum of the weights and
@@ -136,23 +151,45 @@ void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool*
         left.wholeMean[c] = joint.mean(left.wholeMean[c], right.wholeMean[c]);
     }
     joinLayers(left, right, joint);
+    for (const HalfDifference& d : right.differences) addDifference(left.differences, d);
     left.iterations += right.iterations;
     left.samples = oneSample ? 1 : left.samples + right.samples;
+}
+
+void SumTree::measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations) {
+    meter_ = oneSample_ ? nullptr : meter;
+    first_ = first;
+    itemIterations_ = iterations;
 }
 
 void SumTree::add(Node node, const ThreadPool* threads) {
     nodes_.push_back(std::move(node));
     while (nodes_.size() >= 2) {
-        Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
+        const Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
         const bool siblings = left.size == right.size && left.begin + left.size == right.begin &&
                               left.begin % (2 * left.size) == 0;
         if (!siblings) return;
-        if (left.sum.use_count() > 1) left.sum = std::make_shared<FilmSum>(*left.sum);
-        std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read it
-        join(*left.sum, *right.sum, oneSample_, threads);
-        left.size *= 2;
-        nodes_.pop_back();
+        joinLast(threads);
     }
+}
+
+/// The last two nodes, which are siblings.
+void SumTree::joinLast(const ThreadPool* threads) {
+    Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
+    if (left.sum.use_count() > 1) left.sum = std::make_shared<FilmSum>(*left.sum);
+    std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read it
+    // What a node says depends on its range alone, whoever makes it. The last block may have fewer
+    // iterations than others.
+    const bool even = left.sum->iterations == right.sum->iterations;
+    const std::uint64_t end = first_ + (right.begin + right.size) * itemIterations_;
+    std::optional<HalfDifference> difference;
+    if (meter_ && even && ErrorMeter::wants(2 * left.sum->iterations, end)) {
+        difference = meter_->difference(*left.sum, *right.sum, threads);
+    }
+    join(*left.sum, *right.sum, oneSample_, threads);
+    if (difference) addDifference(left.sum->differences, *difference);
+    left.size *= 2;
+    nodes_.pop_back();
 }
 
 void SumTree::addTo(FilmSum& sum, const ThreadPool* threads) const {

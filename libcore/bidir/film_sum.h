@@ -15,10 +15,21 @@
 
 namespace lacuna {
 
+class ErrorMeter;
 class ThreadPool;
 
 /// Channels beside the picture, by name.
 using Layers = std::map<std::string, std::vector<float>>;
+
+/// How far the two halves of nodes of one size are apart (error_estimate.h): sums over the nodes.
+struct HalfDifference {
+    std::uint64_t iterations = 0;  ///< of a node
+    std::uint64_t nodes = 0;
+    double sum = 0.0;         ///< of the mean of |A - B| / 2 (R + e)
+    double squares = 0.0;     ///< of its square
+    double unevenness = 0.0;  ///< of the share of it that few places carry
+    friend bool operator==(const HalfDifference&, const HalfDifference&) = default;
+};
 
 /// The mean of a number of iterations, and how far they lie from it.
 struct FilmSum {
@@ -32,7 +43,8 @@ struct FilmSum {
     std::vector<Rgb> spread;
     /// The same of the picture's mean colour; squared.
     std::array<double, 3> wholeMean{}, wholeSquares{};
-    Layers layers;  ///< further means; a channel that is missing is zero
+    Layers layers;                            ///< further means; a channel that is missing is zero
+    std::vector<HalfDifference> differences;  ///< smaller nodes first
 
     /// An iteration's picture, row by row.
     static FilmSum ofIteration(std::span<const Rgb> pixels, int width, const ThreadPool& threads);
@@ -65,6 +77,9 @@ class SumTree {
     /// `oneSample`: all items are parts of one sample.
     explicit SumTree(bool oneSample) : oneSample_(oneSample) {}
 
+    /// Compares the halves of nodes from now on. Item i is `iterations` iterations from `first` + i
+    /// times that many on. Says nothing where all items are parts of one sample.
+    void measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations);
     /// A node behind all others. `threads` may be null.
     void add(Node node, const ThreadPool* threads);
     /// What a copy of this holds stays as it is.
@@ -75,7 +90,11 @@ class SumTree {
     void addTo(FilmSum& sum, const ThreadPool* threads) const;
 
   private:
+    void joinLast(const ThreadPool* threads);
+
     bool oneSample_;
+    const ErrorMeter* meter_ = nullptr;
+    std::uint64_t first_ = 0, itemIterations_ = 1;
     std::vector<Node> nodes_;
 };
 

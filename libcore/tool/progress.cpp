@@ -118,6 +118,7 @@ std::string Progress::line() const {
     }
     if (i.limit > 0 || i.timeLimit > 0.0)
         text.append("  ").append(durationText(left)).append(" left");
+    if (!i.accuracy.empty()) text.append("  ").append(i.accuracy);
     return text;
 }
 

@@ -37,6 +37,7 @@ class Progress {
         std::uint64_t rays = 0;   ///< so far
         double seconds = 0.0;     ///< so far
         double timeLimit = 0.0;   ///< seconds; 0: none
+        std::string accuracy;     ///< the error now and when it will be less; empty: not known
     };
     void iterations(const Iterations& iterations);
 

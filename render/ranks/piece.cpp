@@ -15,9 +15,10 @@ const std::atomic<bool> kNever{false};
 
 }  // namespace
 
-PieceMaker::PieceMaker(BlockMaker& maker, const PixelRect& crop,
+PieceMaker::PieceMaker(BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
                        const std::atomic<bool>& interrupted, const ThreadPool& pool)
     : maker_(maker),
+      meter_(meter),
       width_(crop.width()),
       height_(crop.height()),
       interrupted_(interrupted),
@@ -43,6 +44,7 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
         if (inBlock == 0) totals.add(ofWarmUp);
     }
     SumTree tree(plan.areSamples);
+    tree.measure(&meter_, block * plan.iterations, 1);
     for (std::uint64_t i = 0; i < work.count; ++i) {
         const bool must = work.first && i == 0;
         if (!must && stop()) break;

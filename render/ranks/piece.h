@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libcore/bidir/error_estimate.h"
 #include "render/block_maker.h"
 #include "render/part.h"
 
@@ -21,8 +22,8 @@ struct Work {
 class PieceMaker {
   public:
     /// All references must outlive it. `interrupted`: ends a piece in the middle of an iteration.
-    PieceMaker(BlockMaker& maker, const PixelRect& crop, const std::atomic<bool>& interrupted,
-               const ThreadPool& pool);
+    PieceMaker(BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
+               const std::atomic<bool>& interrupted, const ThreadPool& pool);
 
     /// The iterations as nodes of their block's tree, which is the part's open one. Fewer than asked
     /// for after an interrupt, or where `stop`, asked between two iterations, says so.
@@ -30,6 +31,7 @@ class PieceMaker {
 
   private:
     BlockMaker& maker_;
+    const ErrorMeter& meter_;
     const int width_, height_;
     const std::atomic<bool>& interrupted_;
     const ThreadPool& pool_;

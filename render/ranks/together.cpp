@@ -44,7 +44,9 @@ std::uint64_t pieceSize(std::uint64_t next, std::uint64_t end, const BlockPlan& 
     double wanted = iterationSeconds > 0.0 ? seconds / iterationSeconds : 1.0;
     if (end > 0) wanted = std::min(wanted, double(end - next) / (2.0 * ranks));
     const auto most = std::uint64_t(std::clamp(wanted, 1.0, double(left)));
-    const std::uint64_t size = std::bit_floor(most);
+    // Behind n = 2^k iterations errors are looked at every n / 4.
+    const std::uint64_t measured = std::max<std::uint64_t>(1, std::bit_floor(next) / 4);
+    const std::uint64_t size = std::min(std::bit_floor(most), measured);
     return inBlock == 0 ? size : std::min(size, inBlock & (~inBlock + 1));
 }
 
@@ -109,14 +111,16 @@ class LocalMember {
     std::thread thread_{[this] { run(); }};
 };
 
-Together::Together(const Ranks& ranks, BlockMaker& maker, const PixelRect& crop, Limits limits,
-                   const InterruptGuard& interrupt, const ThreadPool& pool)
+Together::Together(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter,
+                   const PixelRect& crop, Limits limits, const InterruptGuard& interrupt,
+                   const ThreadPool& pool)
     : ranks_(ranks),
       limits_(limits),
       interruptedHere_(interrupt.requested()),
       plan_(maker.plan()),
       wholeBlocks_(maker.blocksAreWhole()),
-      local_(std::make_unique<LocalMember>(PieceMaker(maker, crop, interrupt.requested(), pool))),
+      local_(std::make_unique<LocalMember>(
+          PieceMaker(maker, meter, crop, interrupt.requested(), pool))),
       work_(std::size_t(ranks.size())) {}
 
 Together::~Together() {
@@ -230,9 +234,9 @@ bool Together::advance(Film& film, Totals& totals) {
     return true;
 }
 
-void serve(const Ranks& ranks, BlockMaker& maker, const PixelRect& crop,
+void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
            const InterruptGuard& interrupt, const ThreadPool& pool) {
-    PieceMaker pieces(maker, crop, interrupt.requested(), pool);
+    PieceMaker pieces(maker, meter, crop, interrupt.requested(), pool);
     bool ended = false;
     const auto stop = [&] {
         const std::optional<Ranks::Letter> letter = ranks.poll();

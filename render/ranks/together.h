@@ -15,7 +15,8 @@
 namespace lacuna {
 
 /// How many of the next iterations a rank gets: whole blocks where that must be, else a node of the
-/// block's tree that takes about `seconds`.
+/// block's tree that takes about `seconds`, and no picture past a count at which errors are looked at
+/// (isMeasured).
 /// `next`: the first of them; `end`: behind the last of the render, 0 if there is none.
 std::uint64_t pieceSize(std::uint64_t next, std::uint64_t end, const BlockPlan& plan,
                         bool wholeBlocks, int ranks, double seconds, double iterationSeconds);
@@ -31,8 +32,8 @@ class Together final : public Crew {
         double seconds = 0.0;
     };
     /// Of rank 0. All references must outlive the crew.
-    Together(const Ranks& ranks, BlockMaker& maker, const PixelRect& crop, Limits limits,
-             const InterruptGuard& interrupt, const ThreadPool& pool);
+    Together(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
+             Limits limits, const InterruptGuard& interrupt, const ThreadPool& pool);
     /// Waits for all ranks and lets them end.
     ~Together() override;
 
@@ -68,7 +69,7 @@ class Together final : public Crew {
 };
 
 /// What ranks other than 0 do until rank 0 lets them end.
-void serve(const Ranks& ranks, BlockMaker& maker, const PixelRect& crop,
+void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
            const InterruptGuard& interrupt, const ThreadPool& pool);
 
 }  // namespace lacuna

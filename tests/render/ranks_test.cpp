@@ -45,13 +45,22 @@ TEST(PieceSize, isANodeOfTheBlocksTree) {
 }
 
 TEST(PieceSize, isWhatTheTimeIsWorth) {
-    EXPECT_EQ(pieceSize(0, 0, plan(64), false, 4, 2.0, 0.1), 16u);
-    EXPECT_EQ(pieceSize(0, 0, plan(64), false, 4, 2.0, 3.0), 1u);
-    EXPECT_EQ(pieceSize(0, 0, plan(64), false, 4, -1.0, 0.1), 1u);  // the time is over
-    EXPECT_EQ(pieceSize(0, 0, plan(64), false, 4, 2.0, 0.0), 1u);   // nothing is known
-    EXPECT_EQ(pieceSize(0, 0, plan(64), false, 4, 30.0, 1e-9), 64u);
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 0.1), 16u);
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 3.0), 1u);
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, -1.0, 0.1), 1u);  // the time is over
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 0.0), 1u);   // nothing is known
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 30.0, 1e-9), 64u);
     // The last iterations are shared out.
     EXPECT_EQ(pieceSize(32, 64, plan(64), false, 4, 30.0, 0.01), 4u);
+}
+
+/// Whoever stops by the error stops where one process would.
+TEST(PieceSize, ofNoneGoesPastACountAtWhichErrorsAreLookedAt) {
+    for (std::uint64_t next = 0; next < 1000;) {
+        const std::uint64_t end = next + pieceSize(next, 0, plan(4096), false, 2, 30.0, 1e-9);
+        for (std::uint64_t n = next + 1; n < end; ++n) ASSERT_FALSE(isMeasured(n)) << n;
+        next = end;
+    }
 }
 
 TEST(PieceSize, isAWholeBlockWhereThatMustBe) {
@@ -172,6 +181,24 @@ TEST_F(RenderRanks, goOnFromACheckpointWithAnotherNumberOfThem) {
         ASSERT_EQ(run(command(method, 21)).exitCode, 0);
         ASSERT_EQ(runRanks(2, command(method, 30)).exitCode, 0);
         ASSERT_EQ(runRanks(3, command(method, 40)).exitCode, 0);
+        expectSamePicture("out.exr", "whole.exr");
+    }
+}
+
+TEST_F(RenderRanks, stopAtAnErrorWhereOneProcessDoes) {
+    for (const char* method : {"bpt", "risbpt"}) {
+        const std::string command = quick(method,
+                                          "--quiet --threads 1 --json @o.json --until "
+                                          "mape=0.1 --iterations 4000");
+        ASSERT_EQ(run(command).exitCode, 0);
+        const nlohmann::json one = json("o.json");
+        EXPECT_EQ(one["stopped"], "error");
+        std::filesystem::rename(path("out.exr"), path("whole.exr"));
+        ASSERT_EQ(runRanks(3, command).exitCode, 0);
+        const nlohmann::json many = json("o.json");
+        EXPECT_EQ(many["stopped"], "error");
+        EXPECT_EQ(many["iterations"], one["iterations"]);
+        EXPECT_EQ(many["estimated_error"], one["estimated_error"]);
         expectSamePicture("out.exr", "whole.exr");
     }
 }

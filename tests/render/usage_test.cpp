@@ -49,6 +49,8 @@ TEST_F(RenderUsage, HelpNamesEveryOption) {
                                "--display-server",
                                "--display-layers",
                                "--write-every",
+                               "--until",
+                               "--estimate",
                                "Exit codes"}) {
         EXPECT_NE(o.out.find(option), std::string::npos) << option;
     }

@@ -1,0 +1,294 @@
+#include "libcore/bidir/error_estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "libcore/base/parallel.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::size_t kPlaces = 1 << 16;  // about as many
+constexpr std::size_t kPlacesPerTask = 1 << 10;
+constexpr int kRadius = 3;       // of the window, 49 pixels: a bit each
+constexpr double kAlike = 0.05;  // difference of albedo per channel, of normals squared
+
+/// e of the error measures is 0.01 of the mean.
+constexpr double kEpsilon = 0.01;
+
+/// Sizes of nodes that are looked at: the largest, its half, quarter and eighth.
+constexpr std::uint64_t kSizes = 4;
+/// An eighth has to be more than an iteration.
+constexpr std::uint64_t kFewestIterations = 16;
+/// For a variance.
+constexpr std::uint64_t kFewestSamples = 16;
+/// Of pixels times iterations: what is rarer has not been seen.
+constexpr double kFewestPaths = 1 << 17;
+/// How many standard deviations of the picture's own error are added to what is said: 19 of 20.
+constexpr double kCaution = 1.645;
+/// Where so much of the error is borne by so few that it may be anything.
+constexpr double kMostUneven = 0.2;
+/// What the model leaves out: the largest bias that was seen
+/// (tests/results/until-2026-11-24.md).
+constexpr double kSafety = 1.05;
+
+std::array<double, 3> channels(const Rgb& c) {
+    return {double(c.r), double(c.g), double(c.b)};
+}
+
+double epsilonOf(const FilmSum& left, const FilmSum& right) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) sum += left.wholeMean[c] + right.wholeMean[c];
+    return kEpsilon * sum / 6.0;
+}
+
+bool alike(const FeatureLayers& f, std::size_t a, std::size_t b) {
+    const auto albedo = channels(f.albedo.pixels[a] - f.albedo.pixels[b]);
+    const auto normal = channels(f.normal.pixels[a] - f.normal.pixels[b]);
+    double squared = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (std::fabs(albedo[c]) > kAlike) return false;
+        squared += normal[c] * normal[c];
+    }
+    return squared <= kAlike;
+}
+
+}  // namespace
+
+ErrorMeter::ErrorMeter(const FeatureLayers& features) : width_(features.albedo.width) {
+    const int width = width_, height = features.albedo.height;
+    const double pixels = double(width) * double(height);
+    const int step = std::max(1, int(std::ceil(std::sqrt(pixels / double(kPlaces)))));
+    for (int y = std::min(step / 2, height - 1); y < height; y += step) {
+        for (int x = std::min(step / 2, width - 1); x < width; x += step) {
+            Place place{std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x), 0};
+            int bit = 0;
+            for (int dy = -kRadius; dy <= kRadius; ++dy) {
+                for (int dx = -kRadius; dx <= kRadius; ++dx, ++bit) {
+                    const int nx = x + dx, ny = y + dy;
+                    const bool inside = nx >= 0 && ny >= 0 && nx < width && ny < height;
+                    if (!inside || (dx == 0 && dy == 0)) continue;
+                    const auto other = std::size_t(ny) * std::size_t(width) + std::size_t(nx);
+                    if (alike(features, place.pixel, other)) place.alike |= std::uint64_t(1) << bit;
+                }
+            }
+            places_.push_back(place);
+        }
+    }
+}
+
+/// The mean of both pictures over the pixels around that show the same; without the pixel itself,
+/// whose noise would make its own error small. Where there are none, the pixel.
+Vec3d ErrorMeter::smoothed(std::span<const Rgb> left, std::span<const Rgb> right,
+                           const Place& place) const {
+    Vec3d sum;
+    const auto add = [&](std::size_t pixel) {
+        const auto a = channels(left[pixel]), b = channels(right[pixel]);
+        sum += Vec3d{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+    };
+    for (std::uint64_t bits = place.alike; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits), side = 2 * kRadius + 1;
+        add(std::size_t(std::int64_t(place.pixel) + (bit / side - kRadius) * std::int64_t(width_) +
+                        (bit % side - kRadius)));
+    }
+    if (place.alike == 0) add(place.pixel);
+    return sum * (0.5 / std::max(1, std::popcount(place.alike)));
+}
+
+/// The mean of term(place) over all places, in a fixed order.
+template <class Term>
+ErrorMeter::Mean ErrorMeter::mean(const ThreadPool* threads, const Term& term) const {
+    struct Sums {
+        double terms = 0.0, squares = 0.0;
+    };
+    std::vector<Sums> sums((places_.size() + kPlacesPerTask - 1) / kPlacesPerTask);
+    const auto task = [&](std::size_t t) {
+        const std::size_t end = std::min(places_.size(), (t + 1) * kPlacesPerTask);
+        for (std::size_t i = t * kPlacesPerTask; i < end; ++i) {
+            const double value = term(places_[i]);
+            sums[t].terms += value;
+            sums[t].squares += value * value;
+        }
+    };
+    if (threads && sums.size() > 1) {
+        threads->forEach(sums.size(), task);
+    } else {
+        for (std::size_t t = 0; t < sums.size(); ++t) task(t);
+    }
+    Sums all;
+    for (const Sums& s : sums) {
+        all.terms += s.terms;
+        all.squares += s.squares;
+    }
+    return {all.terms / double(places_.size()),
+            all.terms > 0.0 ? std::sqrt(all.squares) / all.terms : 0.0};
+}
+
+HalfDifference ErrorMeter::difference(const FilmSum& left, const FilmSum& right,
+                                      const ThreadPool* threads) const {
+    const double e = epsilonOf(left, right);
+    const Mean m = mean(threads, [&](const Place& place) {
+        const Vec3d around = smoothed(left.mean, right.mean, place);
+        const auto a = channels(left.mean[place.pixel]), b = channels(right.mean[place.pixel]);
+        double sum = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double d = std::fabs(a[c] - b[c]);
+            if (d > 0.0) sum += d / (2.0 * (around[c] + e));
+        }
+        return sum / 3.0;
+    });
+    return {left.iterations + right.iterations, 1, m.value, m.value * m.value, m.unevenness};
+}
+
+ErrorMeter::Squares ErrorMeter::squares(const FilmSum& sum, const ThreadPool* threads) const {
+    if (sum.samples < 2 || sum.spread.empty()) return {};
+    const double e = epsilonOf(sum, sum);
+    const double scale = 1.0 / (double(sum.iterations) * double(sum.samples - 1));
+    const auto term = [&](bool relative) {
+        return [this, &sum, e, scale, relative](const Place& place) {
+            const auto s = channels(sum.spread[place.pixel]);
+            const Vec3d r = relative ? smoothed(sum.mean, sum.mean, place) : Vec3d{};
+            double total = 0.0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double v = s[c] * s[c] * scale;
+                if (v > 0.0) total += relative ? v / (r[c] * r[c] + e * e) : v;
+            }
+            return total / 3.0;
+        };
+    };
+    return {mean(threads, term(false)), mean(threads, term(true))};
+}
+
+namespace {
+
+/// h(m) = g m^(-1/2) + c: noise that falls, and rare spikes that do not.
+struct Model {
+    double g = 0.0, c = 0.0;
+};
+
+double h(const HalfDifference& d) {
+    return d.sum / double(d.nodes);
+}
+
+/// Least squares of relative distances, a node a measurement.
+Model fit(std::span<const HalfDifference> sizes) {
+    double xx = 0.0, x1 = 0.0, one = 0.0, xh = 0.0, h1 = 0.0;
+    for (const HalfDifference& d : sizes) {
+        const double x = 1.0 / std::sqrt(double(d.iterations)), y = h(d);
+        if (!(y > 0.0)) continue;
+        const double w = double(d.nodes) / (y * y);
+        xx += w * x * x;
+        x1 += w * x;
+        one += w;
+        xh += w * x * y;
+        h1 += w * y;
+    }
+    const double determinant = xx * one - x1 * x1;
+    Model m;
+    if (determinant > 0.0)
+        m = {(xh * one - h1 * x1) / determinant, (h1 * xx - xh * x1) / determinant};
+    if (xx > 0.0 && m.c <= 0.0) m = {xh / xx, 0.0};
+    if (one > 0.0 && m.g < 0.0) m = {0.0, h1 / one};
+    return m;
+}
+
+/// Relative standard deviation of a node's h among those of its size: more than the pixels' own
+/// where they share light paths.
+double scatter(std::span<const HalfDifference> sizes) {
+    double squares = 0.0, freedom = 0.0;
+    for (const HalfDifference& d : sizes) {
+        if (d.nodes < 2 || !(d.sum > 0.0)) continue;
+        const double mean = h(d);
+        squares += std::max(0.0, d.squares / (mean * mean) - double(d.nodes));
+        freedom += double(d.nodes - 1);
+    }
+    return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+}
+
+std::string doubtOf(double unevenness, std::size_t places) {
+    if (!(unevenness > kMostUneven)) return {};
+    char text[120];
+    std::snprintf(text, sizeof text, "as good as %.0f of %zu pixels carry the error",
+                  std::ceil(1.0 / (unevenness * unevenness)), places);
+    return text;
+}
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+const char* const kBlack = "a black picture";
+const char* const kTooFew = "too few iterations";
+const char* const kUnseen = "too few paths to have met rare bright ones";
+const char* const kNotFinite = "pixels that are not finite";
+
+/// Of what is at hand: `error` with what it may be above it.
+Measured measured(double error, double uncertainty, double unevenness, std::size_t places) {
+    if (!std::isfinite(error)) return {error, kNotFinite};
+    return {error * kSafety * (1.0 + kCaution * uncertainty), doubtOf(unevenness, places)};
+}
+
+bool seesLittle(const FilmSum& sum) {
+    return double(sum.iterations) * double(sum.mean.size()) < kFewestPaths;
+}
+
+Measured mapeOf(const FilmSum& sum, std::size_t places) {
+    if (sum.differences.empty()) return {kUnknown, kTooFew};
+    const std::uint64_t largest = sum.differences.back().iterations;
+    const auto begin = std::ranges::lower_bound(sum.differences, largest >> (kSizes - 1), {},
+                                                &HalfDifference::iterations);
+    const std::span<const HalfDifference> sizes(begin, sum.differences.end());
+    const Model model = fit(sizes);
+    const double noise = model.g / std::sqrt(double(sum.iterations)), half = noise + model.c;
+    // Of spikes of which a pixel has none or one, halves show a half. Where pixels have several,
+    // h falls more slowly than noise as well, but shows nearly all.
+    const double error = half > 0.0 ? half + model.c * model.c / half : half;
+    double nodes = 0.0, unevenness = 0.0;
+    for (const HalfDifference& d : sizes) {
+        nodes += double(d.nodes);
+        unevenness = d.unevenness / double(d.nodes);  // of the largest
+    }
+    const double s = std::max(scatter(sizes), unevenness);
+    Measured m = measured(error, s * std::sqrt(1.0 + 1.0 / nodes), unevenness, places);
+    if (sizes.size() < kSizes || sum.iterations < kFewestIterations) m.doubt = kTooFew;
+    if (m.doubt.empty() && seesLittle(sum)) m.doubt = kUnseen;
+    return m;
+}
+
+}  // namespace
+
+const Measured* ErrorEstimate::find(std::string_view measure) const {
+    return measure == "mape"     ? &mape
+           : measure == "relmse" ? &relmse
+           : measure == "rmse"   ? &rmse
+                                 : nullptr;
+}
+
+ErrorEstimate estimateError(const FilmSum& sum, const ErrorMeter& meter,
+                            const ThreadPool* threads) {
+    const bool black = sum.wholeMean == std::array<double, 3>{};
+    if (sum.iterations == 0 || black) {
+        const Measured none{sum.iterations == 0 ? kUnknown : 0.0, kBlack};
+        return {none, none, none};
+    }
+    const ErrorMeter::Squares squares = meter.squares(sum, threads);
+    const auto ofMean = [&](const ErrorMeter::Mean& m, bool root) {
+        const double value = root ? std::sqrt(m.value) : m.value;
+        Measured result =
+            measured(value, (root ? 0.5 : 1.0) * m.unevenness, m.unevenness, meter.places());
+        if (sum.samples < 2) result.error = kUnknown;
+        if (sum.samples < kFewestSamples) result.doubt = kTooFew;
+        if (result.doubt.empty() && seesLittle(sum)) result.doubt = kUnseen;
+        return result;
+    };
+    return {mapeOf(sum, meter.places()), ofMean(squares.relative, false),
+            ofMean(squares.absolute, true)};
+}
+
+bool isMeasured(std::uint64_t iterations) {
+    if (iterations < 4) return false;
+    return (iterations & ((std::uint64_t(1) << (std::bit_width(iterations) - 3)) - 1)) == 0;
+}
+
+}  // namespace lacuna
