@@ -9,6 +9,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/bidir/features.h"
+#include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "render/black_picture.h"
 #include "render/block_plan.h"
@@ -365,7 +366,11 @@ void Session::refreshOutput() {
     RenderReport now = report_;
     now.statistics = totals_.statistics;
     refresh_->begin([this, image = output(now, film_.sum(idlePool()))] {
-        writeImage(options_.output, image, options_.exposure);
+        if (endingOf(options_.output) == ".exr") {
+            writeExr(options_.output, image, ExrCompression::None);  // the last one is compressed
+        } else {
+            writeImage(options_.output, image, options_.exposure);
+        }
     });
 }
 

@@ -234,6 +234,24 @@ FAULTS = [
           "if (inBlock == 0) totals.add(ofWarmUp);", "totals.add(ofWarmUp);",
           {"render": "RenderRanks.makeThePictureOfOneProcess"}),
 
+    # Live view
+    Fault("live-view-goes-on-with-the-old", "an older picture is sent to its end before the last one",
+          "render/live/live_view.cpp",
+          "if (superseded()) return;", "if (superseded() && picture.channels().empty()) return;",
+          {"render": "LiveViews.sendTheLastPictureInPlaceOfAnOlderOne"}),
+    Fault("live-view-waits-for-who-hangs", "the end waits for a viewer that takes nothing",
+          "render/live/live_view.cpp",
+          "return !end_ || Clock::now() < *end_;", "return !end_ || Clock::now() < *end_ + timing_.stall;",
+          {"render": "LiveViews.doNotWaitForAViewerThatHangs"}),
+    Fault("live-view-asks-too-often", "what a picture costs does not put off the next one",
+          "render/live/live_view.cpp",
+          "std::max(timing_.every, cost / timing_.share)", "timing_.every + 0.0 * cost",
+          {"render": "LiveViews.costNoMoreThanTheirShare"}),
+    Fault("tiles-one-row-late", "each tile is shown one row further down",
+          "render/live/tev_packets.cpp",
+          "{tile.x0, tile.y0, tile.width(), tile.height()}", "{tile.x0, tile.y0 + 1, tile.width(), tile.height()}",
+          {"render": "TevPackets.areWrittenAsTevReadsThem:RenderLive.theViewerEndsWithThePictureOfTheFile"}),
+
     # Resampling
     Fault("light-tree-without-cosines", "a cut does not ask where lamps face",
           "libcore/resampling/light_tree.cpp",
