@@ -245,7 +245,9 @@ void Session::render() {
     }
     tell();
     report_.statistics = totals_.statistics;
-    if (together_) report_.receivedBytes = together_->receivedBytes();
+    if (!together_) return;
+    report_.receivedBytes = together_->receivedBytes();
+    report_.phaseSeconds["pieces"] = together_->piecesSeconds();
 }
 
 /// At set times only, from what a checkpoint holds as well: where a render stops by its error, it

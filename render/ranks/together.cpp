@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "libcore/base/error.h"
+#include "render/stopwatch.h"
 
 namespace lacuna {
 namespace {
@@ -172,6 +173,7 @@ bool Together::receive() {
             work_[std::size_t(letter->from)].reset();
             throwFailure(ranks_.name(letter->from), textOf(*letter));
         }
+        const Stopwatch watch(piecesSeconds_);
         receivedBytes_ += letter->bytes.size();
         take(letter->from, partOf(letter->bytes));
     }
@@ -228,6 +230,7 @@ bool Together::advance(Film& film, Totals& totals) {
     }
     Part part = std::move(found->second);
     made_.erase(found);
+    const Stopwatch watch(piecesSeconds_);
     // The pool is busy with a piece: this thread adds on its own.
     for (SumTree::Node& node : part.sums.open) film.add(std::move(node), nullptr);
     totals.statistics.add(part.statistics);

@@ -44,6 +44,8 @@ class Together final : public Crew {
     double iterationSeconds() const override { return iterationSeconds_; }
     /// That came from other ranks.
     std::uint64_t receivedBytes() const { return receivedBytes_; }
+    /// That rank 0 spent with reading and adding pieces.
+    double piecesSeconds() const { return piecesSeconds_; }
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -65,6 +67,7 @@ class Together final : public Crew {
     bool stopped_ = false, interrupted_ = false;
     double iterationSeconds_ = 0.0;
     std::uint64_t receivedBytes_ = 0;
+    double piecesSeconds_ = 0.0;
     Clock::time_point told_ = Clock::now();  ///< up to when time is counted
 };
 

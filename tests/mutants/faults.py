@@ -221,10 +221,10 @@ FAULTS = [
           {"render": "RenderPieces.partsThatDoNotFitAreRefused"}),
 
     # Ranks
-    Fault("pieces-in-any-order", "rank 0 adds the pieces as they come",
-          "render/ranks/together.cpp",
-          "made_.find(film.nextIteration())", "made_.begin()",
-          {"render": "RenderRanks.makeThePictureOfOneProcess:RenderRanks.goOnFrom*"}),
+    Fault("late-pieces-count", "who stops by the error keeps what other ranks have made meanwhile",
+          "render/session.cpp",
+          'const bool more = report_.stopped == "time" ||', 'const bool more = report_.stopped == "error" ||',
+          {"render": "RenderRanks.stopAtAnErrorWhereOneProcessDoes"}),
     Fault("pieces-across-the-tree", "a piece is no node of its block's tree",
           "render/ranks/together.cpp",
           "inBlock == 0 ? size :", "inBlock + 1 > 0 ? size :",
