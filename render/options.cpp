@@ -114,6 +114,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         "(distance along the viewing axis, 0 where nothing is hit), variance (of the mean),\n"
         "technique layers, and in the header how it was made; with --crop it has the size of the\n"
         "crop, `crop` in the header says where.\n"
+        "mpirun -n P lacuna-render ... makes the same picture with P processes.\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene or an image cannot be\n"
         "used, 130 interrupted.");
 }

@@ -243,6 +243,29 @@ TEST_F(RenderPieces, aFullDiskCostsTheNewCheckpointAndNothingElse) {
     EXPECT_TRUE(temporaries().empty());
 }
 
+/// A save takes long then: the render goes on beside it, and a kill in its middle leaves the
+/// last file.
+TEST_F(RenderPieces, aSlowDiskCostsNeitherPictureNorCheckpoint) {
+    const auto command = [&](const std::string& more) {
+        return quick("bpt", "--quiet --width 64 --height 48 --block-iterations 8 " + more);
+    };
+    ASSERT_EQ(run(command("--iterations 120")).exitCode, 0);
+    std::filesystem::rename(path("out.exr"), path("whole.exr"));
+    const std::string saving = "--checkpoint @ck --checkpoint-every 0.001s ";
+    ASSERT_EQ(run(command(saving + "--iterations 3")).exitCode, 0);
+    const std::string tool =
+        std::string("env LD_PRELOAD=") + LACUNA_SLOW_DISK + " " + LACUNA_RENDER;
+    for (int i = 0; i < 3; ++i) {
+        runAndSignal(command(saving + "--iterations 120"), {SIGKILL}, milliseconds(250 + 150 * i),
+                     tool.c_str());
+        EXPECT_NO_THROW(readExrLayers(path("ck")));
+    }
+    const Outcome o = run(command(saving + "--iterations 120"), tool.c_str());
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    expectSamePicture("out.exr", "whole.exr");
+    EXPECT_TRUE(temporaries().empty());
+}
+
 TEST_F(RenderPieces, partsThatDoNotFitAreRefused) {
     const std::string common = quick("bpt", "--quiet --block-iterations 2 --iterations 12");
     const auto part = [&](const std::string& name, const std::string& more) {
