@@ -1,6 +1,6 @@
 """How fast several ranks are, and what would limit more of them: writes a page of tests/results.
 
-    python3 tests/measure/ranks.py build/render/lacuna-render tests/results/ranks-DATE.md
+    python3 tests/calibration/ranks.py build/render/lacuna-render tests/results/ranks-DATE.md
 
 Renders with 1, 2 and 4 ranks of one thread each, in turn, and takes the median of the ratios of
 three rounds. The rest is arithmetic with what was measured, and says so.
@@ -107,7 +107,7 @@ def page(found, program):
     return "\n".join([
         "# Several ranks: how fast, and what would limit more", "",
         f"Date {datetime.date.today()}, commit {commit}, {platform.machine()}, {os.cpu_count()} "
-        f"processors. `python3 tests/measure/ranks.py {program} PAGE`.", "",
+        f"processors. `python3 tests/calibration/ranks.py {program} PAGE`.", "",
         "Door, 320 x 180, 32 iterations, one thread per rank, all ranks on this machine; with more "
         "ranks than processors they share them. Three rounds in turn; medians, lowest and highest. "
         "Setup is apart "
