@@ -1,6 +1,6 @@
 """How fast several ranks are, and what would limit more of them: writes a page of tests/results.
 
-    python3 tests/calibration/ranks.py build/render/lacuna-render tests/results/ranks-DATE.md
+    python3 tests/calibration/ranks.py build/render/lacuna-render PAGE
 
 Renders with 1, 2 and 4 ranks of one thread each, in turn, and takes the median of the ratios of
 three rounds. The rest is arithmetic with what was measured, and says so.
