@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether `lacuna-render --until` keeps what it promises; Python's standard library only.
 
-  python3 tests/calibration/until.py -o out/until --summary tests/results/until-DATE.md
+  python3 tests/calibration/until.py -o out/until --summary tests/results/until-2026-11-24.md
 
 Renders small pictures of twelve scenes by every row without bias until an error is reached, and compares each with a
 reference: bidirectional path tracing of another seed. The constants of libcore/bidir/error_estimate.cpp were chosen on the
