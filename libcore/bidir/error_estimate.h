@@ -57,7 +57,7 @@ class ErrorMeter {
 struct Measured {
     double error = 0.0;
     /// Why no promise can be made of it yet; empty: the error is at most a tenth above `error` in 95
-    /// of 100 pictures (tests/results/README.md, until).
+    /// of 100 pictures (theory.md, "The error without a reference").
     std::string doubt;
 };
 

@@ -39,12 +39,12 @@ TUNED = {
     "door": [],
     "ring-caustic": [],
     "nave": ["--crop", "8,56,4,32"],
-    "court": [],
+    "kitchen-glass": [],
     "light-mesh-instanced": ["--env", "scenes/sky.hdr", "--env-scale", "0.2"],
 }
 JUDGES = {
+    "court": [],
     "bedroom-curtain": [],
-    "kitchen-glass": [],
     "glossy-room": [],
     "drapery-hall": [],
     "classroom-windows": ["--env-rotate", "40", "--env", "scenes/sky.hdr"],
