@@ -13,7 +13,8 @@
 namespace lacuna::test {
 namespace {
 
-constexpr double kSmallError = 0.0009, kLargeError = 0.0006;
+// What is off by .8 % is seen in 99 of 100 runs: the bound lies at .52 %.
+constexpr double kSmallError = 0.0010, kLargeError = 0.0006;
 
 /// Iterations until the mean is known to `relativeError`.
 Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, double relativeError,
