@@ -1,11 +1,11 @@
 #include "render/accuracy.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
+#include "libcore/base/number_text.h"
 #include "libcore/tool/progress.h"
 
 namespace lacuna {
@@ -31,18 +31,16 @@ std::string figure(const std::string& measure, double error, const char* digits)
 
 UntilRequest parseUntil(const std::string& option) {
     const std::size_t sign = option.find('=');
-    UntilRequest request{option.substr(0, sign), 0.0};
-    const std::string number = sign == std::string::npos ? "" : option.substr(sign + 1);
-    const char* const last = number.data() + number.size();
-    const auto [end, error] = std::from_chars(number.data(), last, request.error);
-    if (!ErrorEstimate{}.find(request.measure) || error != std::errc{} || end != last ||
-        !(request.error > 0.0) || !std::isfinite(request.error)) {
+    const std::string measure = option.substr(0, sign);
+    const std::optional<double> error =
+        parseNumber(sign == std::string::npos ? "" : option.substr(sign + 1));
+    if (!ErrorEstimate{}.find(measure) || !error || !(*error > 0.0)) {
         throw UsageError(
             "--until: expected mape, relmse or rmse and an error above 0 such as mape=0.05, found "
             "'" +
             option + "'");
     }
-    return request;
+    return {measure, *error};
 }
 
 double ErrorNow::secondsTo(double bound) const {

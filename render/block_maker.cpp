@@ -1,12 +1,9 @@
 #include "render/block_maker.h"
 
+#include "libcore/base/stopwatch.h"
 #include "render/block_plan.h"
-#include "render/stopwatch.h"
 
 namespace lacuna {
-namespace {
-const std::atomic<bool> kNever{false};
-}
 
 BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                        Stage& stage, const Caches& caches, const ThreadPool& pool)
@@ -20,8 +17,8 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
                                                     *method_, stage.settings, pool);
     const PixelRect& crop = stage.settings.crop;
     if (options.techniques) {
-        techniques_ = std::make_unique<TechniqueFilm>(crop.width(), crop.height(),
-                                                      stage.settings.limits.maxDepth);
+        techniques_ = std::make_unique<TechniqueFilm>(
+            crop.width(), crop.height(), stage.settings.limits.maxDepth, plan_.areSamples);
         integrator_->delivery().setTechniqueFilm(techniques_.get());
         layers_.push_back(techniques_.get());
     }
@@ -53,19 +50,26 @@ std::optional<WeightVerifier::Result> BlockMaker::verified() const {
     return verifier_->result();
 }
 
-bool BlockMaker::beginBlock(std::uint64_t block, const std::atomic<bool>& cancel, Totals& totals) {
+bool BlockMaker::beginBlock(std::uint64_t iteration, const std::atomic<bool>& cancel,
+                            Totals& totals) {
     std::unique_ptr<Method> fresh = freshMethod();
-    const Stopwatch watch(totals.seconds);
-    const bool complete = integrator_->beginBlock(block, *fresh, cancel, totals.statistics);
+    Totals ofWarmUp;
+    bool complete = false;
+    {
+        const Stopwatch watch(ofWarmUp.seconds);
+        complete = integrator_->beginBlock(iteration / plan_.iterations, *fresh, cancel,
+                                           ofWarmUp.statistics);
+    }
     method_ = std::move(fresh);
+    if (complete && iteration % plan_.iterations == 0) totals.add(ofWarmUp);
     return complete;
 }
 
 bool BlockMaker::render(std::uint64_t iteration, std::span<Rgb> pixels,
                         const std::atomic<bool>& cancel, Totals& totals) {
     const Stopwatch watch(totals.seconds);
-    if (!integrator_->render(std::uint32_t(iteration), pixels, techniques_ ? kNever : cancel,
-                             totals.statistics)) {
+    if (!integrator_->render(std::uint32_t(iteration), pixels,
+                             techniques_ ? kNeverCancelled : cancel, totals.statistics)) {
         return false;
     }
     if (proposals_) proposals_->countIteration();

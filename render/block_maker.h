@@ -1,6 +1,7 @@
 // Makes iterations: the integrator with the method of the open block.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,9 @@ struct Totals {
     }
 };
 
+/// What must be finished whatever is asked for.
+inline const std::atomic<bool> kNeverCancelled{false};
+
 class BlockMaker {
   public:
     /// Those that are passed by reference must outlive the maker. Tells `stage` how large blocks
@@ -48,8 +52,10 @@ class BlockMaker {
     std::span<BlockLayers* const> layers() const { return layers_; }
     std::optional<WeightVerifier::Result> verified() const;
 
-    /// A method as new, warmed up. False if cancelled; then the block is not open.
-    bool beginBlock(std::uint64_t block, const std::atomic<bool>& cancel, Totals& totals);
+    /// Opens the block of `iteration`, which is to be rendered next: a method as new, warmed up.
+    /// Whoever goes on in the middle of a block does not count its warm-up: that is counted once.
+    /// False if cancelled; then the block is not open.
+    bool beginBlock(std::uint64_t iteration, const std::atomic<bool>& cancel, Totals& totals);
     /// Renders an iteration of the open block into `pixels`, one per pixel of the crop. Where blocks
     /// are whole, they must come in order. False if cancelled; then `pixels` are not finished.
     /// Iterations with layers are never cancelled: a part of one could not be taken out again.

@@ -1,11 +1,8 @@
 #include "render/crew.h"
 
-#include "render/stopwatch.h"
+#include "libcore/base/stopwatch.h"
 
 namespace lacuna {
-namespace {
-const std::atomic<bool> kNever{false};
-}
 
 Alone::Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPool& pool,
              Progress& progress)
@@ -14,14 +11,11 @@ Alone::Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPoo
 bool Alone::advance(Film& film, Totals& totals) {
     if (stopped_) return false;
     const bool first = film.iterations() == 0;
-    const std::atomic<bool>& cancel = first ? kNever : interrupted_;
+    const std::atomic<bool>& cancel = first ? kNeverCancelled : interrupted_;
     if (!begun_) {
         if (maker_.warmupIterations() > 0) progress_.phase("warm-up");
-        Totals ofWarmUp;
-        begun_ = maker_.beginBlock(film.block(), cancel, ofWarmUp);
+        begun_ = maker_.beginBlock(film.nextIteration(), cancel, totals);
         if (!begun_) return false;
-        // A block's warm-up is counted once, whoever goes on in the middle of it.
-        if (film.inBlock() == 0) totals.add(ofWarmUp);
         progress_.phase("rendering");
     }
     pixels_.resize(std::size_t(film.width()) * std::size_t(film.height()));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 namespace {
@@ -75,11 +76,8 @@ void CurveLog::write(const CurveRow& row) {
         append(row.error ? number(measure) : "");
     }
     for (const std::uint64_t rays : row.rays) append(std::to_string(rays));
-    std::string phases;
-    for (const auto& [phase, seconds] : row.phaseSeconds) {
-        phases += (phases.empty() ? "" : ";") + phase + "=" + number(seconds);
-    }
-    append(phases);
+    append(joined(row.phaseSeconds, ";",
+                  [](const auto& phase) { return phase.first + "=" + number(phase.second); }));
     lastIteration_ = row.iteration;
     file_ << text << std::endl;  // flushed: the row survives a crash
     check();

@@ -1,6 +1,6 @@
 #include "render/first_look.h"
 
-#include "render/stopwatch.h"
+#include "libcore/base/stopwatch.h"
 
 namespace lacuna {
 namespace {

@@ -37,8 +37,12 @@ int printEffects(const RenderOptions& options) {
     return 0;
 }
 
-/// Everything that only looks or prints; nullopt: a picture is to be made.
-std::optional<int> printOrReplay(const RenderOptions& options) {
+/// Whether no picture is to be made.
+bool onlyPrints(const RenderOptions& options) {
+    return options.listMethods || !options.helpMethod.empty() || options.effects || options.replay;
+}
+
+int print(const RenderOptions& options) {
     if (options.listMethods) {
         std::fputs(listMethods().c_str(), stdout);
         return 0;
@@ -48,7 +52,6 @@ std::optional<int> printOrReplay(const RenderOptions& options) {
         return 0;
     }
     if (options.effects) return printEffects(options);
-    if (!options.replay) return std::nullopt;
     const MethodRow& row = findMethod(options.method, "--method");
     const Settings settings = resolve(row, options.assignments, "--set ");
     return replay(options, row, settings, ThreadPool(options.common.threads));
@@ -99,18 +102,15 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
     if (!loaded) return 0;
     // Rank 0 makes the caches that are missing, the others read them.
     Caches caches;
-    const auto load = [&] {
-        caches = loadCaches(options, *row, settings, *stage, pool, interrupt.requested(), progress);
-    };
-    if (!ranks.agree([&] {
-            if (ranks.leads()) load();
-        }))
-        return 0;
     if (!ranks.leads()) options.prepare = false;
-    if (!ranks.agree([&] {
-            if (!ranks.leads()) load();
-        }))
-        return 0;
+    for (const bool leaders : {true, false}) {
+        const bool there = ranks.agree([&] {
+            if (ranks.leads() != leaders) return;
+            caches =
+                loadCaches(options, *row, settings, *stage, pool, interrupt.requested(), progress);
+        });
+        if (!there) return 0;
+    }
 
     BlockMaker maker(options, *row, settings, *stage, caches, pool);
     if (ranks.many()) {
@@ -143,13 +143,10 @@ int render(int argc, char** argv) {
         if (done) return;
         options.commandLine = commandLineText(argc, argv);
         if (!options.listMethods && options.helpMethod.empty()) checkOptions(options);
-        if (ranks.leads()) done = printOrReplay(options);
+        if (onlyPrints(options)) done = ranks.leads() ? print(options) : 0;
     });
     if (!parsed) return 0;
-    const bool picture =
-        !options.listMethods && options.helpMethod.empty() && !options.effects && !options.replay;
-    if (done || !picture) return done.value_or(0);
-    return renderPicture(options, ranks);
+    return done ? *done : renderPicture(options, ranks);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 
@@ -58,8 +59,7 @@ Settings resolveOptions(std::span<const Option> options, std::span<const std::st
         const auto option = std::find_if(options.begin(), options.end(),
                                          [&](const Option& o) { return o.name == name; });
         if (option == options.end()) {
-            std::string names;
-            for (const Option& o : options) names += (names.empty() ? "" : ", ") + o.name;
+            const std::string names = joined(options, ", ", &Option::name);
             throw UsageError(title + name + ": " + owner + " has " +
                              (names.empty() ? "no parameters" : "the parameters " + names));
         }

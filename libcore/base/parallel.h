@@ -8,10 +8,10 @@
 
 namespace lacuna {
 
-/// The worker threads of one tool run. `threads` = 0 means one for each
-/// processor that the process may run on. Keeps the floating
-/// point environment of the constructing thread in every worker (Embree would otherwise leave
-/// flush-to-zero set in some of them, so that denormals depended on the order of calls).
+/// The worker threads of one tool run. `threads` = 0 means one for each processor that the process
+/// may run on. Keeps the floating point environment of the constructing thread in every worker
+/// (Embree would otherwise leave flush-to-zero set in some of them, so that denormals depended on
+/// the order of calls).
 class ThreadPool {
   public:
     explicit ThreadPool(int threads = 0);

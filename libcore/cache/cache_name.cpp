@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 namespace {
@@ -64,11 +65,7 @@ std::vector<std::string> differences(const CacheStamp& expected, const CacheStam
 }
 
 std::string differencesText(const CacheStamp& expected, const CacheStamp& found) {
-    std::string text;
-    for (const std::string& d : differences(expected, found)) {
-        text += (text.empty() ? "" : ", ") + d;
-    }
-    return text;
+    return joined(differences(expected, found), ", ");
 }
 
 std::string cacheDirectory(const std::string& scene, const std::string& directory) {

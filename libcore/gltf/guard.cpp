@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "libcore/base/text_list.h"
 #include "libcore/gltf/limits.h"
 
 namespace lacuna::gltf {
@@ -138,14 +139,14 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
         }
     }
     if (const auto used = root.find("extensionsUsed"); used != root.end()) {
-        std::string unknown;
+        std::vector<std::string> unknown;
         for (const auto& entry : *used) {
             const auto& name = entry.get_ref<const std::string&>();
-            if (isSupported(name)) continue;
-            unknown += (unknown.empty() ? "" : ", ") + printable(name);
+            if (!isSupported(name)) unknown.push_back(printable(name));
         }
         if (!unknown.empty()) {
-            warnings.add("extensions that are not known are ignored: " + printable(unknown, 400),
+            warnings.add("extensions that are not known are ignored: " +
+                             printable(joined(unknown, ", "), 400),
                          1);
         }
     }

@@ -21,6 +21,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 #include "libcore/image/exr_header.h"
 #include "libcore/image/file_bytes.h"
 
@@ -90,12 +91,8 @@ class ExrReader {
     void requireFloatChannel(const std::string& name) const {
         const Imf::Channel* channel = header().channels().findChannel(name.c_str());
         if (!channel) {
-            std::string found;
-            for (const std::string& other : channelNames()) {
-                found += (found.empty() ? "" : " ") + other;
-            }
             throw InputError(path_ + ": expected a channel " + name + ", found the channels '" +
-                             found + "'; name an image with R, G and B");
+                             joined(channelNames(), " ") + "'; name an image with R, G and B");
         }
         if (channel->type != Imf::HALF && channel->type != Imf::FLOAT) {
             throw InputError(path_ + ": expected half or float in channel " + name +

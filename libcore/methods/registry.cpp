@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 
@@ -19,12 +20,11 @@ std::span<const MethodRow> methods() {
 }
 
 const MethodRow& findMethod(const std::string& name, const std::string& title) {
-    std::string names;
     for (const MethodRow& row : methods()) {
         if (row.name == name) return row;
-        names += (names.empty() ? "" : ", ") + row.name;
     }
-    throw UsageError(title + ": expected one of " + names + ", found '" + name + "'");
+    throw UsageError(title + ": expected one of " + joined(methods(), ", ", &MethodRow::name) +
+                     ", found '" + name + "'");
 }
 
 namespace {

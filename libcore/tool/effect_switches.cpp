@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 namespace {
@@ -148,9 +149,8 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
         const auto effect = std::find_if(effects.begin(), effects.end(),
                                          [&](const Effect& e) { return e.name == s.name; });
         if (effect == effects.end()) {
-            std::string names;
-            for (const Effect& e : effects) names += (names.empty() ? "" : ", ") + e.name;
-            throw UsageError(option + ": expected one of " + names + "; see --effects");
+            throw UsageError(option + ": expected one of " + joined(effects, ", ", &Effect::name) +
+                             "; see --effects");
         }
         if (effect->simulated == s.on) continue;
         if (s.on) {

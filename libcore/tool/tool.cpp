@@ -98,6 +98,20 @@ std::string commandLineText(int argc, const char* const* argv) {
     return text;
 }
 
+Failure failureOfCurrentException() {
+    try {
+        throw;
+    } catch (const Error& e) {
+        return {e.exitCode(), e.what()};
+    } catch (const std::bad_alloc&) {
+        return {1, "memory: expected more, found none left; use a smaller image or scene"};
+    } catch (const std::exception& e) {
+        return {1, "internal error: " + std::string(e.what()) + "; please report it"};
+    } catch (...) {
+        return {1, "internal error of unknown kind; please report it"};
+    }
+}
+
 int runTool(const std::function<int()>& body) {
     try {
         const int exitCode = body();
@@ -106,14 +120,9 @@ int runTool(const std::function<int()>& body) {
             return report("stdout: expected to write results, found it closed or full", 1);
         }
         return exitCode;
-    } catch (const Error& e) {
-        return report(e.what(), e.exitCode());
-    } catch (const std::bad_alloc&) {
-        return report("memory: expected more, found none left; use a smaller image or scene", 1);
-    } catch (const std::exception& e) {
-        return report("internal error: " + std::string(e.what()) + "; please report it", 1);
     } catch (...) {
-        return report("internal error of unknown kind; please report it", 1);
+        const Failure failure = failureOfCurrentException();
+        return report(failure.text, failure.exitCode);
     }
 }
 

@@ -34,6 +34,14 @@ std::string shellQuoted(const std::string& text);
 /// The arguments joined, as a shell would take them again.
 std::string commandLineText(int argc, const char* const* argv);
 
+/// How a tool ends that an exception ends.
+struct Failure {
+    int exitCode = 1;
+    std::string text;  ///< one line for stderr
+};
+/// To be called where one was caught.
+Failure failureOfCurrentException();
+
 /// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and the
 /// code of its kind: Error its own, everything else 1. Results that could not reach stdout are a
 /// failure (1) as well.

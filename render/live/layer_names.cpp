@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
+#include "libcore/bidir/technique_group.h"
 
 namespace lacuna {
 namespace {
@@ -14,30 +16,37 @@ std::string layerOf(const std::string& channel) {
     return part ? channel.substr(0, dot) : channel;
 }
 
-/// All of them, techniques as two of them.
+/// "weighted.sSStTT" of "weighted.s02t03", "variance.GROUP" of "variance.hits1".
+std::string forMany(const std::string& layer) {
+    const std::size_t dot = layer.rfind('.');
+    if (dot == layer.npos) return layer;
+    const std::string_view name = std::string_view(layer).substr(dot + 1);
+    const bool technique = name.size() == 6 && name[0] == 's' && name[3] == 't';
+    if (technique) return layer.substr(0, dot) + ".sSStTT";
+    for (std::size_t i = 0; i < TechniqueGroup::kCount; ++i) {
+        if (name == TechniqueGroup::at(i).name()) return layer.substr(0, dot) + ".GROUP";
+    }
+    return layer;
+}
+
+/// All of them; techniques and their groups by a pattern.
 std::string listOf(std::span<const std::string> there) {
     std::vector<std::string> names;
     for (const std::string& channel : there) {
-        std::string name = layerOf(channel);
-        if (name.starts_with("weighted.s")) name = "weighted.sSStTT";
-        if (name.starts_with("unweighted.s")) name = "unweighted.sSStTT";
+        const std::string name = forMany(layerOf(channel));
         const bool picture = name == "R" || name == "G" || name == "B";
         if (!picture && std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
+    return joined(names, ", ");
 }
 
 }  // namespace
 
 std::vector<std::string> parseLayers(const std::string& option, const std::string& text) {
     std::vector<std::string> names;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        names.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-        if (names.back().empty()) {
+    for (const std::string_view name : splitAtCommas(text)) {
+        names.emplace_back(name);
+        if (name.empty()) {
             throw UsageError(option +
                              ": expected names of layers such as variance,albedo, found '" + text +
                              "'");

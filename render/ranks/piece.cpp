@@ -11,8 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::atomic<bool> kNever{false};
-
 }  // namespace
 
 PieceMaker::PieceMaker(BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
@@ -29,6 +27,7 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
     const BlockPlan& plan = maker_.plan();
     const std::uint64_t block = work.begin / plan.iterations;
     const std::uint64_t inBlock = work.begin % plan.iterations;
+    const std::atomic<bool>& cancel = work.first ? kNeverCancelled : interrupted_;
     Part part;
     part.width = width_;
     part.height = height_;
@@ -37,18 +36,16 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
     Totals totals;
     if (maker_.blocksAreWhole() || open_ != block) {
         open_.reset();
-        Totals ofWarmUp;
-        if (!maker_.beginBlock(block, work.first ? kNever : interrupted_, ofWarmUp)) return part;
+        if (!maker_.beginBlock(work.begin, cancel, totals)) return part;
         open_ = block;
-        // A block's warm-up is counted once, whoever goes on in the middle of it.
-        if (inBlock == 0) totals.add(ofWarmUp);
     }
     SumTree tree(plan.areSamples);
     tree.measure(&meter_, block * plan.iterations, 1);
     for (std::uint64_t i = 0; i < work.count; ++i) {
         const bool must = work.first && i == 0;
         if (!must && stop()) break;
-        if (!maker_.render(work.begin + i, pixels_, must ? kNever : interrupted_, totals)) break;
+        if (!maker_.render(work.begin + i, pixels_, must ? kNeverCancelled : interrupted_, totals))
+            break;
         auto one = std::make_shared<FilmSum>(FilmSum::ofIteration(pixels_, width_, pool_));
         tree.add({inBlock + i, 1, std::move(one)}, &pool_);
     }

@@ -9,7 +9,8 @@
 #include <thread>
 
 #include "libcore/base/error.h"
-#include "render/stopwatch.h"
+#include "libcore/base/stopwatch.h"
+#include "libcore/tool/tool.h"
 
 namespace lacuna {
 namespace {
@@ -25,8 +26,8 @@ constexpr std::size_t kWaitingPerRank = 4;
 constexpr auto kPause = std::chrono::milliseconds(1);
 
 /// "CODE text"
-std::string failureText(int code, const std::string& text) {
-    return std::to_string(code) + " " + text;
+std::string letterOf(const Failure& failure) {
+    return std::to_string(failure.exitCode) + " " + failure.text;
 }
 
 [[noreturn]] void throwFailure(const std::string& who, const std::string& text) {
@@ -254,15 +255,8 @@ void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const
         std::memcpy(&work, letter.bytes.data(), sizeof work);
         try {
             ranks.send(0, Tag::Piece, bytesOf(pieces.make(work, stop)));
-        } catch (const Error& e) {
-            ranks.send(0, Tag::Failure, failureText(e.exitCode(), e.what()));
-        } catch (const std::bad_alloc&) {
-            ranks.send(0, Tag::Failure,
-                       failureText(1,
-                                   "memory: expected more, found none left; use a smaller image "
-                                   "or scene"));
-        } catch (const std::exception& e) {
-            ranks.send(0, Tag::Failure, failureText(1, e.what()));
+        } catch (...) {
+            ranks.send(0, Tag::Failure, letterOf(failureOfCurrentException()));
         }
     }
 }

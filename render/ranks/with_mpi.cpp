@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "libcore/base/error.h"
+#include "libcore/tool/tool.h"
 #include "render/ranks/ranks.h"
 
 namespace lacuna {
@@ -40,9 +41,9 @@ struct Outcome {
     int code = 0;  ///< of the exit; 0: it went well
     std::array<char, 2044> text{};
 
-    void set(int code_, const char* text_) {
-        code = code_;
-        std::snprintf(text.data(), text.size(), "%s", text_);
+    void set(const Failure& failure) {
+        code = failure.exitCode;
+        std::snprintf(text.data(), text.size(), "%s", failure.text.c_str());
     }
 };
 
@@ -80,11 +81,8 @@ bool Ranks::agree(const std::function<void()>& stage) const {
     std::exception_ptr thrown;
     try {
         stage();
-    } catch (const Error& e) {
-        own.set(e.exitCode(), e.what());
-        thrown = std::current_exception();
-    } catch (const std::exception& e) {
-        own.set(1, e.what());
+    } catch (...) {
+        own.set(failureOfCurrentException());
         thrown = std::current_exception();
     }
     std::vector<Outcome> all(machines_.size());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 
 namespace lacuna {
 
@@ -118,10 +119,8 @@ const json& JsonObject::members() {
 void JsonObject::finish() const {
     for (const auto& member : value_->items()) {
         if (known_.contains(member.key())) continue;
-        std::string names;
-        for (const std::string& key : known_) names += (names.empty() ? "" : ", ") + key;
-        throw InputError(place_ + ": " + member.key() + ": expected one of " + names +
-                         ", found a key that is not known");
+        throw InputError(place_ + ": " + member.key() + ": expected one of " +
+                         joined(known_, ", ") + ", found a key that is not known");
     }
 }
 

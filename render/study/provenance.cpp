@@ -3,6 +3,7 @@
 #include <ctime>
 #include <set>
 
+#include "libcore/base/text_list.h"
 #include "render/study/spread.h"
 
 namespace lacuna {
@@ -12,12 +13,6 @@ std::string today() {
     const std::time_t now = std::time(nullptr);
     char text[16];
     std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
-    return text;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* between) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
     return text;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
 #include "libcore/methods/registry.h"
 #include "render/study/json_object.h"
 
@@ -54,9 +55,7 @@ std::vector<std::string> readOptions(JsonObject object, const std::string& study
     std::vector<std::string> arguments;
     for (const auto& [key, value] : object.members().items()) {
         if (!kOptions.contains(key)) {
-            std::string names;
-            for (const std::string& name : kOptions) names += (names.empty() ? "" : ", ") + name;
-            object.fail(key, "one of the options " + names);
+            object.fail(key, "one of the options " + joined(kOptions, ", "));
         }
         requireScalar(object, key, value);
         arguments.push_back("--" + key);
