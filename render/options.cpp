@@ -9,6 +9,7 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
+#include "libcore/base/text_list.h"
 #include "libcore/image/image_io.h"
 #include "render/live/layer_names.h"
 
@@ -97,7 +98,9 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--log", o.log, "Error and rays against time, a row per iteration at most")
         ->type_name("CURVE.csv")
         ->group(check);
-    app.add_flag("--techniques", o.techniques, "A layer per technique (s, t) in the .exr")
+    app.add_flag("--techniques", o.techniques,
+                 "What each technique (s, t) adds, its noise and its time: a table, and layers in "
+                 "the .exr")
         ->group(check);
     app.add_flag("--verify", o.verify, "Recompute every weight by full products and compare")
         ->group(check);
@@ -126,16 +129,6 @@ template <class T>
 bool parseNumber(std::string_view text, T& value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size();
-}
-
-std::vector<std::string_view> splitAtCommas(std::string_view text) {
-    std::vector<std::string_view> parts;
-    for (;;) {
-        const std::size_t comma = text.find(',');
-        parts.push_back(text.substr(0, comma));
-        if (comma == std::string_view::npos) return parts;
-        text.remove_prefix(comma + 1);
-    }
 }
 
 /// --estimate writes no image, and --until judges the whole one.

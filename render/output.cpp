@@ -97,6 +97,7 @@ void setPicture(LayeredImage& image, const FilmSum& sum) {
     image.setRgb("", sum.image(image.width(), image.height()));
     image.setRgb("variance", sum.variance(image.width(), image.height()));
     for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
+    setTechniqueVariances(image, sum.layers, sum.samples);
 }
 
 void setFeatures(LayeredImage& image, const FeatureLayers& features) {
@@ -175,6 +176,7 @@ json reportJson(const RenderReport& r) {
            {"cache_hashes", r.cacheHashes},
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
+    if (r.techniques) j["techniques"] = techniqueCostsJson(r.techniqueCosts);
     if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
     j["estimated_error"] = json::object();
     j["estimate_doubts"] = json::object();

@@ -14,6 +14,7 @@
 #include "libcore/image/error_metrics.h"
 #include "libcore/methods/registry.h"
 #include "libcore/tool/effects.h"
+#include "render/technique_table.h"
 
 namespace lacuna {
 
@@ -35,8 +36,9 @@ struct RenderReport {
     BlockPlan blocks;
     std::uint64_t firstBlock = 0;
     bool techniques = false;
-    int warmupIterations = 0;  ///< of each block
-    double seconds = 0.0;      ///< warm-ups and iterations; no comparing, logging, saving
+    std::vector<TechniqueCost> techniqueCosts;  ///< --techniques
+    int warmupIterations = 0;                   ///< of each block
+    double seconds = 0.0;  ///< warm-ups and iterations; no comparing, logging, saving
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr const char* kAttributes[] = {"partInputs", "partSums", "partTotals"};
 constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
@@ -117,6 +117,7 @@ json totalsText(const Part& part) {
             {"invalid_samples", s.invalidSamples},
             {"invalid_replays", s.invalidReplays},
             {"phases", s.phaseSeconds},
+            {"technique_seconds", s.techniqueSeconds},
             {"held", s.held}};
 }
 
@@ -127,6 +128,7 @@ void readTotals(const json& text, Part& part) {
     s.invalidSamples = text.at("invalid_samples");
     s.invalidReplays = text.at("invalid_replays").get<std::vector<std::string>>();
     s.phaseSeconds = text.at("phases").get<std::map<std::string, double>>();
+    s.techniqueSeconds = text.at("technique_seconds").get<TechniqueSeconds>();
     s.held = text.at("held").get<std::map<std::string, std::uint64_t>>();
 }
 

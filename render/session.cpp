@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
@@ -16,7 +17,6 @@
 #include "render/live/layer_names.h"
 #include "render/ranks/together.h"
 #include "render/render_inputs.h"
-#include "render/stopwatch.h"
 
 namespace lacuna {
 namespace {
@@ -41,8 +41,8 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
-    const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 3.0 * sizeof(Rgb) +
-                            (beside ? 104.0 + layers * 2.0 * sizeof(Rgb) : 0.0);
+    const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 4.0 * sizeof(Rgb) +
+                            (beside ? 104.0 + layers * 2.5 * sizeof(Rgb) : 0.0);
     const double bytes = perPixel * double(crop.width()) * double(crop.height());
     const double available = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (available > 0.0 && bytes > available) {
@@ -321,14 +321,9 @@ std::vector<std::string> Session::channelNames() {
     for (const auto& [name, plane] : still().channels()) names.push_back(name);
     if (!options_.techniques) return names;
     for (const std::string& label : report_.method->proposalLabels) addRgb("part." + label);
-    for (int k = 1; k <= report_.limits.maxDepth; ++k) {
-        for (int s = 0; s <= k; ++s) {
-            const std::string technique = TechniqueFilm::layerName(s, k + 1 - s);
-            addRgb("weighted." + technique);
-            addRgb("unweighted." + technique);
-        }
-    }
-    names.push_back("share.t02");
+    const std::vector<std::string> ofTechniques =
+        TechniqueFilm::channelNames(report_.limits.maxDepth);
+    names.insert(names.end(), ofTechniques.begin(), ofTechniques.end());
     return names;
 }
 
@@ -462,6 +457,10 @@ void Session::save() {
     report_.estimate = estimateError(sum, look_.meter, &pool_);
     warnIfBlack();
     report_.verify = maker_.verified();
+    if (report_.techniques) {
+        report_.techniqueCosts =
+            techniqueCosts(sum, look_.meter, report_.statistics, double(report_.threads), &pool_);
+    }
 
     progress_.phase("saving");
     if (live_) live_->showLast(shown(sum));
@@ -485,6 +484,7 @@ void Session::save() {
         std::printf("mae %.6g rmse %.6g mape %.6g relmse %.6g\n", report_.error->mae,
                     report_.error->rmse, report_.error->mape, report_.error->relmse);
     }
+    if (report_.techniques) std::fputs(techniqueTable(report_.techniqueCosts).c_str(), stdout);
     if (report_.verify) {
         std::printf("verify: largest difference of a weight %.3g over %llu paths\n",
                     report_.verify->maxDifference,

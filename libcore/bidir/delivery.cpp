@@ -44,8 +44,8 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
     if (!isFinite(sum)) return countInvalid(c.sample, result);
     pixel = sum;
     if (techniqueFilm_) {
-        techniqueFilm_->add(c.path.edges + 1 - c.closed.t, c.closed.t, c.pixel, w.value,
-                            w.unweighted);
+        const int s = c.path.edges + 1 - c.closed.t;
+        techniqueFilm_->add({s, c.closed.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted});
     }
 }
 
@@ -56,7 +56,7 @@ void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
     result.splats.push_back({c.pixel, w.value});
     result.splatPaths.push_back(c.sample.number);
     if (techniqueFilm_) {
-        result.techniqueSplats.push_back({c.path.edges, {c.pixel, w.value}, w.unweighted});
+        result.techniqueSplats.push_back({c.path.edges, 1, 1, c.pixel, w.value, w.unweighted});
     }
 }
 
@@ -69,9 +69,8 @@ void Delivery::collect(std::span<TaskResult> results, IterationStatistics& stati
                 statistics.invalidReplays.push_back(std::move(replay));
             }
         }
-        for (const TechniqueSplat& t : result.techniqueSplats) {
-            techniqueFilm_->add(t.s, 1, t.weighted.pixel, t.weighted.value, t.unweighted);
-        }
+        for (const TechniqueSample& t : result.techniqueSplats) techniqueFilm_->add(t);
+        statistics.add(result.clock.seconds());
         recorded_.insert(recorded_.end(), result.rays.begin(), result.rays.end());
     }
 }

@@ -70,6 +70,7 @@ class Delivery {
     /// A task's result before the task begins.
     void begin(TaskResult& result) const {
         if (recording_) result.tally.recording = &result.rays;
+        if (techniqueFilm_) result.clock.switchOn();
     }
     /// What the tasks counted and recorded.
     void collect(std::span<TaskResult> results, IterationStatistics& statistics);

@@ -165,6 +165,19 @@ ErrorMeter::Squares ErrorMeter::squares(const FilmSum& sum, const ThreadPool* th
     return {mean(threads, term(false)), mean(threads, term(true))};
 }
 
+double ErrorMeter::overSquare(const FilmSum& sum, std::span<const float> values,
+                              const ThreadPool* threads) const {
+    const double e = epsilonOf(sum, sum);
+    const Mean over = mean(threads, [&](const Place& place) {
+        const double value = double(values[place.pixel]);
+        if (value == 0.0) return 0.0;
+        const Vec3d around = smoothed(sum.mean, sum.mean, place);
+        const double r = (around[0] + around[1] + around[2]) / 3.0;
+        return value / (r * r + e * e);
+    });
+    return over.value;
+}
+
 namespace {
 
 /// h(m) = g m^(-1/2) + c: noise that falls, and rare spikes that do not.

@@ -38,6 +38,11 @@ class ErrorMeter {
     };
     Squares squares(const FilmSum& sum, const ThreadPool* threads) const;
 
+    /// The mean over the lattice of `values`, one per pixel, over R^2 + e^2 (R: the mean of the
+    /// picture's channels, smoothed). `threads` may be null.
+    double overSquare(const FilmSum& sum, std::span<const float> values,
+                      const ThreadPool* threads) const;
+
     std::size_t places() const { return places_.size(); }
 
   private:

@@ -7,7 +7,12 @@ namespace lacuna {
 
 namespace {
 constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
+
+/// Of a light subpath of s vertices with this eye subpath.
+TechniqueGroup groupOf(std::size_t s, Subpath eye) {
+    return TechniqueGroup::of(int(s), int(eye.size()), connectionOrder(eye));
 }
+}  // namespace
 
 bool EyePass::run(const Iteration& iteration) const {
     const PixelRect& crop = setup_.settings.crop;
@@ -48,6 +53,7 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
         lightPass_.trace(std::span(numbers).first(pixels.size()), iteration,
                          {StreamKind::LightPath, 0, splats}, worker, result);
     }
+    result.clock.start();
     worker.rngs.clear();
     worker.walks.clear();
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
@@ -59,6 +65,7 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     }
     setup_.walker.finish(worker.walks, result.tally);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) iteration.counts.labelWalk(worker.eye[i]);
+    result.clock.lapOfWalks(kEyeWalks);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
         const Subpath own = setup_.techniques.ownLightPath ? worker.light[i] : Subpath{};
         close({worker.eye[i],
@@ -79,16 +86,21 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
         delivery_.toOwnPixel({closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal},
                              iteration.counts, paths.value, result);
     };
+    TechniqueClock& clock = result.clock;
+    clock.start();
     std::size_t next = 0;
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
         if (setup_.techniques.hits && eye.back().light != kNone) {
             const auto closed = closeHit(setup_.walker, eye, worker.fullPath);
             if (closed) deliver(*closed, nullptr);
+            clock.lap([&] { return groupOf(0, eye); });
         }
         for (; next < worker.open.size() && worker.open[next].eye.size() == t; ++next) {
-            const auto closed = closeConnection(setup_.walker, worker.open[next], worker.fullPath);
+            const OpenConnection& open = worker.open[next];
+            const auto closed = closeConnection(setup_.walker, open, worker.fullPath);
             if (closed) deliver(*closed, worker.openedBy[next]);
+            clock.lap([&] { return groupOf(open.light.size(), eye); });
         }
     }
 }
@@ -104,12 +116,18 @@ void EyePass::select(const PixelPaths& paths, const Iteration& iteration, Worker
     Rng rng(setup_.settings.seed, iteration.number, StreamKind::Connection, filmIndex);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const PathVertex& z = paths.eye[t - 1];
+        const std::size_t before = worker.proposals.proposals().size();
+        result.clock.start();
         if (!z.infinite() && z.connectable() && int(t) <= setup_.settings.limits.maxDepth) {
             iteration.method.select({z, paths.eye.first(t), paths.ownLight, filmIndex,
                                      iteration.number, setup_.walker, setup_.space, result.tally},
                                     rng, worker.proposals);
         }
         worker.proposalEnds[t] = worker.proposals.proposals().size();
+        result.clock.lapAmong(worker.proposalEnds[t] - before, [&](std::size_t i) {
+            const Subpath light = worker.proposals.proposals()[before + i].light;
+            return groupOf(light.size(), paths.eye.first(t));
+        });
     }
 }
 
@@ -119,6 +137,7 @@ void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& 
     worker.open.clear();
     worker.openedBy.clear();
     const std::span<const Proposal> proposals = worker.proposals.proposals();
+    result.clock.start();
     std::size_t next = 0;
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         for (; next < worker.proposalEnds[t]; ++next) {
@@ -126,6 +145,7 @@ void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& 
             if (int(light.size() + t) - 1 > setup_.settings.limits.maxDepth) continue;
             const auto edge =
                 connectingEdge(setup_.walker, light.back(), paths.eye[t - 1], result.tally);
+            result.clock.lap([&] { return groupOf(light.size(), paths.eye.first(t)); });
             if (!edge) continue;
             for (const PathVertex& v : light.first(light.size() - 1)) prefetch(v);
             worker.open.push_back({light, paths.eye.first(t), *edge});
@@ -133,6 +153,9 @@ void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& 
         }
     }
     iteration.counts.labelEnds(worker.open);
+    result.clock.lapAmong(worker.open.size(), [&](std::size_t i) {
+        return groupOf(worker.open[i].light.size(), worker.open[i].eye);
+    });
 }
 
 }  // namespace lacuna

@@ -47,6 +47,7 @@ bool LightPass::tracedByItsPixel(std::uint64_t number) const {
 
 void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& iteration,
                       const Purpose& purpose, Worker& worker, TaskResult& result) const {
+    result.clock.start();
     worker.rngs.clear();
     worker.walks.clear();
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -56,6 +57,7 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
         if (walk) worker.walks.push_back(*walk);
     }
     setup_.walker.finish(worker.walks, result.tally);
+    result.clock.lapOfWalks(kLightWalks);
 
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         std::vector<PathVertex>& path = worker.light[i];
@@ -63,6 +65,7 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
         const bool kept = pooled || setup_.techniques.ownLightPath;
         if (kept) iteration.counts.labelWalk(path);
         if (pooled) result.pooled.insert(result.pooled.end(), path.begin(), path.end());
+        result.clock.lapOfWalks(kLightWalks);
         if (numbers[i] < purpose.splats) {
             splat(path, kept, numbers[i], worker.rngs[i], iteration, worker, result);
         }
@@ -90,6 +93,7 @@ void LightPass::splat(std::span<PathVertex> path, bool labelled, std::uint64_t n
                             1.0 / double(setup_.lightPaths)},
                            iteration.counts, result);
     }
+    result.clock.lap([] { return TechniqueGroup{}; });
 }
 
 }  // namespace lacuna

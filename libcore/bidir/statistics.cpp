@@ -19,6 +19,10 @@ void IterationStatistics::add(const RayTally& tally) {
     for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += tally.counts[i];
 }
 
+void IterationStatistics::add(const TechniqueSeconds& seconds) {
+    for (std::size_t i = 0; i < seconds.size(); ++i) techniqueSeconds[i] += seconds[i];
+}
+
 void IterationStatistics::add(const IterationStatistics& other) {
     for (std::size_t i = 0; i < kRayKinds; ++i) rays[i] += other.rays[i];
     invalidSamples += other.invalidSamples;
@@ -26,6 +30,7 @@ void IterationStatistics::add(const IterationStatistics& other) {
         if (invalidReplays.size() < kReplaysKept) invalidReplays.push_back(r);
     }
     for (const auto& [phase, seconds] : other.phaseSeconds) phaseSeconds[phase] += seconds;
+    add(other.techniqueSeconds);
     for (const auto& [what, number] : other.held) hold(what, number);
 }
 

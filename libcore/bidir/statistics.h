@@ -1,12 +1,13 @@
 // What an iteration counted and where its time went.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "libcore/base/stopwatch.h"
+#include "libcore/bidir/technique_clock.h"
 #include "libcore/scene/ray.h"
 
 namespace lacuna {
@@ -19,6 +20,7 @@ struct IterationStatistics {
     std::uint64_t invalidSamples = 0;
     std::vector<std::string> invalidReplays;  ///< --replay arguments of the first few
     std::map<std::string, double> phaseSeconds;
+    TechniqueSeconds techniqueSeconds{};  ///< where --techniques asks for them
     /// What was held at one time, the most of any iteration: numbers of things, and bytes.
     std::map<std::string, std::uint64_t> held;
 
@@ -26,21 +28,17 @@ struct IterationStatistics {
     void hold(const std::string& what, std::uint64_t number);
     void add(const IterationStatistics& other);
     void add(const RayTally& tally);
+    void add(const TechniqueSeconds& seconds);
 };
 
 /// Adds the time between construction and destruction to a phase.
 class PhaseTimer {
   public:
     PhaseTimer(IterationStatistics& statistics, const char* phase)
-        : seconds_(statistics.phaseSeconds[phase]), start_(Clock::now()) {}
-    ~PhaseTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-    PhaseTimer(const PhaseTimer&) = delete;
-    PhaseTimer& operator=(const PhaseTimer&) = delete;
+        : watch_(statistics.phaseSeconds[phase]) {}
 
   private:
-    using Clock = std::chrono::steady_clock;
-    double& seconds_;
-    Clock::time_point start_;
+    Stopwatch watch_;
 };
 
 }  // namespace lacuna

@@ -12,6 +12,8 @@
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/bidir/method.h"
+#include "libcore/bidir/technique_clock.h"
+#include "libcore/bidir/technique_film.h"
 #include "libcore/bidir/walk.h"
 
 namespace lacuna {
@@ -19,19 +21,13 @@ namespace lacuna {
 /// Subpaths that a thread has under way at once; also the side of a tile of pixels.
 inline constexpr int kTile = 16;
 
-/// A splat's technique and its value without the weight: only where --techniques asks for it.
-struct TechniqueSplat {
-    int s;
-    Splat weighted;
-    Rgb unweighted;
-};
-
 /// What one task leaves behind.
 struct TaskResult {
     std::vector<Splat> splats;
-    std::vector<std::uint64_t> splatPaths;  // by splat: its light subpath
-    std::vector<TechniqueSplat> techniqueSplats;
-    std::vector<PathVertex> pooled;  // vertices of the subpaths that go into the pool
+    std::vector<std::uint64_t> splatPaths;         // by splat: its light subpath
+    std::vector<TechniqueSample> techniqueSplats;  // where --techniques asks for them
+    TechniqueClock clock;                          // likewise
+    std::vector<PathVertex> pooled;                // vertices of the subpaths that go into the pool
     RayTally tally;
     std::vector<RecordedRay> rays;
     std::uint64_t invalidSamples = 0;

@@ -5,10 +5,30 @@
 
 namespace lacuna {
 
-TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth)
-    : width_(width), height_(height), maxDepth_(maxDepth) {
-    const std::size_t techniques = indexOf(0, maxDepth + 1) + std::size_t(maxDepth) + 1;
-    layers_.assign(2 * techniques, std::vector<Rgb>(std::size_t(width) * height));
+namespace {
+
+const std::string kWeighted = "weighted.", kUnweighted = "unweighted.", kSquare = "square.",
+                  kVariance = "variance.";
+
+bool isZero(float value) {
+    return value == 0.0f;
+}
+
+/// visit(s, t) for all techniques of paths of up to `maxDepth` edges.
+template <class Visit>
+void forEachTechnique(int maxDepth, const Visit& visit) {
+    for (int k = 1; k <= maxDepth; ++k) {
+        for (int s = 0; s <= k; ++s) visit(s, k + 1 - s);
+    }
+}
+
+}  // namespace
+
+TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth, bool blocksAreSamples)
+    : width_(width), height_(height), maxDepth_(maxDepth), blocksAreSamples_(blocksAreSamples) {
+    const std::size_t pixels = std::size_t(width) * std::size_t(height);
+    techniques_.assign(indexOf(0, maxDepth + 1) + std::size_t(maxDepth) + 1, Technique(pixels));
+    groups_.assign(TechniqueGroup::kCount, Moments(pixels));
 }
 
 std::string TechniqueFilm::layerName(int s, int t) {
@@ -17,43 +37,141 @@ std::string TechniqueFilm::layerName(int s, int t) {
     return name;
 }
 
+std::vector<std::string> TechniqueFilm::channelNames(int maxDepth) {
+    std::vector<std::string> names;
+    forEachTechnique(maxDepth, [&](int s, int t) {
+        const std::string name = layerName(s, t);
+        for (const char* channel : {".R", ".G", ".B"}) {
+            names.push_back(kWeighted + name + channel);
+            names.push_back(kUnweighted + name + channel);
+        }
+        names.push_back(kVariance + name);
+    });
+    for (std::size_t i = 0; i < TechniqueGroup::kCount; ++i) {
+        const std::string name = TechniqueGroup::at(i).name();
+        names.push_back(kWeighted + name);
+        names.push_back(kVariance + name);
+    }
+    names.push_back("share.t02");
+    return names;
+}
+
 std::size_t TechniqueFilm::indexOf(int s, int t) const {
     // Paths of k = s + t - 1 edges have k + 1 techniques, s = 0 .. k.
     const int k = s + t - 1;
     return std::size_t(k - 1) * std::size_t(k + 2) / 2 + std::size_t(s);
 }
 
-void TechniqueFilm::add(int s, int t, std::uint32_t pixel, const Rgb& weighted,
-                        const Rgb& unweighted) {
-    const std::size_t i = 2 * indexOf(s, t);
-    layers_[i][pixel] += weighted;
-    layers_[i + 1][pixel] += unweighted;
+void TechniqueFilm::add(const TechniqueSample& sample) {
+    Technique& technique = techniques_[indexOf(sample.s, sample.t)];
+    technique.weighted[sample.pixel] += sample.weighted;
+    technique.unweighted[sample.pixel] += sample.unweighted;
+    const float value = lacuna::mean(sample.weighted);
+    technique.moments.now[sample.pixel] += value;
+    const TechniqueGroup group = TechniqueGroup::of(sample.s, sample.t, sample.order);
+    groups_[group.index()].now[sample.pixel] += value;
 }
 
-Image TechniqueFilm::mean(int s, int t, bool unweighted) const {
+template <class Visit>
+void TechniqueFilm::forEachMoments(const Visit& visit) {
+    for (Technique& technique : techniques_) visit(technique.moments);
+    for (Moments& group : groups_) visit(group);
+}
+
+void TechniqueFilm::countIteration() {
+    ++iterations_;
+    forEachMoments([](Moments& m) {
+        if (std::ranges::all_of(m.now, isZero)) return;
+        for (std::size_t i = 0; i < m.now.size(); ++i) {
+            m.sum[i] += m.now[i];
+            m.squares[i] += m.now[i] * m.now[i];
+        }
+        std::ranges::fill(m.now, 0.0f);
+    });
+}
+
+Image TechniqueFilm::mean(const std::vector<Rgb>& sum) const {
     Image image(width_, height_);
-    const std::vector<Rgb>& layer = layers_[2 * indexOf(s, t) + (unweighted ? 1 : 0)];
     const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
-    for (std::size_t i = 0; i < layer.size(); ++i) image.pixels[i] = layer[i] * scale;
+    for (std::size_t i = 0; i < sum.size(); ++i) image.pixels[i] = sum[i] * scale;
     return image;
+}
+
+std::vector<float> TechniqueFilm::meanOf(const std::vector<float>& sum) const {
+    std::vector<float> mean = sum;
+    const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
+    for (float& value : mean) value *= scale;
+    return mean;
+}
+
+std::vector<float> TechniqueFilm::meanSquareOf(const Moments& moments) const {
+    if (!blocksAreSamples_) return meanOf(moments.squares);
+    std::vector<float> squares = meanOf(moments.sum);
+    for (float& value : squares) value *= value;
+    return squares;
 }
 
 Layers TechniqueFilm::means() const {
     LayeredImage image(width_, height_);
-    for (int k = 1; k <= maxDepth_; ++k) {
-        for (int s = 0; s <= k; ++s) {
-            const int t = k + 1 - s;
-            if (std::ranges::all_of(layers_[2 * indexOf(s, t) + 1], isBlack)) continue;
-            image.setRgb("weighted." + layerName(s, t), mean(s, t, false));
-            image.setRgb("unweighted." + layerName(s, t), mean(s, t, true));
-        }
+    forEachTechnique(maxDepth_, [&](int s, int t) {
+        const Technique& technique = techniques_[indexOf(s, t)];
+        if (std::ranges::all_of(technique.unweighted, isBlack)) return;
+        const std::string name = layerName(s, t);
+        image.setRgb(kWeighted + name, mean(technique.weighted));
+        image.setRgb(kUnweighted + name, mean(technique.unweighted));
+        image.channel(kSquare + name) = meanSquareOf(technique.moments);
+    });
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+        if (std::ranges::all_of(groups_[i].sum, isZero)) continue;
+        const std::string name = TechniqueGroup::at(i).name();
+        image.channel(kWeighted + name) = meanOf(groups_[i].sum);
+        image.channel(kSquare + name) = meanSquareOf(groups_[i]);
     }
     return image.channels();
 }
 
 void TechniqueFilm::clear() {
-    for (std::vector<Rgb>& layer : layers_) std::ranges::fill(layer, Rgb{});
+    for (Technique& technique : techniques_) {
+        std::ranges::fill(technique.weighted, Rgb{});
+        std::ranges::fill(technique.unweighted, Rgb{});
+    }
+    forEachMoments([](Moments& m) {
+        for (auto* plane : {&m.now, &m.sum, &m.squares}) std::ranges::fill(*plane, 0.0f);
+    });
     iterations_ = 0;
+}
+
+std::vector<float> techniqueVariance(const Layers& layers, const std::string& name,
+                                     std::uint64_t samples) {
+    const auto squares = layers.find(kSquare + name);
+    if (squares == layers.end()) return {};
+    std::vector<float> variance = squares->second;
+    const auto subtract = [&](const auto& meanAt) {
+        for (std::size_t i = 0; i < variance.size(); ++i) {
+            const double mean = meanAt(i);
+            const double ofOne = double(variance[i]) - mean * mean;
+            variance[i] = samples > 1 ? float(std::max(0.0, ofOne) / double(samples - 1)) : 0.0f;
+        }
+    };
+    if (const auto found = layers.find(kWeighted + name); found != layers.end()) {
+        subtract([&](std::size_t i) { return double(found->second[i]); });
+    } else {
+        const auto channel = [&](const char* c) -> const std::vector<float>& {
+            return layers.at(kWeighted + name + c);
+        };
+        const auto &r = channel(".R"), &g = channel(".G"), &b = channel(".B");
+        subtract([&](std::size_t i) { return (double(r[i]) + double(g[i]) + double(b[i])) / 3.0; });
+    }
+    return variance;
+}
+
+void setTechniqueVariances(LayeredImage& image, const Layers& layers, std::uint64_t samples) {
+    for (const auto& [name, plane] : layers) {
+        if (!name.starts_with(kSquare)) continue;
+        const std::string of = name.substr(kSquare.size());
+        image.channel(kVariance + of) = techniqueVariance(layers, of, samples);
+        image.take(name);
+    }
 }
 
 void addShareOfFirstConnections(LayeredImage& image, int maxDepth) {

@@ -1,4 +1,4 @@
-// A pair of pictures per technique (s, t).
+// What each technique (s, t) adds to the picture, and how noisy that is.
 #pragma once
 
 #include <cstdint>
@@ -6,33 +6,73 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/technique_group.h"
 
 namespace lacuna {
 
+/// What a technique adds to a pixel.
+struct TechniqueSample {
+    int s, t, order;  ///< Connection::order of the eye's end; t = 1 has none
+    std::uint32_t pixel;
+    Rgb weighted, unweighted;
+};
+
 /// Summed over a block's iterations: --techniques.
+///
+/// Layers, of techniques that contributed: weighted.sSStTT and unweighted.sSStTT; weighted.GROUP by
+/// group of techniques, the mean of the channels; and for both square.NAME, the mean square of the
+/// mean of the channels over independent samples, which variances are made of.
 class TechniqueFilm final : public BlockLayers {
   public:
-    TechniqueFilm(int width, int height, int maxDepth);
+    /// `blocksAreSamples`: the iterations of a block share light paths, only blocks are independent.
+    TechniqueFilm(int width, int height, int maxDepth, bool blocksAreSamples = false);
 
     /// "s02t03"
     static std::string layerName(int s, int t);
-    /// Adds to one pixel; different pixels may be added to at the same time.
-    void add(int s, int t, std::uint32_t pixel, const Rgb& weighted, const Rgb& unweighted);
-    void countIteration() { ++iterations_; }
-    /// Layers weighted.sSStTT and unweighted.sSStTT, of techniques that contributed.
+    /// Of all channels that a film of this depth may come to have in an image (setVariances).
+    static std::vector<std::string> channelNames(int maxDepth);
+    /// Different pixels may be added to at the same time.
+    void add(const TechniqueSample& sample);
+    void countIteration();
     Layers means() const override;
     void clear() override;
-    Image weighted(int s, int t) const { return mean(s, t, false); }
-    Image unweighted(int s, int t) const { return mean(s, t, true); }
+    Image weighted(int s, int t) const { return mean(techniques_[indexOf(s, t)].weighted); }
+    Image unweighted(int s, int t) const { return mean(techniques_[indexOf(s, t)].unweighted); }
 
   private:
+    /// Of a value per pixel: of this iteration, and over all of them sums of it and its square.
+    struct Moments {
+        std::vector<float> now, sum, squares;
+        explicit Moments(std::size_t pixels) : now(pixels), sum(pixels), squares(pixels) {}
+    };
+    struct Technique {
+        std::vector<Rgb> weighted, unweighted;
+        Moments moments;
+        explicit Technique(std::size_t pixels)
+            : weighted(pixels), unweighted(pixels), moments(pixels) {}
+    };
+
     std::size_t indexOf(int s, int t) const;
-    Image mean(int s, int t, bool unweighted) const;
+    Image mean(const std::vector<Rgb>& sum) const;
+    std::vector<float> meanOf(const std::vector<float>& sum) const;
+    std::vector<float> meanSquareOf(const Moments& moments) const;
+    template <class Visit>
+    void forEachMoments(const Visit& visit);
 
     int width_, height_, maxDepth_;
+    bool blocksAreSamples_;
     std::uint64_t iterations_ = 0;
-    std::vector<std::vector<Rgb>> layers_;  // [technique * 2 + unweighted]
+    std::vector<Technique> techniques_;
+    std::vector<Moments> groups_;
 };
+
+/// Variance of the mean of `samples` samples, of the technique or group NAME of a film's layers:
+/// of the mean of the channels. Empty where it has none.
+std::vector<float> techniqueVariance(const Layers& layers, const std::string& name,
+                                     std::uint64_t samples);
+
+/// Replaces the layers square.NAME by variance.NAME.
+void setTechniqueVariances(LayeredImage& image, const Layers& layers, std::uint64_t samples);
 
 /// The channel share.t02 from the layers weighted.sSStTT of paths of up to `maxDepth` edges: what
 /// connections of the first eye vertex (t = 2, s > 0) add to the pixel's mean over the channels, as

@@ -1,5 +1,6 @@
 #include "render/study/techniques.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "libcore/bidir/technique_film.h"
@@ -23,7 +24,17 @@ int shrinkOf(const Results& results) {
         pixels += double(facts.crop.width()) * double(facts.crop.height()) *
                   double(study.methods.size()) * techniqueCount(study.techniques->edges);
     }
-    return shrinkFactor(pixels, kTechniqueBytes);
+    return shrinkFactor(2.0 * pixels, kTechniqueBytes);
+}
+
+/// The root of a channel of variances.
+Image deviation(const LayeredImage& image, const std::string& channel) {
+    const std::vector<float>& variances = *image.find(channel);
+    Image root(image.width(), image.height());
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+        root.pixels[i] = Rgb(std::sqrt(variances[i]));
+    }
+    return root;
 }
 
 json pyramidJson(const Results& results, const TechniqueResult& result, int shrink, int stops) {
@@ -36,17 +47,20 @@ json pyramidJson(const Results& results, const TechniqueResult& result, int shri
     for (int k = 1; k <= longest; ++k) {
         for (int t = k + 1; t >= 1; --t) {
             const int s = k + 1 - t;
-            const std::string name = "weighted." + TechniqueFilm::layerName(s, t);
-            if (!image.hasRgb(name)) continue;
-            const Image layer = image.rgb(name);
+            const std::string name = TechniqueFilm::layerName(s, t);
+            if (!image.hasRgb("weighted." + name)) continue;
+            const Image layer = image.rgb("weighted." + name);
             if (k > results.study.techniques->edges) {
                 longer += share(layer);
                 continue;
             }
+            const Image noise = deviation(image, "variance." + name);
             layers.push_back({{"s", s},
                               {"t", t},
                               {"share", share(layer)},
-                              {"pixels", pixelsText(shrunk(layer, shrink), stops)}});
+                              {"pixels", pixelsText(shrunk(layer, shrink), stops)},
+                              {"noise_share", share(noise)},
+                              {"noise", pixelsText(shrunk(noise, shrink), stops)}});
         }
     }
     return {{"name", results.study.methods[result.run.method].name},
@@ -54,6 +68,7 @@ json pyramidJson(const Results& results, const TechniqueResult& result, int shri
             {"seed", result.run.seed},
             {"command_line", result.report.at("command_line")},
             {"longer", longer},
+            {"costs", result.report.at("techniques")},
             {"layers", std::move(layers)}};
 }
 

@@ -9,9 +9,10 @@ namespace lacuna {
 
 /// Of one scene {"width", "height", "shrink", "stops", "edges", "pyramids"}, null where the study
 /// asks for none; `stops` as given. A pyramid per method: {"name", "iterations", "seed",
-/// "command_line", "layers", "longer": what paths of more than `edges` edges add, as a share of the
+/// "command_line", "layers", "costs", "longer": what paths of more than `edges` edges add, as a share of the
 /// picture's mean}. A layer is a technique that contributed, {"s", "t", "share", "pixels"}: what it
-/// adds, weighted; `share` and `pixels` as in "longer" and pixelsText. All shrunk so far that those
+/// adds, weighted; `share` and `pixels` as in "longer" and pixelsText; "noise_share" and "noise" are
+/// likewise of its standard deviation. "costs": "techniques" of the render's JSON. All shrunk so far that those
 /// of all scenes are below kTechniqueBytes. Throws InputError for an image that cannot be read.
 nlohmann::json techniquesJson(const Results& results, std::size_t scene, int stops);
 

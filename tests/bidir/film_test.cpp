@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
+#include "libcore/bidir/technique_clock.h"
 
 namespace lacuna::test {
 namespace {
@@ -196,11 +200,11 @@ TEST(Film, holdsThePowersThatAFloatHolds) {
 TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     TechniqueFilm film(2, 1, 3);
     film.countIteration();
+    film.add({1, 2, 1, 0, Rgb(3.0f), Rgb(6.0f)});
+    film.add({0, 2, 1, 0, Rgb(1.0f), Rgb(1.0f)});  // a hit: no connection
+    film.add({2, 1, 1, 0, Rgb(2.0f), Rgb(2.0f)});
+    film.add({2, 1, 1, 1, Rgb(2.0f), Rgb(2.0f)});
     film.countIteration();
-    film.add(1, 2, 0, Rgb(3.0f), Rgb(6.0f));
-    film.add(0, 2, 0, Rgb(1.0f), Rgb(1.0f));  // a hit: no connection
-    film.add(2, 1, 0, Rgb(2.0f), Rgb(2.0f));
-    film.add(2, 1, 1, Rgb(2.0f), Rgb(2.0f));
     EXPECT_EQ(film.weighted(1, 2).at(0, 0), Rgb(1.5f));
     EXPECT_EQ(film.unweighted(1, 2).at(0, 0), Rgb(3.0f));
     LayeredImage image(2, 1);
@@ -210,6 +214,81 @@ TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     addShareOfFirstConnections(image, 3);
     EXPECT_FLOAT_EQ(image.channel("share.t02")[0], 0.5f);
     EXPECT_EQ(image.channel("share.t02")[1], 0.0f);
+}
+
+/// Joined as films join them: `blocks` of iterations, in each of which technique s = 2, t = 3 adds a
+/// value in two halves, behind a mirror, and s = 3, t = 2 one more of the same group.
+Layers layersOf(const std::vector<std::vector<float>>& blocks, bool blocksAreSamples) {
+    TechniqueFilm technique(1, 1, 4, blocksAreSamples);
+    Film film(1, 1, {blocks[0].size(), blocksAreSamples});
+    film.addLayers(technique);
+    const ThreadPool threads(1);
+    for (const std::vector<float>& block : blocks) {
+        for (const float value : block) {
+            technique.add({2, 3, 1, 0, Rgb(0.5f * value), Rgb(value)});
+            technique.add({2, 3, 1, 0, Rgb(0.5f * value), Rgb(value)});
+            technique.add({3, 2, 1, 0, Rgb(1.0f), Rgb(1.0f)});
+            technique.countIteration();
+            film.add(std::vector<Rgb>{Rgb(value)}, threads);
+        }
+    }
+    return film.sum().layers;
+}
+
+// Of 1, 5, 3, 7: mean 4, variance 20 / 3 of one and 5 / 3 of the mean; of the blocks' means 3, 5:
+// variance 2 of one and 1 of the mean.
+TEST(TechniqueFilm, knowsTheVarianceOfEachTechniqueAndGroup) {
+    const std::vector<std::vector<float>> blocks{{1, 5}, {3, 7}};
+    for (const bool blocksAreSamples : {false, true}) {
+        const Layers layers = layersOf(blocks, blocksAreSamples);
+        const std::uint64_t samples = blocksAreSamples ? 2 : 4;
+        const float expected = blocksAreSamples ? 1.0f : 5.0f / 3.0f;
+        EXPECT_FLOAT_EQ(techniqueVariance(layers, "s02t03", samples)[0], expected);
+        EXPECT_FLOAT_EQ(techniqueVariance(layers, "s03t02", samples)[0], 0.0f);
+        EXPECT_FLOAT_EQ(layers.at("weighted.connections1")[0], 5.0f);
+        EXPECT_FLOAT_EQ(techniqueVariance(layers, "connections1", samples)[0], expected);
+        EXPECT_TRUE(techniqueVariance(layers, "direct1", samples).empty());
+        EXPECT_EQ(techniqueVariance(layers, "connections1", 1)[0], 0.0f) << "nobody knows";
+        LayeredImage image(1, 1);
+        for (const auto& [name, plane] : layers) image.channel(name) = plane;
+        setTechniqueVariances(image, layers, samples);
+        EXPECT_FLOAT_EQ(image.channel("variance.s02t03")[0], expected);
+        EXPECT_FALSE(image.find("square.s02t03"));
+        const std::vector<std::string> names = TechniqueFilm::channelNames(4);
+        for (const auto& [name, plane] : image.channels()) {
+            EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
+        }
+    }
+}
+
+TEST(TechniqueGroup, numbersAndNamesAreItsOwn) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < TechniqueGroup::kCount; ++i) {
+        EXPECT_EQ(TechniqueGroup::at(i).index(), i);
+        names.insert(TechniqueGroup::at(i).name());
+    }
+    EXPECT_EQ(names.size(), TechniqueGroup::kCount);
+    EXPECT_EQ(TechniqueGroup::of(5, 1, 1).name(), "splats");
+    EXPECT_EQ(TechniqueGroup::of(0, 4, 2).name(), "hits2");
+    EXPECT_EQ(TechniqueGroup::of(1, 2, 1).name(), "direct1");
+    EXPECT_EQ(TechniqueGroup::of(2, 9, 8).name(), "connections3");
+}
+
+TEST(TechniqueClock, givesItsTimeToGroupsWhereItIsOn) {
+    TechniqueClock off;
+    off.start();
+    off.lap([]() -> TechniqueGroup { throw std::logic_error("asked for nothing"); });
+    TechniqueClock clock;
+    clock.switchOn();
+    clock.start();
+    while (clock.seconds()[0] == 0.0) clock.lap([] { return TechniqueGroup{}; });
+    const auto direct = [](std::size_t i) { return TechniqueGroup::of(1, 2, int(i) + 1); };
+    clock.start();
+    while (clock.seconds()[TechniqueGroup::of(1, 2, 1).index()] == 0.0) {
+        clock.lapAmong(2, direct);
+    }
+    EXPECT_DOUBLE_EQ(clock.seconds()[TechniqueGroup::of(1, 2, 1).index()],
+                     clock.seconds()[TechniqueGroup::of(1, 2, 2).index()]);
 }
 
 }  // namespace

@@ -230,9 +230,19 @@ FAULTS = [
           "inBlock == 0 ? size :", "inBlock + 1 > 0 ? size :",
           {"render": "PieceSize.*"}),
     Fault("ranks-count-warm-ups", "every rank counts the warm-up of a block that it makes a part of",
-          "render/ranks/piece.cpp",
-          "if (inBlock == 0) totals.add(ofWarmUp);", "totals.add(ofWarmUp);",
+          "render/block_maker.cpp",
+          "if (complete && iteration % plan_.iterations == 0)", "if (complete)",
           {"render": "RenderRanks.makeThePictureOfOneProcess"}),
+
+    # --techniques
+    Fault("technique-variance-of-iterations", "techniques' variances are of iterations where only blocks are samples",
+          "libcore/bidir/technique_film.cpp",
+          "if (!blocksAreSamples_) return meanOf(moments.squares);", "if (iterations_ > 0) return meanOf(moments.squares);",
+          {"bidir": "TechniqueFilm.*"}),
+    Fault("technique-group-by-edges", "techniques are grouped by the number of edges behind, mirrors counted",
+          "libcore/bidir/delivery.cpp",
+          "c.path.orderOf(s)", "c.closed.t - 1",
+          {"render": "RenderOutput.GroupsOfTechniques*"}),
 
     # Live view
     Fault("live-view-goes-on-with-the-old", "an older picture is sent to its end before the last one",

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "libcore/bidir/technique_film.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
@@ -237,6 +238,59 @@ TEST_F(RenderOutput, TechniqueLayersAddUpToThePicture) {
     for (std::size_t i = 0; i < sum.size(); ++i) {
         EXPECT_NEAR(sum[i], image.find("G")->at(i), 1e-4) << i;
     }
+}
+
+// A group's layer is what its techniques add; the JSON and the table are about the same layers.
+TEST_F(RenderOutput, GroupsOfTechniquesHaveEnergyNoiseAndTime) {
+    const Outcome o = run(quick("bpt", "--techniques --iterations 8 --json @o.json"));
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    const Image picture = image.rgb();
+    std::vector<double> sum(picture.pixels.size(), 0.0);
+    for (std::size_t g = 0; g < TechniqueGroup::kCount; ++g) {
+        const std::string name = TechniqueGroup::at(g).name();
+        const std::vector<float>* weighted = image.find("weighted." + name);
+        EXPECT_EQ(weighted == nullptr, image.find("variance." + name) == nullptr) << name;
+        for (std::size_t i = 0; weighted && i < sum.size(); ++i) sum[i] += (*weighted)[i];
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        EXPECT_NEAR(sum[i], mean(picture.pixels[i]), 1e-4) << i;
+    }
+    // What the mirror shows is the first eye vertex as well: t = 3 there.
+    std::vector<float> atTwo(sum.size(), 0.0f);
+    for (int s = 2; s <= 5; ++s) {
+        const std::string layer = "weighted." + TechniqueFilm::layerName(s, 2);
+        const Image own = image.hasRgb(layer) ? image.rgb(layer) : Image(24, 16);
+        for (std::size_t i = 0; i < sum.size(); ++i) atTwo[i] += mean(own.pixels[i]);
+    }
+    int behindTheMirror = 0;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        const float first = image.find("weighted.connections1")->at(i);
+        EXPECT_GE(first, 0.99f * atTwo[i]) << i;
+        behindTheMirror += first > 0.0f && atTwo[i] == 0.0f;
+    }
+    EXPECT_GT(behindTheMirror, 5);
+    double energy = 0.0, share = 0.0, seconds = 0.0;
+    const nlohmann::json report = json("o.json");
+    for (const nlohmann::json& row : report.at("techniques")) {
+        EXPECT_NE(o.out.find(row.at("technique").get<std::string>()), std::string::npos) << o.out;
+        seconds += row.at("seconds").get<double>();
+        if (!row.contains("energy")) continue;
+        energy += row.at("energy").get<double>();
+        share += row.at("variance_share").get<double>();
+        EXPECT_GE(row.at("variance").get<double>(), 0.0) << row;
+    }
+    EXPECT_NEAR(energy, 1.0, 1e-4);
+    EXPECT_NEAR(share, 1.0, 1e-9);
+    double ofPhases = 0.0;
+    for (const char* phase : {"light paths", "eye paths", "prepare", "observe"}) {
+        ofPhases += report.at("phases").value(phase, 0.0);
+    }
+    EXPECT_NEAR(seconds, ofPhases * report.at("threads").get<double>(), 1e-3 * seconds);
+    ASSERT_EQ(run(quick("lt", "--quiet --techniques --iterations 8 --json @o.json")).exitCode, 0);
+    const nlohmann::json rows = json("o.json").at("techniques");
+    EXPECT_EQ(rows.at(0).at("technique"), "splats");
+    EXPECT_NEAR(rows.at(0).at("energy").get<double>(), 1.0, 1e-4);
 }
 
 TEST_F(RenderOutput, TheShareOfConnectionsAtTheFirstVertex) {

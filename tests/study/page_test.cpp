@@ -139,8 +139,17 @@ class StudyPageSlow : public StudyTool {
             const sum = p.layers.reduce((total, layer) => total + layer.share, p.longer);
             expect(Math.abs(sum - 1) < 1e-5 && p.longer > 0, `shares of ${p.name}: ${sum}`);
         }
-        const bright = cells().find(f => f.textContent.includes('s = 1, t = 2'))
+        const direct = () => cells().find(f => f.textContent.includes('s = 1, t = 2'))
             .querySelector('canvas');
+        const adds = pixels(direct());
+        choose('pyramid-show', 'noise');
+        expect(pixels(direct()) !== adds, 'noise of layers');
+        choose('pyramid-show', 'adds');
+        expect(pixels(direct()) === adds, 'layers after their noise');
+        const costs = document.getElementById('technique-costs').textContent;
+        expect(['splats', 'hits', 'direct', 'connections', 'eye walks'].every(n => costs.includes(n)),
+               `groups of techniques: ${costs}`);
+        const bright = direct();
         const before = [pixels(bright), pixels(part.pictures[1].view)];
         key('-');
         expect(pixels(bright) !== before[0], 'exposure of layers');

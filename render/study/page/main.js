@@ -29,7 +29,9 @@ study.methods.forEach((method, i) => {
   element('option', method.name, document.getElementById('pyramid-method')).value = i;
 });
 document.getElementById('pyramid-method').addEventListener('change',
-  event => choosePyramid(Number(event.target.value)));
+  event => choosePyramid({method: Number(event.target.value)}));
+document.getElementById('pyramid-show').addEventListener('change',
+  event => choosePyramid({noise: event.target.value === 'noise'}));
 fillSelect('measure', study.measures, i => { view.measure = study.measures[i]; });
 document.getElementById('setup').addEventListener('change', event => {
   view.setup = event.target.checked;

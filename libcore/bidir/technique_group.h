@@ -1,0 +1,53 @@
+// Techniques by what they do and where the eye subpath ends: what tables of noise and of time go by.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+namespace lacuna {
+
+enum class TechniqueKind : std::uint8_t {
+    Splats,       ///< t = 1
+    Hits,         ///< s = 0
+    Direct,       ///< s = 1, t >= 2: next event, or a pick of a light's own point
+    Connections,  ///< s >= 2, t >= 2
+};
+
+/// A kind and, but for splats, the order of the eye subpath's last vertex before the connection or
+/// the light that was hit (Connection::order); the last of kOrders stands for all that follow.
+struct TechniqueGroup {
+    static constexpr int kOrders = 3;
+    static constexpr std::size_t kCount = 1 + 3 * std::size_t(kOrders);
+
+    TechniqueKind kind = TechniqueKind::Splats;
+    int order = 1;
+
+    static TechniqueGroup of(int s, int t, int order) {
+        if (t == 1) return {TechniqueKind::Splats, 1};
+        const TechniqueKind kind = s == 0   ? TechniqueKind::Hits
+                                   : s == 1 ? TechniqueKind::Direct
+                                            : TechniqueKind::Connections;
+        return {kind, std::min(order, kOrders)};
+    }
+    /// Splats first.
+    static TechniqueGroup at(std::size_t index) {
+        if (index == 0) return {};
+        const std::size_t kind = (index - 1) / kOrders;
+        return {TechniqueKind(kind + 1), int((index - 1) % kOrders) + 1};
+    }
+    std::size_t index() const {
+        if (kind == TechniqueKind::Splats) return 0;
+        return (std::size_t(kind) - 1) * kOrders + std::size_t(order);
+    }
+    const char* kindName() const {
+        constexpr const char* kNames[] = {"splats", "hits", "direct", "connections"};
+        return kNames[std::size_t(kind)];
+    }
+    /// Of its layers: "splats", "direct2".
+    std::string name() const {
+        return kind == TechniqueKind::Splats ? kindName() : kindName() + std::to_string(order);
+    }
+};
+
+}  // namespace lacuna
