@@ -28,6 +28,13 @@ LayeredImage readLayers(const std::string& path) {
 
 }  // namespace
 
+std::optional<CacheStamp> checkpointInputs(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+    LayeredImage image = readLayers(path);
+    return takePart(image, path).inputs;
+}
+
 Checkpoint::Checkpoint(std::string path, double seconds)
     : path_(std::move(path)), saving_(seconds) {}
 

@@ -10,6 +10,10 @@
 
 namespace lacuna {
 
+/// What the checkpoint `path` is of; empty if there is no file. Throws InputError if it is damaged or
+/// another file.
+std::optional<CacheStamp> checkpointInputs(const std::string& path);
+
 class Checkpoint {
   public:
     /// `seconds` between two saves.

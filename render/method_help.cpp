@@ -2,8 +2,13 @@
 
 #include <algorithm>
 
+#include "render/choose/choice.h"
+#include "render/choose/choose.h"
+
 namespace lacuna {
 namespace {
+
+constexpr const char* kAutoSummary = "chooses one of these for the scene, with what it needs";
 
 std::string padded(std::string text, std::size_t width) {
     text.resize(std::max(text.size(), width), ' ');
@@ -15,12 +20,20 @@ std::string padded(std::string text, std::size_t width) {
 std::string listMethods() {
     std::size_t width = 0;
     for (const MethodRow& row : methods()) width = std::max(width, row.name.size());
-    std::string text;
+    std::string text = padded(kAuto, width + 2) + kAutoSummary + " (default)\n";
     for (const MethodRow& row : methods()) {
         text += padded(row.name, width + 2) + row.summary + " [" + row.reference + "]" +
                 (row.biased ? " (biased: an experiment)" : "") + "\n";
     }
     return text;
+}
+
+std::string autoHelp() {
+    return std::string(kAuto) + ": " + kAutoSummary + "\nTries " + triedMethods() +
+           " on a small picture, whose samples are thrown away. With --iterations the choice "
+           "depends on the command\nand the scene alone; with --time or --until the clock has a "
+           "say. What was chosen, why, and how to ask for\nthe same by name: on stderr, in the "
+           "header (`chosen`) and in the JSON.\n";
 }
 
 std::string methodHelp(const MethodRow& row) {

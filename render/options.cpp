@@ -11,6 +11,7 @@
 #include "libcore/base/number_text.h"
 #include "libcore/base/text_list.h"
 #include "libcore/image/image_io.h"
+#include "render/choose/choice.h"
 #include "render/live/layer_names.h"
 
 namespace lacuna {
@@ -22,7 +23,10 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("SCENE", o.scene, "Scene: .glb or .gltf")->type_name("SCENE.glb");
     app.add_option("-o,--output", o.output, "Image: .exr (layers, statistics), .png or .pfm")
         ->type_name("FILE");
-    app.add_option("--method", o.method, "How to render: see --list-methods")->type_name("NAME");
+    app.add_option("--method", o.method,
+                   "How to render (default: auto, which chooses for the scene): see --list-methods")
+        ->type_name("NAME")
+        ->take_last();
     app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
     app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
         ->type_name("NAME");
@@ -41,7 +45,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(picture);
 
     const std::string effort = "Effort";
-    app.add_option("--iterations", o.iterations,
+    app.add_option("--iterations,--samples,--spp", o.iterations,
                    "One eye path per pixel each (default: 64; unlimited with --time, --until)")
         ->type_name("N")
         ->group(effort);
@@ -110,6 +114,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--effects", o.effects, "Print what the scene calls for; renders nothing")
         ->group(check);
     addCommonOptions(app, o.common);
+    app.add_flag("--denoise", o.denoise)->group("");  // says what to do instead
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
         "a second one exits at once. --width or --height alone keeps the picture's shape, that of\n"
@@ -173,6 +178,31 @@ void checkPieces(const RenderOptions& o) {
     }
     if (o.blocks && !o.output.empty() && endingOf(o.output) != ".exr") {
         throw UsageError("--blocks: expected an .exr to hold the part, found '" + o.output + "'");
+    }
+}
+
+/// `auto` is the method where none is named.
+void checkMethod(RenderOptions& o) {
+    if (o.method.empty()) o.method = kAuto;
+    if (o.method != kAuto) return;
+    const std::string byName = "; name a method, or see what the picture's header says was chosen";
+    if (!o.assignments.empty()) {
+        throw UsageError("--set: expected the method that it is of, found " +
+                         std::string("--method auto") + byName);
+    }
+    if (o.replay) {
+        throw UsageError("--replay: expected the method of the picture, found --method auto" +
+                         byName);
+    }
+}
+
+/// NAME.png beside the scene. What is there and is no picture of ours is somebody's: a texture, say.
+void nameOutput(RenderOptions& o) {
+    o.output = std::filesystem::path(o.scene).replace_extension(".png");
+    std::error_code ignored;
+    if (std::filesystem::exists(o.output, ignored) && !isOurPng(o.output)) {
+        throw UsageError("-o: expected the image to write, found none, and " + o.output +
+                         " is there and not by Lacuna; add -o FILE");
     }
 }
 
@@ -251,6 +281,12 @@ ReplayRequest parseReplay(const std::string& text) {
 
 void checkOptions(RenderOptions& o) {
     checkSceneOptions(o);
+    if (o.denoise) {
+        throw UsageError(
+            "--denoise: expected a render, found a wish that Lacuna leaves to others; write an "
+            ".exr and give its layers R G B, albedo and normal to a denoiser (Blender's "
+            "compositor, Open Image Denoise)");
+    }
     for (const std::string& text : o.assignments) {
         if (!text.starts_with("effects.")) continue;
         throw UsageError("--set " + text +
@@ -279,16 +315,16 @@ void checkOptions(RenderOptions& o) {
         throw UsageError("SCENE.glb: expected the scene to render, found none; see --help");
     }
     if (o.effects) return;
-    if (o.method.empty()) {
-        throw UsageError("--method: expected a method's name, found none: see --list-methods");
-    }
-    if (o.output.empty() && !o.replay && !o.estimate) {
-        throw UsageError("-o: expected the image to write, found none; add -o OUT.exr");
-    }
+    checkMethod(o);
+    if (o.output.empty() && !o.replay && !o.estimate) nameOutput(o);
     if (o.techniques && !o.replay && endingOf(o.output) != ".exr") {
         throw UsageError("--techniques: expected an .exr to hold the layers, found '" + o.output +
                          "'");
     }
+}
+
+const MethodRow& namedRow(const RenderOptions& o) {
+    return o.method == kAuto ? findMethod("bpt") : findMethod(o.method, "--method");
 }
 
 void checkOutputs(const RenderOptions& o) {

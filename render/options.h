@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "libcore/methods/registry.h"
 #include "libcore/tool/scene_options.h"
 #include "render/accuracy.h"
 #include "render/live/server_address.h"
@@ -36,7 +37,7 @@ struct RenderOptions : SceneOptions {
     std::string untilText;
     bool countSetup = false, estimate = false;
     std::string reference, log;
-    bool prepare = false, techniques = false, verify = false;
+    bool prepare = false, techniques = false, verify = false, denoise = false;
     double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;
@@ -62,6 +63,10 @@ void declareOptions(CLI::App& app, RenderOptions& options);
 /// Parses the texts and checks every range that the scene has no say in. Throws UsageError, and
 /// InputError for an environment of another format.
 void checkOptions(RenderOptions& options);
+
+/// The row of --method, or what stands for it until `auto` has chosen: a row with all techniques.
+/// Throws UsageError for a name that no row has.
+const MethodRow& namedRow(const RenderOptions& options);
 
 /// Throws UsageError where the result and an input, or two results, would be the same file;
 /// RunError where a result cannot be written. Leaves no file behind.

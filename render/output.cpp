@@ -41,6 +41,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["commandLine"] = r.commandLine;
     a["method"] = r.method->name;
     a["parameters"] = parametersJson(*r.method, r.settings).dump();
+    if (r.choice) a["chosen"] = utf8Text(r.choice->json(), -1);
     a["seed"] = integerAttribute(r.seed);
     a["iterations"] = integerAttribute(r.iterations);
     a["blockIterations"] = integerAttribute(r.blocks.iterations);
@@ -176,6 +177,7 @@ json reportJson(const RenderReport& r) {
            {"cache_hashes", r.cacheHashes},
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
+    if (r.choice) j["chosen"] = r.choice->json();
     if (r.techniques) j["techniques"] = techniqueCostsJson(r.techniqueCosts);
     if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
     j["estimated_error"] = json::object();

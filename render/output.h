@@ -14,6 +14,7 @@
 #include "libcore/image/error_metrics.h"
 #include "libcore/methods/registry.h"
 #include "libcore/tool/effects.h"
+#include "render/choose/choice.h"
 #include "render/technique_table.h"
 
 namespace lacuna {
@@ -22,6 +23,7 @@ namespace lacuna {
 struct RenderReport {
     std::string commandLine;
     const MethodRow* method = nullptr;
+    std::optional<Choice> choice;  ///< where `auto` chose the method
     Settings settings;
     std::uint64_t seed = 1;
     int threads = 1;  ///< of rank 0

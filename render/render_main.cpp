@@ -5,7 +5,10 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/tool/scene_stage.h"
+#include "render/checkpoint.h"
+#include "render/choose/choose.h"
 #include "render/method_help.h"
 #include "render/options.h"
 #include "render/ranks/together.h"
@@ -18,8 +21,8 @@ namespace {
 
 int printEffects(const RenderOptions& options) {
     // Here the method is optional, but not arbitrary.
-    const MethodRow* row =
-        options.method.empty() ? nullptr : &findMethod(options.method, "--method");
+    const bool named = !options.method.empty() && options.method != kAuto;
+    const MethodRow* row = named ? &findMethod(options.method, "--method") : nullptr;
     if (row) resolve(*row, options.assignments, "--set ");
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
     const ThreadPool pool(options.common.threads);
@@ -45,6 +48,10 @@ bool onlyPrints(const RenderOptions& options) {
 int print(const RenderOptions& options) {
     if (options.listMethods) {
         std::fputs(listMethods().c_str(), stdout);
+        return 0;
+    }
+    if (options.helpMethod == kAuto) {
+        std::fputs(autoHelp().c_str(), stdout);
         return 0;
     }
     if (!options.helpMethod.empty()) {
@@ -74,11 +81,29 @@ void compareInputs(const Ranks& ranks, const CacheStamp& own) {
     }
 }
 
+/// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
+Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
+              const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress) {
+    if (!ranks.leads()) return Choice::ofText(textOf(ranks.wait()));
+    const auto found = [&]() -> Choice {
+        if (!options.checkpoint.empty()) {
+            const auto inputs = checkpointInputs(options.checkpoint);
+            if (inputs) return Choice::ofInputs(*inputs);
+        }
+        const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["choose"]);
+        return chooseMethod(options, stage, pool, interrupt.requested(), progress);
+    };
+    const Choice choice = found();
+    progress.remark("auto: " + choice.method + ", " + choice.why +
+                    "; the same by name: " + choice.byName());
+    return choice;
+}
+
 int renderPicture(RenderOptions& options, const Ranks& ranks) {
     const MethodRow* row = nullptr;
     Settings settings;
     const bool checked = ranks.agree([&] {
-        row = &findMethod(options.method, "--method");
+        row = &namedRow(options);
         settings = resolve(*row, options.assignments, "--set ");
         if (options.verify && ranks.many()) {
             throw UsageError("--verify: expected one process, found " +
@@ -100,6 +125,23 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
         look.emplace(*stage, pool);
     });
     if (!loaded) return 0;
+    std::optional<Choice> choice;
+    if (options.method == kAuto) {
+        for (const bool leaders : {true, false}) {
+            const bool chosen = ranks.agree([&] {
+                if (ranks.leads() != leaders) return;
+                choice = choose(options, *stage, ranks, pool, interrupt, progress);
+                row = &findMethod(choice->method);
+                settings = resolve(*row, choice->assignments);
+                useMethod(*stage, options, *row, settings);
+                for (int i = 1; leaders && i < ranks.size(); ++i) {
+                    ranks.send(i, Ranks::Tag::Inputs, choice->text());
+                }
+            });
+            if (!chosen) return 0;
+        }
+        options.prepare = !row->needs.empty();
+    }
     // Rank 0 makes the caches that are missing, the others read them.
     Caches caches;
     if (!ranks.leads()) options.prepare = false;
@@ -121,7 +163,7 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
     std::optional<Session> session;
     const bool ready = ranks.agree([&] {
         if (!ranks.leads()) return;
-        session.emplace(options, *row, settings, *stage, caches, *look, maker, ranks, pool,
+        session.emplace(options, *row, settings, choice, *stage, caches, *look, maker, ranks, pool,
                         interrupt, progress);
     });
     if (!ready) return 0;

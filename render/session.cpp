@@ -58,9 +58,9 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
 }  // namespace
 
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-                 const Stage& stage, const Caches& caches, const FirstLook& look, BlockMaker& maker,
-                 const Ranks& ranks, const ThreadPool& pool, const InterruptGuard& interrupt,
-                 Progress& progress)
+                 const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
+                 const FirstLook& look, BlockMaker& maker, const Ranks& ranks,
+                 const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress)
     : options_(options),
       pool_(pool),
       interrupt_(interrupt),
@@ -75,6 +75,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     RenderReport& r = report_;
     r.commandLine = options.commandLine;
     r.method = &row;
+    r.choice = choice;
     r.settings = settings;
     r.seed = options.common.seed;
     r.threads = pool.threads();
@@ -503,7 +504,8 @@ void Session::warnIfBlack() {
 }
 
 std::string Session::replayCommand(const std::string& replay) const {
-    return options_.commandLine + " --replay " + replay;
+    const std::string byName = report_.choice ? " " + report_.choice->byName() : "";
+    return options_.commandLine + byName + " --replay " + replay;
 }
 
 void Session::warnAboutDefects() {

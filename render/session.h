@@ -28,9 +28,9 @@ class Session {
     /// All references must outlive the session. With more than one rank: on rank 0, while the others
     /// serve().
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-            const Stage& stage, const Caches& caches, const FirstLook& look, BlockMaker& maker,
-            const Ranks& ranks, const ThreadPool& pool, const InterruptGuard& interrupt,
-            Progress& progress);
+            const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
+            const FirstLook& look, BlockMaker& maker, const Ranks& ranks, const ThreadPool& pool,
+            const InterruptGuard& interrupt, Progress& progress);
     ~Session();
 
     /// Renders and saves; what was written goes to stdout. Returns the exit code.

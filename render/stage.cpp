@@ -52,4 +52,10 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     return stage;
 }
 
+void useMethod(Stage& stage, const RenderOptions& options, const MethodRow& method,
+               const Settings& settings) {
+    useMethod(static_cast<SceneStage&>(stage), options, method);
+    stage.settings.lightPaths = lightPathsOf(settings);
+}
+
 }  // namespace lacuna

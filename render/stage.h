@@ -16,4 +16,8 @@ struct Stage : SceneStage {
 Stage loadStage(const RenderOptions& options, const MethodRow& method, const Settings& settings,
                 const ThreadPool& pool, Progress& progress);
 
+/// Puts a method that was chosen afterwards in the place of that which the stage was loaded for.
+void useMethod(Stage& stage, const RenderOptions& options, const MethodRow& method,
+               const Settings& settings);
+
 }  // namespace lacuna

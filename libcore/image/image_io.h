@@ -30,6 +30,9 @@ std::string endingOf(const std::string& path);
 Image readHdr(const std::string& path);
 Image readPfm(const std::string& path);
 Image readPng(const std::string& path);
+/// Whether it is a PNG that writePng or writePngBytes wrote: these say so in a chunk of text. False
+/// for anything else, a file that cannot be read as well.
+bool isOurPng(const std::string& path);
 void writePfm(const std::string& path, const Image& image);
 void writePng(const std::string& path, const Image& image, double exposure);
 /// `rgb`: width * height * 3 bytes, sRGB, as they are to stand in the file.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -55,7 +56,21 @@ std::string reason() {
     return text && *text ? text : "a damaged one";
 }
 
+constexpr std::size_t kHeadBytes = 33;  // signature and IHDR
+/// A chunk tEXt, "Software" "Lacuna", with its length and checksum.
+constexpr std::array<std::uint8_t, 27> kSoftware{0,   0,   0,   15,  't', 'E',  'X',  't',  'S',
+                                                 'o', 'f', 't', 'w', 'a', 'r',  'e',  0,    'L',
+                                                 'a', 'c', 'u', 'n', 'a', 0xb7, 0xb6, 0x2e, 0xc0};
+
 }  // namespace
+
+bool isOurPng(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, kHeadBytes + kSoftware.size()> bytes{};
+    if (!file.read(bytes.data(), bytes.size())) return false;
+    return std::equal(kSoftware.begin(), kSoftware.end(), bytes.begin() + kHeadBytes,
+                      [](std::uint8_t a, char b) { return a == std::uint8_t(b); });
+}
 
 Image readPng(const std::string& path) {
     const std::vector<std::uint8_t> bytes = readFileBytes(path);
@@ -97,10 +112,14 @@ void writePngBytes(const std::string& path, int width, int height,
                        std::to_string(rgb.size()) + "; write an .exr");
     }
     AtomicFile file(path);
-    // No exception may pass through stb: C code calls this back. AtomicFile remembers the failure.
+    // Once, with all bytes. No exception may pass through stb: C code calls this back. AtomicFile
+    // remembers the failure.
     const auto write = [](void* context, void* data, int bytes) noexcept {
         try {
-            static_cast<AtomicFile*>(context)->write(data, std::size_t(bytes));
+            AtomicFile& to = *static_cast<AtomicFile*>(context);
+            to.write(data, kHeadBytes);
+            to.write(kSoftware.data(), kSoftware.size());
+            to.write(static_cast<const char*>(data) + kHeadBytes, std::size_t(bytes) - kHeadBytes);
         } catch (const Error&) {
         }
     };

@@ -1,6 +1,7 @@
 #include "libcore/tool/effects.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <set>
 
 namespace lacuna {
@@ -60,28 +61,8 @@ class Table {
     void add(const char* name, bool simulated, const std::string& reason) {
         rows.push_back({name, simulated, reason});
     }
-    void addTechnique(const char* name, bool simulated, const std::string& reason) {
-        add(name, simulated, reason);
-        rows.back().ofScene = false;
-    }
     std::vector<Effect> rows;
 };
-
-void addTechniques(Table& table, const MethodRow& method, bool hittable, bool anyLight) {
-    const Techniques& t = method.techniques;
-    table.addTechnique("hits", t.hits && hittable,
-                       !t.hits    ? method.name + " has no technique s = 0"
-                       : hittable ? "an eye path can run into a light"
-                                  : "no light that an eye path can run into");
-    table.addTechnique("connections", t.connects && anyLight,
-                       !t.connects ? method.name + " connects no vertices"
-                       : anyLight  ? "eye vertices are connected with light vertices"
-                                   : "no light");
-    table.addTechnique("splats", t.splats && anyLight,
-                       !t.splats  ? method.name + " has no technique t = 1"
-                       : anyLight ? "light paths are seen by the lens"
-                                  : "no light");
-}
 
 }  // namespace
 
@@ -143,11 +124,37 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           lensRadius > 0.0 ? "the aperture is above 0" : "the aperture is 0: a pinhole");
 
     if (method) {
-        const bool hittable = have.emissiveTriangles > 0 || scene.environment.has_value();
-        const bool any = hittable || have.points + have.spots + have.directionals > 0;
-        addTechniques(t, *method, hittable, any);
+        const std::vector<Effect> techniques = techniqueEffects(*method, t.rows);
+        t.rows.insert(t.rows.end(), techniques.begin(), techniques.end());
     }
     return t.rows;
+}
+
+std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Effect> ofScene) {
+    const auto simulated = [&](std::initializer_list<const char*> names) {
+        return std::ranges::any_of(ofScene, [&](const Effect& e) {
+            return e.simulated && std::ranges::find(names, e.name) != names.end();
+        });
+    };
+    const bool hittable = simulated({"area_lights", "environment"});
+    const bool anyLight =
+        hittable || simulated({"point_lights", "spot_lights", "directional_lights"});
+    Table table;
+    const Techniques& t = method.techniques;
+    table.add("hits", t.hits && hittable,
+              !t.hits    ? method.name + " has no technique s = 0"
+              : hittable ? "an eye path can run into a light"
+                         : "no light that an eye path can run into");
+    table.add("connections", t.connects && anyLight,
+              !t.connects ? method.name + " connects no vertices"
+              : anyLight  ? "eye vertices are connected with light vertices"
+                          : "no light");
+    table.add("splats", t.splats && anyLight,
+              !t.splats  ? method.name + " has no technique t = 1"
+              : anyLight ? "light paths are seen by the lens"
+                         : "no light");
+    for (Effect& e : table.rows) e.ofScene = false;
+    return table.rows;
 }
 
 std::string effectsText(const std::vector<Effect>& effects) {

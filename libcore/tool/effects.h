@@ -1,6 +1,7 @@
 // Which effects a scene calls for, what is therefore simulated and what is left out, with reasons.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Effect {
 /// With a method: its techniques as well.
 std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
                               const MethodRow* method);
+
+/// The rows of a method's techniques, from those of the scene.
+std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Effect> ofScene);
 
 /// The table that --effects prints.
 std::string effectsText(const std::vector<Effect>& effects);

@@ -1,6 +1,7 @@
 #include "libcore/tool/scene_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
@@ -42,6 +43,10 @@ void addViewOptions(CLI::App& app, SceneOptions& o) {
     app.add_option("--height", o.height,
                    "Pixels (default: by --width, else extras.lacuna, else by the aspect)")
         ->type_name("N")
+        ->group(view);
+    app.add_option("--scale,--size", o.scaleText,
+                   "Share of the picture's sides: 50%; or both sides: 640x360")
+        ->type_name("P%")
         ->group(view);
     app.add_option("--camera", o.camera, "Camera of the scene (default: the first)")
         ->type_name("NAME")
@@ -118,7 +123,43 @@ class Arguments {
 
 }  // namespace
 
+namespace {
+
+/// "50%", or "640x360", which is --width and --height.
+void parseScale(SceneOptions& o) {
+    const std::string& text = o.scaleText;
+    const auto fail = [&]() -> double {
+        throw UsageError(
+            "--scale: expected a share such as 50%, or both sides such as 640x360, "
+            "found '" +
+            text + "'");
+    };
+    const auto numberIn = [&](const std::string& part) {
+        const std::optional<double> value = parseNumber(part);
+        return value && *value > 0.0 && std::isfinite(*value) ? *value : fail();
+    };
+    if (const std::size_t by = text.find('x'); by != std::string::npos) {
+        if (o.width || o.height) {
+            throw UsageError("--scale: expected a share beside --width or --height, found '" +
+                             text + "'; leave one of them out");
+        }
+        const auto side = [&](const std::string& part) {
+            const double pixels = numberIn(part);
+            return pixels == std::floor(pixels) && pixels <= 1e9 ? std::int64_t(pixels)
+                                                                 : std::int64_t(fail());
+        };
+        o.width = side(text.substr(0, by));
+        o.height = side(text.substr(by + 1));
+        return;
+    }
+    if (!text.ends_with('%')) fail();
+    o.scale = numberIn(text.substr(0, text.size() - 1)) / 100.0;
+}
+
+}  // namespace
+
 void checkSceneOptions(SceneOptions& o) {
+    if (!o.scaleText.empty()) parseScale(o);
     o.effectSwitches = parseEffectSwitches(o.effectTexts);
     requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);

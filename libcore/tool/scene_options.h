@@ -24,15 +24,18 @@ struct SceneOptions {
     std::string camera;
     std::optional<double> aperture, focus;
     std::optional<std::int64_t> width, height;
+    std::string scaleText;
     std::optional<std::int64_t> maxDepth, rouletteDepth;
 
-    std::vector<EffectSwitch> effectSwitches;  ///< of effectTexts, by checkSceneOptions
+    // By checkSceneOptions.
+    std::vector<EffectSwitch> effectSwitches;  ///< of effectTexts
+    double scale = 1.0;                        ///< of the picture's sides, of scaleText
 };
 
 /// Declares --env, --env-rotate, --env-scale, --effect and --tolerance. Both must outlive the
 /// parsing.
 void addSceneOptions(CLI::App& app, SceneOptions& options);
-/// Declares --width, --height, --camera, --aperture, --focus, --max-depth and --rr-depth.
+/// Declares --width, --height, --scale, --camera, --aperture, --focus, --max-depth and --rr-depth.
 void addViewOptions(CLI::App& app, SceneOptions& options);
 
 /// Parses the switches and checks every range that the scene has no say in. Throws UsageError, and

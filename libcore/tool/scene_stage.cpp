@@ -41,7 +41,7 @@ double chooseAspect(const SceneOptions& options, const SceneDescription& scene,
 }
 
 /// The options' sides; without any the extras'; without those 1280 wide. One side alone is given
-/// the other by the aspect.
+/// the other by the aspect. Then the share of them that is asked for.
 Camera::Film chooseFilm(const SceneOptions& options, const SceneDescription& scene,
                         const CameraDescription& camera) {
     const double aspect = chooseAspect(options, scene, camera);
@@ -56,6 +56,9 @@ Camera::Film chooseFilm(const SceneOptions& options, const SceneDescription& sce
     };
     if (!width) width = height ? side(double(*height) * aspect) : kDefaultWidth;
     if (!height) height = side(double(*width) / aspect);
+    const auto scaled = [&](std::int64_t pixels) { return side(double(pixels) * options.scale); };
+    width = scaled(*width);
+    height = scaled(*height);
     requireSaneFilm(*width, *height);
     return {int(*width), int(*height)};
 }
@@ -207,6 +210,21 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
     stage.phaseSeconds["build"] = secondsSince(building);
     if (stage.scene->lights().empty()) warn(noLightText(*stage.scene));
     return stage;
+}
+
+void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& method) {
+    std::erase_if(stage.effects, [](const Effect& e) { return !e.ofScene; });
+    std::vector<Effect> rows = techniqueEffects(method, stage.effects);
+    std::vector<EffectSwitch> switches = options.effectSwitches;
+    std::erase_if(switches, [&](const EffectSwitch& s) {
+        return std::ranges::find(rows, s.name, &Effect::name) == rows.end();
+    });
+    stage.techniques = method.techniques;
+    // Switches of techniques change nothing else.
+    SceneDescription untouched;
+    double noLens = 0.0;
+    forceEffects(switches, {untouched, noLens, &stage.techniques}, rows);
+    stage.effects.insert(stage.effects.end(), rows.begin(), rows.end());
 }
 
 SceneStage loadScene(const SceneOptions& options, Look look, const ThreadPool& pool,

@@ -69,6 +69,10 @@ SceneEffects chooseEffects(const SceneOptions& options, SceneDescription& scene,
 SceneStage buildStage(SceneDescription description, const SceneOptions& options, Look look,
                       const MethodRow* method, const ThreadPool& pool, Progress& progress);
 
+/// Puts the techniques of `method`, as far as effects were not forced, in place of those that the
+/// stage was built with.
+void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& method);
+
 /// describeScene() in the pool's threads and buildStage(), for tools without a method.
 SceneStage loadScene(const SceneOptions& options, Look look, const ThreadPool& pool,
                      Progress& progress);

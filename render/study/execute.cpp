@@ -77,9 +77,11 @@ void renderRun(const Results& results, const PlannedRun& run, const RunDirectory
                const std::atomic<bool>& cancel) {
     std::vector<std::string> arguments = run.arguments;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    if (!findMethod(results.study.methods[run.method].method).needs.empty()) {
-        arguments.insert(arguments.end(), {"--prepare", "--cache", directory.cache()});
-    }
+    // Whatever is made beforehand is made anew in each run: its time is part of it.
+    const std::string& method = results.study.methods[run.method].method;
+    const bool chooses = method == kAuto;
+    if (!chooses && !findMethod(method).needs.empty()) arguments.push_back("--prepare");
+    arguments.insert(arguments.end(), {"--cache", directory.cache()});
     directory.render(renderer, results.study.scenes[run.scene].file, arguments, cancel);
 }
 

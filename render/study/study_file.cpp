@@ -236,16 +236,16 @@ void readSeeds(JsonObject& object, Study& study) {
 /// Whatever lacuna-render would refuse before it loads the scene.
 void requireRenderable(const Study& study, const StudyScene& scene, const StudyMethod& method) {
     std::vector<std::string> arguments{scene.file, "-o", "x.exr", "--method", method.method};
-    const std::vector<std::string> options = mergedOptions(scene, method);
-    for (const auto* more : {&options, &study.effort}) {
+    const std::vector<std::string> ofScene = mergedOptions(scene, method);
+    for (const auto* more : {&ofScene, &study.effort}) {
         arguments.insert(arguments.end(), more->begin(), more->end());
     }
     for (const std::string& assignment : method.assignments) {
         arguments.insert(arguments.end(), {"--set", assignment});
     }
     try {
-        resolve(findMethod(method.method, "--method"), parseRenderArguments(arguments).assignments,
-                "--set ");
+        const RenderOptions options = parseRenderArguments(arguments);
+        resolve(namedRow(options), options.assignments, "--set ");
     } catch (const UsageError& e) {
         throw UsageError(study.file + ": method '" + method.name + "': " + e.what());
     }

@@ -79,8 +79,6 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     // No such scene: what is wrong on the command line is found before anything is loaded.
     const std::string start = "@none.glb -o @out.exr --method pt ";
     expectFailure("", 2, "SCENE.glb");
-    expectFailure("@none.glb -o @out.exr", 2, "--method");
-    expectFailure("@none.glb --method pt", 2, "-o");
     expectFailure("@none.glb -o @out.exr --method fast", 2, "'fast'");
     expectFailure("@none.glb -o @out.jpg --method pt", 2, ".jpg");
     expectFailure(start + "--nonsense", 2, "--nonsense");
@@ -124,7 +122,15 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     for (const char* time : {"0s", "-1", "soon"}) {
         expectFailure(start + "--write-every " + time, 2, "--write-every");
     }
-    expectFailure("@none.glb --method pt --write-every 30s", 2, "-o");
+    for (const char* scale :
+         {"50", "0%", "-5%", "x", "640x", "x480", "640x480x3", "1e999%", "nan%"}) {
+        expectFailure(start + "--scale " + scale, 2, "--scale");
+    }
+    expectFailure(start + "--size 64x48 --width 64", 2, "--width");
+    expectFailure(start + "--denoise", 2, "albedo");
+    expectFailure("@none.glb -o @out.exr --set candidates=3", 2, "--method auto");
+    expectFailure("@none.glb -o @out.exr --replay 1,2,3", 2, "--method auto");
+    expectFailure("@none.glb --techniques", 2, ".exr");
     expectFailure(start + "--json @out.exr", 2, "file of its own");
 }
 

@@ -1,0 +1,55 @@
+#include "render/choose/choice.h"
+
+#include <nlohmann/json.hpp>
+
+#include "libcore/tool/tool.h"
+
+namespace lacuna {
+
+std::string Choice::byName() const {
+    std::string text = "--method " + method;
+    if (!findMethod(method).needs.empty()) text += " --prepare";
+    for (const std::string& a : assignments) text += " --set " + shellQuoted(a);
+    return text;
+}
+
+nlohmann::json Choice::json() const {
+    nlohmann::json parameters = nlohmann::json::object();
+    for (const std::string& a : assignments) {
+        const std::size_t equals = a.find('=');
+        parameters[a.substr(0, equals)] = a.substr(equals + 1);
+    }
+    nlohmann::json j{
+        {"method", method}, {"parameters", parameters}, {"why", why}, {"by_name", byName()}};
+    for (const auto& [name, speed] : speeds) j["speeds"][name] = speed;
+    return j;
+}
+
+std::string Choice::text() const {
+    return nlohmann::json{
+        {"method", method}, {"set", assignments}, {"why", why}, {"speeds", speeds}}
+        .dump();
+}
+
+Choice Choice::ofText(const std::string& text) {
+    const nlohmann::json j = nlohmann::json::parse(text);
+    return {j.at("method"), j.at("set"), j.at("why"), j.at("speeds")};
+}
+
+Choice Choice::ofInputs(const CacheStamp& inputs) {
+    const auto value = [&](const std::string& name) {
+        const auto found = inputs.inputs.find(name);
+        return found == inputs.inputs.end() ? std::string{} : found->second;
+    };
+    Choice choice{value("method"), {}, "as the checkpoint has it", {}};
+    const MethodRow& row = findMethod(choice.method, "the checkpoint's method");
+    for (const Option& option : row.options) {
+        const std::string text = value(option.name);
+        if (!text.empty() && text != option.standard) {
+            choice.assignments.push_back(option.name + "=" + text);
+        }
+    }
+    return choice;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,239 @@
+#include "render/choose/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include "libcore/base/atomic_file.h"
+#include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
+#include "render/choose/trial.h"
+
+namespace lacuna {
+namespace {
+
+// Of what the render may take. (tests/results/auto-2026-11-24.md)
+constexpr double kTrialShare = 0.008;    // of each candidate
+constexpr double kTrainingShare = 0.06;  // of the subspaces, which trials and picture share
+constexpr double kFewestTrialRays = 4e4;
+constexpr double kMostTrialRays = 2e6;      // more would tell nothing new
+constexpr double kUnlimitedSeconds = 60.0;  // where nothing but an error ends the render
+
+/// A path of training costs as much as so many rays of a render.
+constexpr double kRaysPerTrainingPath = 75.0;
+constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1e6;
+
+constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
+constexpr double kTrialIterations = 8.0;
+constexpr double kFewestPixels = 256.0, kMostPixels = 6144.0;
+constexpr std::uint64_t kTrialSubpaths = 10'000;  // of pools in trials: small pictures need no more
+constexpr std::uint64_t kMostSubpaths = 100'000;
+/// A row takes the place of the usual one where it is better by so much: what trials see has noise.
+constexpr double kWorthAChange = 0.85;
+
+/// What is tried, and what a ray costs with it beside one of bpt: look-ups and waiting included.
+struct Row {
+    const char* method;
+    double rayCost;
+    const char* strength;  ///< behind "light ", where it wins
+};
+constexpr Row kRows[] = {
+    {"bpt", 1.0, "is found from both ends"},
+    {"pt", 1.1, "is in plain sight"},
+    {"risbpt", 1.35, "comes from many places near and glossy"},
+    {"spcbpt", 1.35, "takes ways that can be learned"},
+};
+/// Where trials find nothing clearly better.
+constexpr const char* kUsual = "spcbpt";
+
+constexpr const char* kPhase = "choosing a method";
+
+/// Training with `paths` and what goes with so many.
+std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) {
+    const double p = std::clamp(paths, kFewestTrainingPaths, kMostTrainingPaths);
+    const auto rounded = [](double value) { return std::to_string(std::llround(value)); };
+    // Two digits: nobody reads more, and caches of like renders are the same.
+    const auto twoDigits = [](double value) {
+        const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+        return std::round(value / unit) * unit;
+    };
+    const double subspaces = 40.0 * std::pow(p / kFewestTrainingPaths, 0.6);
+    return {"candidates=" + std::to_string(subpaths), "train.paths=" + rounded(twoDigits(p)),
+            "train.subspaces=" + rounded(twoDigits(std::clamp(subspaces, 40.0, 1000.0))),
+            "train.light_paths=" + rounded(twoDigits(std::min(4.0 * p + 4000.0, 2e6))),
+            "train.epochs=" + rounded(std::clamp(p / 4000.0, 5.0, 20.0))};
+}
+
+/// A light subpath per pixel is traced anyway: it may as well be in the pool.
+std::uint64_t subpathsFor(const Camera::Film& film) {
+    const auto pixels = std::uint64_t(film.width) * std::uint64_t(film.height);
+    return std::clamp<std::uint64_t>(pixels, 1000, kMostSubpaths);
+}
+
+/// A row that was tried.
+struct Tried {
+    const Row* row = nullptr;
+    Trial trial;
+    double noise = 0.0;  ///< mape after one iteration, squared
+    double cost = 0.0;   ///< of an iteration of the picture, in rays of bpt
+};
+
+class Pilot {
+  public:
+    Pilot(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
+          const std::atomic<bool>& cancel, Progress& progress)
+        : options_(options), stage_(stage), pool_(pool), cancel_(cancel), progress_(progress) {}
+
+    Choice choose() {
+        sizeUp();
+        for (const Row& row : std::span(kRows).subspan(1)) {
+            if (mayKeepCaches(row)) tryRow(row);
+        }
+        judge();
+        return best();
+    }
+
+  private:
+    bool byClock() const {
+        return !options_.iterations && (options_.timeSeconds || options_.until);
+    }
+
+    /// What the whole render may take, and the pilot with it: from a first trial of bpt.
+    void sizeUp() {
+        const PixelRect& crop = stage_.settings.crop;
+        const double pixels = double(crop.width()) * double(crop.height());
+        small_.emplace(stage_, std::min(pixels, kFewestPixels));
+        Trial first;
+        run(kRows[0], {}, kFewestTrialRays / 4.0, first);
+        budget_ = double(iterations()) * first.rays;
+        if (byClock()) {
+            double seconds = options_.timeSeconds.value_or(kUnlimitedSeconds);
+            if (options_.countSetup) seconds = std::max(0.1, seconds - stage_.setupSeconds);
+            budget_ = seconds * first.rays / first.seconds;
+        }
+        rays_ = std::clamp(kTrialShare * budget_, kFewestTrialRays, kMostTrialRays);
+        const double wanted = rays_ / (kRaysPerPixel * kTrialIterations);
+        small_.emplace(stage_, std::clamp(wanted, kFewestPixels, kMostPixels));
+        tryRow(kRows[0]);
+    }
+
+    std::uint64_t iterations() const {
+        constexpr std::uint64_t kDefault = 64;
+        return options_.iterations ? std::uint64_t(*options_.iterations) : kDefault;
+    }
+
+    std::vector<std::string> assignments(const Row& row, std::uint64_t subpaths) const {
+        if (findMethod(row.method).needs.empty()) return {};
+        return subspaceSettings(kTrainingShare * budget_ / kRaysPerTrainingPath, subpaths);
+    }
+
+    /// A folder that cannot be written is a reason to do without, not to fail.
+    bool mayKeepCaches(const Row& row) const {
+        if (findMethod(row.method).needs.empty()) return true;
+        const std::string directory =
+            cacheDirectory(options_.scene, options_.common.cacheDirectory);
+        try {
+            makeCacheDirectory(directory + "/x");
+            const AtomicFile probe(directory + "/x");
+            return true;
+        } catch (const RunError& e) {
+            progress_.warning("warning: auto does without " + std::string(row.method) + ": " +
+                              e.what());
+            return false;
+        }
+    }
+
+    void tryRow(const Row& row) {
+        Tried tried;
+        tried.row = &row;
+        run(row, assignments(row, std::min(subpathsFor(film()), kTrialSubpaths)),
+            rays_ / row.rayCost, tried.trial);
+        tried.cost = tried.trial.rays * row.rayCost;
+        tried_.push_back(std::move(tried));
+    }
+
+    Camera::Film film() const { return stage_.camera->film(); }
+
+    void run(const Row& candidate, const std::vector<std::string>& assignments, double rays,
+             Trial& trial) {
+        const MethodRow& row = findMethod(candidate.method);
+        const Settings settings = resolve(row, assignments);
+        RenderOptions options = options_;
+        options.prepare = true;
+        Caches caches;
+        if (!row.needs.empty()) {
+            caches = loadCaches(options, row, settings, stage_, pool_, cancel_, progress_);
+            progress_.phase(kPhase);
+        }
+        // A seed of its own for each: they would share eye subpaths, and so noise.
+        const std::uint64_t seed = stage_.settings.seed * 0x9e3779b97f4a7c15u + ++runs_;
+        if (!runTrial(stage_, *small_, row, settings, caches, seed, rays, pool_, cancel_, trial)) {
+            throw Error(130, "interrupted: nothing was written");
+        }
+    }
+
+    void judge() {
+        std::vector<HalfPictures> pictures;
+        for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
+        const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
+        for (std::size_t i = 0; i < tried_.size(); ++i) {
+            tried_[i].noise = errors[i] * errors[i] * double(tried_[i].trial.iterations);
+        }
+    }
+
+    /// Time to an error, in units that only compare. What was trained is there already.
+    static double loss(const Tried& t) { return t.noise * t.cost; }
+
+    Choice best() const {
+        const Tried& bpt = tried_.front();
+        const auto usual = std::ranges::find_if(
+            tried_, [](const Tried& t) { return std::string(t.row->method) == kUsual; });
+        const Tried* chosen = usual == tried_.end() ? &bpt : &*usual;
+        double least = loss(*chosen) * kWorthAChange;
+        for (const Tried& t : tried_) {
+            if (&t == chosen || !(loss(t) < least)) continue;
+            least = loss(t);
+            chosen = &t;
+        }
+        Choice choice{chosen->row->method, assignments(*chosen->row, subpathsFor(film())), "", {}};
+        for (const Tried& t : tried_) {
+            choice.speeds.emplace_back(t.row->method, loss(bpt) / loss(t));
+        }
+        if (chosen == &bpt) {
+            choice.why = "no other method was clearly better in a pilot";
+        } else {
+            char times[64];
+            std::snprintf(times, sizeof times, "%.2g times as fast as bpt in a pilot",
+                          loss(bpt) / loss(*chosen));
+            choice.why = std::string(times) + ": light " + chosen->row->strength;
+        }
+        return choice;
+    }
+
+    const RenderOptions& options_;
+    const Stage& stage_;
+    const ThreadPool& pool_;
+    const std::atomic<bool>& cancel_;
+    Progress& progress_;
+    std::optional<SmallFilm> small_;
+    double budget_ = 0.0;  ///< of the render, in rays of bpt
+    double rays_ = 0.0;    ///< of a trial, likewise
+    std::uint64_t runs_ = 0;
+    std::vector<Tried> tried_;  ///< bpt first
+};
+
+}  // namespace
+
+std::string triedMethods() {
+    return joined(kRows, ", ", &Row::method);
+}
+
+Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
+                    const std::atomic<bool>& cancel, Progress& progress) {
+    progress.phase(kPhase);
+    if (stage.scene->lights().empty()) return {"pt", {}, "there is no light", {}};
+    return Pilot(options, stage, pool, cancel, progress).choose();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,24 @@
+// `--method auto`: which method renders this scene best in what it may take, found by a pilot whose
+// samples are thrown away. (theory.md, "auto")
+#pragma once
+
+#include <atomic>
+
+#include "libcore/tool/progress.h"
+#include "render/choose/choice.h"
+#include "render/options.h"
+#include "render/stage.h"
+
+namespace lacuna {
+
+/// The names of the rows that are tried: "bpt, pt, ..".
+std::string triedMethods();
+
+/// Chooses for a stage that was loaded for `bpt`, whose techniques are those that may be used at
+/// all. With --iterations (or no limit at all) the choice is a function of the command and the
+/// scene; with --time and --until the clock has a say. Caches of candidates that are trained are
+/// read or made, and stay. Throws Error 130 once `cancel` is set.
+Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
+                    const std::atomic<bool>& cancel, Progress& progress);
+
+}  // namespace lacuna

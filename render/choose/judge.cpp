@@ -1,0 +1,117 @@
+#include "render/choose/judge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+constexpr double kEpsilon = 0.01;  // of the error measures: e = 0.01 of the mean
+constexpr int kRounds = 3;         // of weights by errors, and errors by weights
+
+using Picture = std::vector<Vec3d>;
+
+Vec3d channels(const Rgb& c) {
+    return {double(c.r), double(c.g), double(c.b)};
+}
+
+Picture meanOf(const HalfPictures& halves) {
+    Picture mean(halves.first.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+        mean[i] = (channels(halves.first[i]) + channels(halves.second[i])) * 0.5;
+    }
+    return mean;
+}
+
+/// Over 3 x 3 pixels, as many as there are.
+Picture smoothed(const Picture& picture, int width) {
+    const int height = int(picture.size()) / width;
+    Picture result(picture.size());
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            Vec3d sum;
+            int count = 0;
+            for (int ny = std::max(0, y - 1); ny <= std::min(height - 1, y + 1); ++ny) {
+                for (int nx = std::max(0, x - 1); nx <= std::min(width - 1, x + 1); ++nx) {
+                    sum += picture[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
+                    ++count;
+                }
+            }
+            result[std::size_t(y) * std::size_t(width) + std::size_t(x)] = sum * (1.0 / count);
+        }
+    }
+    return result;
+}
+
+/// What all pictures show, each with its weight, and e.
+struct Target {
+    Picture around;
+    double epsilon = 0.0;
+
+    Target(std::span<const Picture> means, std::span<const double> weights, int width) {
+        Picture sum(means[0].size());
+        double total = 0.0, whole = 0.0;
+        for (std::size_t n = 0; n < means.size(); ++n) {
+            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += means[n][i] * weights[n];
+            total += weights[n];
+        }
+        for (Vec3d& v : sum) {
+            v = v * (1.0 / total);
+            whole += v[0] + v[1] + v[2];
+        }
+        epsilon = kEpsilon * whole / (3.0 * double(sum.size()));
+        around = smoothed(sum, width);
+    }
+
+    /// The mean of |a - b| / (R + e).
+    template <class A, class B>
+    double distance(const A& a, const B& b) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < around.size(); ++i) {
+            const Vec3d difference = a(i) - b(i);
+            for (int c = 0; c < 3; ++c) {
+                const double d = std::fabs(difference[c]);
+                if (d > 0.0) sum += d / (around[i][c] + epsilon);
+            }
+        }
+        return sum / (3.0 * double(around.size()));
+    }
+};
+
+}  // namespace
+
+std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width) {
+    const std::size_t n = pictures.size();
+    std::vector<Picture> means;
+    for (const HalfPictures& p : pictures) means.push_back(meanOf(p));
+    std::vector<double> errors(n, 1.0), weights(n, 1.0);
+    for (int round = 0; round < kRounds; ++round) {
+        const Target target(means, weights, width);
+        std::vector<double> seen(n), sums(n, 0.0);
+        double all = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            seen[i] = 0.5 * target.distance(
+                                [&](std::size_t p) { return channels(pictures[i].first[p]); },
+                                [&](std::size_t p) { return channels(pictures[i].second[p]); });
+            for (std::size_t j = 0; j < i; ++j) {
+                const double d = target.distance([&](std::size_t p) { return means[i][p]; },
+                                                 [&](std::size_t p) { return means[j][p]; });
+                sums[i] += d * d;
+                sums[j] += d * d;
+                all += d * d;
+            }
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            // Of three and more the equations give each its own; two share what they differ by.
+            const double square = n > 2    ? (sums[i] - all / double(n - 1)) / double(n - 2)
+                                  : n == 2 ? 0.5 * all
+                                           : 0.0;
+            errors[i] = std::max(seen[i], std::sqrt(std::max(0.0, square)));
+            weights[i] = 1.0 / std::max(errors[i] * errors[i], 1e-12);
+        }
+    }
+    return errors;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,24 @@
+// How far pictures of the same scene by different methods are from what they all aim at, when
+// nobody knows it: each has noise of its own, so that the distance of two says what both have.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "libcore/base/vec.h"
+
+namespace lacuna {
+
+/// A method's small picture, from two independent halves of equally many iterations.
+struct HalfPictures {
+    std::vector<Rgb> first, second;  ///< row by row
+};
+
+/// The mape of the mean of both halves, by picture; all of `width` pixels a row, at least one.
+///
+/// |I_i - I_j| over what all of them show, smoothed, is d_ij; with independent noise d_ij^2 =
+/// s_i^2 + s_j^2, solved for s by least squares. A picture's own halves differ by what it has seen;
+/// light that it never met shows in the distance to the others alone. So s_i is the larger of both.
+std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width);
+
+}  // namespace lacuna

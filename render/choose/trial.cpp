@@ -1,0 +1,98 @@
+#include "render/choose/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/stopwatch.h"
+
+namespace lacuna {
+namespace {
+
+int scaledSide(int side, double factor) {
+    return std::max(1, int(std::lround(double(side) * factor)));
+}
+
+/// What grows with the picture and what does not, from an iteration of the small one: the light
+/// subpaths of a pool are as many, those that splat and all that begins at a pixel are not.
+double ofWholePicture(double lightPart, double rest, double small, double whole, double pixels) {
+    return lightPart * whole / small + rest * pixels;
+}
+
+}  // namespace
+
+SmallFilm::SmallFilm(const Stage& stage, double pixels) {
+    const PixelRect& whole = stage.settings.crop;
+    const double area = double(whole.width()) * double(whole.height());
+    const double factor = std::min(1.0, std::sqrt(pixels / area));
+    const Camera::Film full = stage.camera->film();
+    film = {scaledSide(full.width, factor), scaledSide(full.height, factor)};
+    const double across = double(film.width) / double(full.width);
+    const double down = double(film.height) / double(full.height);
+    const auto begin = [](int side, double f, int most) {
+        return std::clamp(int(std::floor(double(side) * f)), 0, most - 1);
+    };
+    crop.x0 = begin(whole.x0, across, film.width);
+    crop.y0 = begin(whole.y0, down, film.height);
+    crop.x1 = std::clamp(int(std::lround(double(whole.x1) * across)), crop.x0 + 1, film.width);
+    crop.y1 = std::clamp(int(std::lround(double(whole.y1) * down)), crop.y0 + 1, film.height);
+    scale = area / (double(crop.width()) * double(crop.height()));
+}
+
+bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
+              const Settings& settings, const Caches& caches, std::uint64_t seed, double rays,
+              const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result) {
+    const std::unique_ptr<Method> method = row.create(settings);
+    caches.giveTo(*method);
+    RenderSettings render = stage.settings;
+    render.seed = seed;
+    render.crop = small.crop;
+    const Camera camera = stage.camera->withFilm(small.film);
+    // A technique that is forced off is off for all.
+    Techniques techniques = row.techniques;
+    techniques.hits &= stage.techniques.hits;
+    techniques.connects &= stage.techniques.connects;
+    techniques.splats &= stage.techniques.splats;
+    BidirIntegrator integrator(*stage.scene, camera, techniques, *method, render, pool);
+
+    IterationStatistics warmUp, statistics;
+    if (!integrator.beginBlock(0, *method, cancel, warmUp)) return false;
+    const auto pixels = std::size_t(small.crop.width()) * std::size_t(small.crop.height());
+    std::vector<Rgb> picture(pixels);
+    std::vector<Rgb>* const halves[] = {&result.halves.first, &result.halves.second};
+    for (auto* half : halves) half->assign(pixels, Rgb{});
+    double seconds = 0.0;
+    std::uint64_t& n = result.iterations;
+    for (n = 0; n < 2 || n % 2 == 1 || double(statistics.totalRays()) < rays; ++n) {
+        const Stopwatch watch(seconds);
+        if (!integrator.render(std::uint32_t(n), picture, cancel, statistics)) return false;
+        for (std::size_t i = 0; i < pixels; ++i) (*halves[n % 2])[i] += picture[i];
+    }
+    const float ofHalf = 2.0f / float(n);
+    for (auto* sums : halves) {
+        for (Rgb& c : *sums) c = c * ofHalf;
+    }
+
+    // Light subpaths that pixels trace for themselves are part of the eye pass.
+    const auto pooled = double(method->pool().subpaths);
+    const auto filmPixels = [](Camera::Film f) { return double(f.width) * double(f.height); };
+    const auto paths = [&](double film) {
+        if (row.techniques.ownLightPath) return 1.0;
+        const double splats = stage.settings.lightPaths ? double(stage.settings.lightPaths) : film;
+        return std::max({pooled, row.techniques.splats ? splats : 0.0, 1.0});
+    };
+    const double few = paths(filmPixels(small.film));
+    const double all = paths(filmPixels(stage.camera->film()));
+    const auto count = double(n);
+    const auto lightRays = row.techniques.ownLightPath
+                               ? 0.0
+                               : double(statistics.rays[std::size_t(RayKind::LightWalk)]) +
+                                     double(statistics.rays[std::size_t(RayKind::Splat)]);
+    const auto allRays = double(statistics.totalRays());
+    result.rays = ofWholePicture(lightRays, allRays - lightRays, few, all, small.scale) / count;
+    const double lightSeconds = statistics.phaseSeconds["light paths"];
+    result.seconds =
+        ofWholePicture(lightSeconds, seconds - lightSeconds, few, all, small.scale) / count;
+    return true;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,37 @@
+// A candidate renders a small picture of the scene, whose samples are thrown away: what its noise
+// is and what it costs.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "render/caches.h"
+#include "render/choose/judge.h"
+#include "render/options.h"
+#include "render/stage.h"
+
+namespace lacuna {
+
+struct Trial {
+    HalfPictures halves;
+    std::uint64_t iterations = 0;  ///< in both halves together
+    double rays = 0.0;             ///< of an iteration of the whole picture
+    double seconds = 0.0;          ///< likewise, on this machine
+};
+
+/// What is rendered in place of the picture: all of it, in fewer pixels.
+struct SmallFilm {
+    /// Of about `pixels` pixels, no more than the crop of `stage` has.
+    SmallFilm(const Stage& stage, double pixels);
+
+    Camera::Film film;  ///< the whole picture
+    PixelRect crop;     ///< the part of it that was asked for
+    double scale;       ///< pixels of the crop that is asked for, per pixel of this one
+};
+
+/// Pairs of iterations until `rays` rays are traced, at least one. False if cancelled.
+bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
+              const Settings& settings, const Caches& caches, std::uint64_t seed, double rays,
+              const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result);
+
+}  // namespace lacuna

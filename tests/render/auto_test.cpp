@@ -1,0 +1,183 @@
+// --method auto, and what people try first: a scene and nothing else.
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libcore/base/rng.h"
+#include "libcore/image/exr.h"
+#include "libcore/image/image_io.h"
+#include "render/choose/choice.h"
+#include "render/choose/judge.h"
+#include "tests/render/render_tool.h"
+
+namespace lacuna::test {
+namespace {
+
+class RenderAuto : public RenderTool {
+  protected:
+    /// A quick render by `auto`, to @`name`.exr and @`name`.json.
+    std::string automatic(const std::string& name, const std::string& more = "") const {
+        return "@room.gltf -o @" + name + ".exr --json @" + name + ".json --cache @" + name +
+               "-cache --quiet --max-depth 6 --width 24 --height 16 " + more;
+    }
+};
+
+TEST_F(RenderAuto, SaysWhatItChoseAndHowToAskForItByName) {
+    ASSERT_EQ(run(automatic("auto", "--iterations 3")).exitCode, 0);
+    const nlohmann::json chosen = json("auto.json")["chosen"];
+    EXPECT_EQ(chosen["method"], json("auto.json")["method"]);
+    EXPECT_FALSE(chosen["why"].get<std::string>().empty());
+    EXPECT_EQ(chosen["speeds"]["bpt"], 1.0);
+    EXPECT_EQ(chosen["speeds"].size(), 4u);
+    const auto attributes = readExrLayers(path("auto.exr")).attributes;
+    EXPECT_EQ(nlohmann::json::parse(std::get<std::string>(attributes.at("chosen"))), chosen);
+
+    const Outcome named =
+        run(automatic("named", "--iterations 3 ") + chosen["by_name"].get<std::string>());
+    ASSERT_EQ(named.exitCode, 0) << named.err;
+    EXPECT_FALSE(json("named.json").contains("chosen"));
+    const Image a = readExr(path("auto.exr")), b = readExr(path("named.exr"));
+    EXPECT_EQ(a.pixels, b.pixels);
+    // Said where people look, unless they do not want to hear.
+    const Outcome loud = run("@room.gltf -o @x.exr --cache @cache --scale 10% --iterations 1");
+    EXPECT_NE(loud.err.find("the same by name: --method "), std::string::npos) << loud.err;
+}
+
+TEST_F(RenderAuto, IsTheSameOnAnyNumberOfThreads) {
+    ASSERT_EQ(run(automatic("one", "--iterations 2 --threads 1")).exitCode, 0);
+    ASSERT_EQ(run(automatic("three", "--iterations 2 --threads 3")).exitCode, 0);
+    EXPECT_EQ(json("one.json")["chosen"], json("three.json")["chosen"]);
+    EXPECT_EQ(readExr(path("one.exr")).pixels, readExr(path("three.exr")).pixels);
+}
+
+TEST_F(RenderAuto, ACheckpointKeepsTheChoice) {
+    ASSERT_EQ(run(automatic("a", "--checkpoint @ck --time 0.3s")).exitCode, 0);
+    const std::string method = json("a.json")["method"];
+    ASSERT_EQ(run(automatic("b", "--checkpoint @ck --time 0.6s")).exitCode, 0);
+    EXPECT_EQ(json("b.json")["method"], method);
+    EXPECT_EQ(json("b.json")["parameters"], json("a.json")["parameters"]);
+    EXPECT_GE(json("b.json")["iterations"], json("a.json")["iterations"]);
+    EXPECT_EQ(json("b.json")["chosen"]["why"], "as the checkpoint has it");
+}
+
+TEST_F(RenderAuto, PartsMergeToThePicture) {
+    const std::string blocks = "--iterations 6 --block-iterations 2 ";
+    ASSERT_EQ(run(automatic("whole", blocks)).exitCode, 0);
+    ASSERT_EQ(run(automatic("p", blocks + "--blocks 0,2")).exitCode, 0);
+    ASSERT_EQ(run(automatic("q", blocks + "--blocks 2,3")).exitCode, 0);
+    ASSERT_EQ(run("@p.exr @q.exr -o @merged.exr", LACUNA_MERGE).exitCode, 0);
+    EXPECT_EQ(readExr(path("merged.exr")).pixels, readExr(path("whole.exr")).pixels);
+}
+
+TEST_F(RenderAuto, DoesWithoutAFolderForCaches) {
+    write("file", "no folder");
+    const Outcome o =
+        run("@room.gltf -o @out.exr --json @o.json --width 24 --height 16 "
+            "--iterations 1 --cache @file/cache");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_NE(o.err.find("does without spcbpt"), std::string::npos) << o.err;
+    EXPECT_EQ(json("o.json")["chosen"]["speeds"].size(), 3u);
+}
+
+TEST_F(RenderAuto, ASceneWithoutLightIsBlackAtOnce) {
+    TinyScene dark;
+    dark.lamp = false;
+    write("dark.gltf", dark.text());
+    const Outcome o = run("@dark.gltf -o @out.exr --json @o.json --width 24 --height 16");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_EQ(json("o.json")["method"], "pt");
+}
+
+TEST_F(RenderAuto, EffectsNeedNoChoice) {
+    EXPECT_EQ(run("@room.gltf --effects").out, run("@room.gltf --effects --method auto").out);
+    // The picture's own effects are those of the chosen row.
+    ASSERT_EQ(run(automatic("on", "--iterations 1")).exitCode, 0);
+    ASSERT_EQ(run(automatic("named", "--iterations 1 ") +
+                  json("on.json")["chosen"]["by_name"].get<std::string>())
+                  .exitCode,
+              0);
+    EXPECT_EQ(json("on.json")["effects"], json("named.json")["effects"]);
+    // A technique that is off is off for whatever is chosen.
+    ASSERT_EQ(run(automatic("off", "--iterations 1 --effect splats=off")).exitCode, 0);
+    EXPECT_EQ(json("off.json")["rays_by_kind"]["splat"], 0);
+}
+
+TEST_F(RenderAuto, ASceneAloneIsEnough) {
+    const Outcome o = run("@room.gltf --scale 2% --samples 1");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_TRUE(exists("room.png"));
+    EXPECT_NE(o.out.find("room.png"), std::string::npos) << o.out;
+    const std::string first = read("room.png");
+    // Again, over our own picture; never over somebody's.
+    EXPECT_EQ(run("@room.gltf --scale 2% --samples 1").exitCode, 0);
+    EXPECT_EQ(read("room.png"), first);
+    write("room.png", "a texture");
+    expectFailure("@room.gltf --scale 2% --samples 1", 2, "room.png");
+    EXPECT_EQ(read("room.png"), "a texture");
+}
+
+TEST_F(RenderAuto, SizesAsPeopleWriteThem) {
+    const auto size = [&](const std::string& options) {
+        const Outcome o =
+            run("@room.gltf -o @s.exr --json @s.json --method pt --iterations 1 "
+                "--max-depth 1 " +
+                options);
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        const nlohmann::json j = json("s.json");
+        return std::pair<int, int>(j["width"], j["height"]);
+    };
+    EXPECT_EQ(size("--size 40x30"), std::pair(40, 30));
+    EXPECT_EQ(size("--width 40 --height 30 --scale 50%"), std::pair(20, 15));
+    EXPECT_EQ(size("--width 40 --height 30 --size 150%"), std::pair(60, 45));
+    EXPECT_EQ(size("--scale 10%").first, 128);
+}
+
+/// A picture with independent relative noise `sigma` after the mean of both halves.
+HalfPictures noisy(double sigma, double seen, std::uint64_t seed) {
+    HalfPictures p;
+    Rng rng(seed, 0, StreamKind::User, 0);
+    for (auto* half : {&p.first, &p.second}) {
+        for (int i = 0; i < 4096; ++i) {
+            // Uniform noise: mean distance is half of its range.
+            const double range = 4.0 * sigma;  // |mean of two| has a third of it
+            const double value = 1.0 + range * (double(rng.uniform()) - 0.5);
+            half->push_back(Rgb(float(seen * value)));
+        }
+    }
+    return p;
+}
+
+TEST(Judge, TellsTheNoiseOfPicturesApart) {
+    const HalfPictures all[] = {noisy(0.1, 1.0, 1), noisy(0.2, 1.0, 2), noisy(0.05, 1.0, 3)};
+    const std::vector<double> e = errorsOf(all, 64);
+    EXPECT_NEAR(e[1] / e[0], 2.0, 0.2);
+    EXPECT_NEAR(e[0] / e[2], 2.0, 0.2);
+}
+
+TEST(Judge, SeesLightThatAPictureLacks) {
+    // The third one hardly has noise of its own: it has never met half of the light.
+    const HalfPictures all[] = {noisy(0.1, 1.0, 1), noisy(0.1, 1.0, 2), noisy(0.01, 0.5, 3)};
+    const std::vector<double> e = errorsOf(all, 64);
+    EXPECT_GT(e[2], 3.0 * e[0]);
+    EXPECT_GT(e[2], 3.0 * e[1]);
+}
+
+TEST(Judge, ManagesFewPicturesAndBlackOnes) {
+    const HalfPictures one[] = {noisy(0.1, 1.0, 1)};
+    EXPECT_GT(errorsOf(one, 64)[0], 0.0);
+    const HalfPictures two[] = {noisy(0.1, 1.0, 1), noisy(0.3, 1.0, 2)};
+    const std::vector<double> e = errorsOf(two, 64);
+    EXPECT_LT(e[0], e[1] * 1.01);
+    const HalfPictures black[] = {noisy(0.1, 0.0, 1), noisy(0.1, 0.0, 2), noisy(0.1, 0.0, 3)};
+    for (const double error : errorsOf(black, 64)) EXPECT_EQ(error, 0.0);
+}
+
+TEST(Choices, TravelAsText) {
+    const Choice choice{"spcbpt", {"train.paths=4000"}, "because", {{"bpt", 1.0}}};
+    const Choice read = Choice::ofText(choice.text());
+    EXPECT_EQ(read.json(), choice.json());
+    EXPECT_EQ(choice.byName(), "--method spcbpt --prepare --set train.paths=4000");
+}
+
+}  // namespace
+}  // namespace lacuna::test
