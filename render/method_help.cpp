@@ -30,9 +30,9 @@ std::string listMethods() {
 
 std::string autoHelp() {
     return std::string(kAuto) + ": " + kAutoSummary + "\nTries " + triedMethods() +
-           " on a small picture, whose samples are thrown away. With --iterations the choice "
-           "depends on the command\nand the scene alone; with --time or --until the clock has a "
-           "say. What was chosen, why, and how to ask for\nthe same by name: on stderr, in the "
+           " on a small picture, whose samples are thrown away. With --time the clock has a "
+           "say; else the choice\ndepends on the command and the scene alone. What was chosen, "
+           "why, and how to ask for\nthe same by name: on stderr, in the "
            "header (`chosen`) and in the JSON.\n";
 }
 

@@ -17,8 +17,11 @@ namespace {
 constexpr double kTrialShare = 0.008;    // of each candidate
 constexpr double kTrainingShare = 0.06;  // of the subspaces, which trials and picture share
 constexpr double kFewestTrialRays = 4e4;
-constexpr double kMostTrialRays = 2e6;      // more would tell nothing new
-constexpr double kUnlimitedSeconds = 60.0;  // where nothing but an error ends the render
+constexpr double kMostTrialRays = 2e6;  // more would tell nothing new
+
+/// Of the picture, where no option says how many.
+constexpr std::uint64_t kDefaultIterations = 64;
+constexpr std::uint64_t kIterationsToAnError = 256;
 
 /// A path of training costs as much as so many rays of a render.
 constexpr double kRaysPerTrainingPath = 75.0;
@@ -27,6 +30,7 @@ constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1e6;
 constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
 constexpr double kTrialIterations = 8.0;
 constexpr double kFewestPixels = 256.0, kMostPixels = 6144.0;
+constexpr double kPixelsPerThread = 512.0;        // two tiles
 constexpr std::uint64_t kTrialSubpaths = 10'000;  // of pools in trials: small pictures need no more
 constexpr std::uint64_t kMostSubpaths = 100'000;
 /// A row takes the place of the usual one where it is better by so much: what trials see has noise.
@@ -95,20 +99,20 @@ class Pilot {
     }
 
   private:
-    bool byClock() const {
-        return !options_.iterations && (options_.timeSeconds || options_.until);
-    }
+    bool byClock() const { return !options_.iterations && options_.timeSeconds; }
 
     /// What the whole render may take, and the pilot with it: from a first trial of bpt.
     void sizeUp() {
         const PixelRect& crop = stage_.settings.crop;
         const double pixels = double(crop.width()) * double(crop.height());
-        small_.emplace(stage_, std::min(pixels, kFewestPixels));
+        // Speeds are measured on as many tiles as keep all threads busy.
+        const double busy = byClock() ? kPixelsPerThread * double(pool_.threads()) : kFewestPixels;
+        small_.emplace(stage_, std::min(pixels, busy));
         Trial first;
         run(kRows[0], {}, kFewestTrialRays / 4.0, first);
         budget_ = double(iterations()) * first.rays;
         if (byClock()) {
-            double seconds = options_.timeSeconds.value_or(kUnlimitedSeconds);
+            double seconds = *options_.timeSeconds;
             if (options_.countSetup) seconds = std::max(0.1, seconds - stage_.setupSeconds);
             budget_ = seconds * first.rays / first.seconds;
         }
@@ -119,8 +123,8 @@ class Pilot {
     }
 
     std::uint64_t iterations() const {
-        constexpr std::uint64_t kDefault = 64;
-        return options_.iterations ? std::uint64_t(*options_.iterations) : kDefault;
+        if (options_.iterations) return std::uint64_t(*options_.iterations);
+        return options_.until ? kIterationsToAnError : kDefaultIterations;
     }
 
     std::vector<std::string> assignments(const Row& row, std::uint64_t subpaths) const {

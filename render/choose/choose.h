@@ -15,8 +15,7 @@ namespace lacuna {
 std::string triedMethods();
 
 /// Chooses for a stage that was loaded for `bpt`, whose techniques are those that may be used at
-/// all. With --iterations (or no limit at all) the choice is a function of the command and the
-/// scene; with --time and --until the clock has a say. Caches of candidates that are trained are
+/// all. With --time the clock has a say; else the choice is a function of the command and the scene. Caches of candidates that are trained are
 /// read or made, and stay. Throws Error 130 once `cancel` is set.
 Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
                     const std::atomic<bool>& cancel, Progress& progress);
