@@ -6,6 +6,7 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
+#include "libcore/image/image_io.h"
 #include "libcore/tool/scene_stage.h"
 #include "render/checkpoint.h"
 #include "render/choose/choose.h"
@@ -81,6 +82,15 @@ void compareInputs(const Ranks& ranks, const CacheStamp& own) {
     }
 }
 
+/// Whoever looks at the file while it renders need not wait for training.
+void showFirst(const RenderOptions& options, const Image& small) {
+    if (!options.writeEverySeconds) return;
+    LayeredImage image(small.width, small.height);
+    image.setRgb("", small);
+    image.attributes["stopped"] = std::string("no: choosing a method");
+    writeImage(options.output, image, options.exposure);
+}
+
 /// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
 Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
               const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress) {
@@ -91,7 +101,8 @@ Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
             if (inputs) return Choice::ofInputs(*inputs);
         }
         const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["choose"]);
-        return chooseMethod(options, stage, pool, interrupt.requested(), progress);
+        return chooseMethod(options, stage, pool, interrupt.requested(), progress,
+                            [&](const Image& small) { showFirst(options, small); });
     };
     const Choice choice = found();
     progress.remark("auto: " + choice.method + ", " + choice.why +

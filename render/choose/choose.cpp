@@ -89,8 +89,9 @@ class Pilot {
           const std::atomic<bool>& cancel, Progress& progress)
         : options_(options), stage_(stage), pool_(pool), cancel_(cancel), progress_(progress) {}
 
-    Choice choose() {
+    Choice choose(const std::function<void(const Image&)>& show) {
         sizeUp();
+        show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
         for (const Row& row : std::span(kRows).subspan(1)) {
             if (mayKeepCaches(row)) tryRow(row);
         }
@@ -234,10 +235,11 @@ std::string triedMethods() {
 }
 
 Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
-                    const std::atomic<bool>& cancel, Progress& progress) {
+                    const std::atomic<bool>& cancel, Progress& progress,
+                    const std::function<void(const Image&)>& show) {
     progress.phase(kPhase);
     if (stage.scene->lights().empty()) return {"pt", {}, "there is no light", {}};
-    return Pilot(options, stage, pool, cancel, progress).choose();
+    return Pilot(options, stage, pool, cancel, progress).choose(show);
 }
 
 }  // namespace lacuna

@@ -38,6 +38,22 @@ SmallFilm::SmallFilm(const Stage& stage, double pixels) {
     scale = area / (double(crop.width()) * double(crop.height()));
 }
 
+Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRect& crop) {
+    Image image(crop.width(), crop.height());
+    const auto from = [](int at, int size, int smallSize) {
+        return std::size_t(std::int64_t(at) * smallSize / size);
+    };
+    for (int y = 0; y < image.height; ++y) {
+        const std::size_t row = from(y, image.height, small.crop.height());
+        for (int x = 0; x < image.width; ++x) {
+            const std::size_t i =
+                row * std::size_t(small.crop.width()) + from(x, image.width, small.crop.width());
+            image.at(x, y) = (halves.first[i] + halves.second[i]) * 0.5f;
+        }
+    }
+    return image;
+}
+
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
               const Settings& settings, const Caches& caches, std::uint64_t seed, double rays,
               const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result) {

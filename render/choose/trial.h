@@ -29,6 +29,9 @@ struct SmallFilm {
     double scale;       ///< pixels of the crop that is asked for, per pixel of this one
 };
 
+/// The mean of both halves in the size of `crop`: each pixel shows the small one that covers it.
+Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRect& crop);
+
 /// Pairs of iterations until `rays` rays are traced, at least one. False if cancelled.
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
               const Settings& settings, const Caches& caches, std::uint64_t seed, double rays,

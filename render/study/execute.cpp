@@ -6,6 +6,7 @@
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
+#include "render/choose/choice.h"
 #include "render/study/machine.h"
 #include "render/study/run_directory.h"
 
