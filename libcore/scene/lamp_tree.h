@@ -1,6 +1,6 @@
-// Which light to ask for light at a point, by what the point can see of each: a binary tree with
-// boxes and cones [Conty18], whose nodes are weighed by the bound of [Pharr23 12.6.3]. (theory.md,
-// "Lamps that are seen")
+// Which light to ask for light at a point, by what the point can see of each: a tree with boxes and
+// cones [Conty18], whose nodes are weighed by the bound of [Pharr23 12.6.3]. A node has eight
+// children, which are weighed at once. (theory.md, "Lamps that are seen")
 //
 // Lights with a place are the tree's leaves; lights at infinity stand beside its root, weighed by
 // their irradiance. A pick goes down one path, and so does the question for its probability: both
@@ -50,7 +50,10 @@ struct DistantLight {
 
 class LampTree {
   public:
-    LampTree() = default;
+    LampTree();
+    LampTree(LampTree&&) noexcept;
+    LampTree& operator=(LampTree&&) noexcept;
+    ~LampTree();
     /// `sceneRadius`: positive. `lights`: how many there are, those without power included.
     LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight> distant,
              float sceneRadius, std::size_t lights);
@@ -73,17 +76,10 @@ class LampTree {
     std::uint64_t bytes() const;
 
   private:
-    struct alignas(64) Node {
-        Vec3 centre, extent;  ///< of the box; extent: half of its size
-        float radius2;        ///< square of half of its diagonal
-        Vec3 axis;
-        float sine, cosine;  ///< of the cone's half angle
-        float intensity;
-        std::uint32_t child = 0;  ///< of two side by side; 0: a leaf
-        /// Where in the order of leaves the right child begins. A leaf: its own place.
-        std::uint32_t middle = 0;
-        bool fades, twoSided;
-    };
+    struct Node;
+    struct Extent;
+    struct Range;
+    struct Shares;
     struct Leaf {
         std::uint32_t light;
         double share;  ///< of the light; the rest is that of the next one
@@ -94,25 +90,18 @@ class LampTree {
         Vec3 direction;
         float irradiance;
     };
-    struct Range {
-        std::uint32_t node, begin, end;
-    };
-    struct Extent;
 
     Viewpoint scaled(const Viewpoint& from) const { return {from.position * toUnits_, from.side}; }
     void build(std::vector<PlacedLight>& lights);
-    std::uint32_t split(std::vector<PlacedLight>& lights, const Range& range);
-    double importance(const Node& node, const Viewpoint& from) const;
-    double importance(const Distant& light, const Viewpoint& from) const;
-    double shareOfLeft(const Node& node, const Viewpoint& from) const;
+    static double importanceOf(const Distant& light, const Viewpoint& from);
 
-    /// Of the choice between the tree and the lights at infinity: the sum of all, and the tree's.
+    /// Of the choice between the tree and the lights at infinity: the tree's, and all together.
     struct Roots {
         double tree, sum;
         bool even;  ///< nothing can arrive: all are alike
     };
     Roots roots(const Viewpoint& from) const;
-    double share(const Roots& roots, const Distant& light, const Viewpoint& from) const;
+    static double shareOf(const Roots& roots, const Distant& light, const Viewpoint& from);
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
