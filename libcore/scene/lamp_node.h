@@ -23,16 +23,18 @@ struct alignas(32) LampTree::Node {
     Lanes fades{}, twoSided{};                  // 1 or 0
     Lanes intensity{};                          // 0: no such child
     std::array<std::uint32_t, kWidth> child{};  // 0: a leaf
-    std::array<std::uint32_t, kWidth> begin{};  // its first leaf
+    std::array<std::uint32_t, kWidth> begin;    // its first leaf; no child: beyond all leaves
+
+    Node() { begin.fill(~0u); }
 
     void set(std::size_t i, const Extent& e, std::uint32_t first);
     void weigh(const Viewpoint& from, Lanes& importance) const;
     Shares shares(const Viewpoint& from) const;
     /// The child that the leaf is under.
     std::size_t childOf(std::uint32_t leaf) const {
-        std::size_t i = 0;
-        while (i + 1 < kWidth && intensity[i + 1] > 0.0f && begin[i + 1] <= leaf) ++i;
-        return i;
+        std::uint32_t begun = 0;
+        for (const std::uint32_t b : begin) begun += b <= leaf ? 1 : 0;
+        return begun - 1;
     }
 };
 

@@ -118,15 +118,16 @@ LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
     for (const Node* node = &nodes_[0];;) {
         const Shares shares = node->shares(from);
         std::size_t chosen = 0;
+        double rest = u * shares.sum;
         for (std::size_t i = 0; i < Node::kWidth; ++i) {
-            if (!(shares[i] > 0.0)) continue;
+            const double weight = double(shares.weights[i]);
+            if (!(weight > 0.0)) continue;
             chosen = i;
-            if (u < shares[i]) break;
-            u -= shares[i];
+            if (rest < weight) break;
+            rest -= weight;
         }
-        const double p = shares[chosen];
-        pmf *= p;
-        u = below1(u / p);
+        pmf *= shares[chosen];
+        u = below1(rest / double(shares.weights[chosen]));
         if (node->child[chosen] != 0) {
             node = &nodes_[node->child[chosen]];
             continue;
