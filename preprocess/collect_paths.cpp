@@ -1,6 +1,7 @@
 #include "preprocess/collect_paths.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libcore/base/error.h"
@@ -48,7 +49,9 @@ CollectedPaths collectPaths(const Scene& scene, const TrainingView& view, const 
     const Camera& camera = view.camera;
     const Camera::Film film = camera.film();
     const MethodRow& row = findMethod("bpt");
-    const std::unique_ptr<Method> method = row.create(resolve(row, {}));
+    // Gamma reads p_t off the weights: all n r have to be one.
+    const std::unique_ptr<Method> method =
+        row.create(resolve(row, std::array{std::string("lamps=power")}));
     RenderSettings settings;
     settings.limits = view.limits;
     settings.seed = seed;

@@ -37,6 +37,12 @@ struct OpenConnection {
     Label eyeAsLight = kNone;  ///< of z_{t-1} as a light vertex, y_{s-1} its predecessor
 };
 
+/// How the light of a fresh y_0 is picked (light_sampler.h).
+enum class Lamps {
+    Power,  ///< by its power, as light walks pick it
+    Seen,   ///< by what the eye vertex can see of it
+};
+
 /// The effective number of samples n r that strategy (s, t) has for a connection (theory.md,
 /// "Weights"); positive only where the selector can pick the vertex.
 class ConnectionDensity {
@@ -51,6 +57,8 @@ class ConnectionDensity {
     /// Set: effectiveSamples is never asked.
     virtual std::optional<Constants> constants() const { return std::nullopt; }
     virtual double effectiveSamples(const Connection& connection) const = 0;
+    /// Seen: what is said of s = 1 above is still to be multiplied by LightSampler::seenSamples.
+    virtual Lamps lamps() const { return Lamps::Power; }
 
     /// Whether it keeps labels: what it knows a vertex by, so that it is looked up once and not
     /// once per path. A label is a function of the vertex, of its predecessor in the role, and of

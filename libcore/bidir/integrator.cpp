@@ -16,7 +16,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration) {
     counts.hit = setup_.techniques.hits;
     counts.splats = setup_.techniques.splats ? double(setup_.lightPaths) : 0.0;
     const ConnectionDensity& density = method_->freeze(iteration);
-    if (setup_.techniques.connects) counts.connectThrough(density);
+    if (setup_.techniques.connects) counts.connectThrough(density, setup_.walker);
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;
 }

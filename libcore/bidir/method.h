@@ -16,6 +16,7 @@
 #include "libcore/base/rng.h"
 #include "libcore/bidir/asset_set.h"
 #include "libcore/bidir/density.h"
+#include "libcore/bidir/light_sampler.h"
 #include "libcore/bidir/path_space.h"
 #include "libcore/bidir/pool.h"
 
@@ -49,14 +50,6 @@ class ProposalSink {
     std::vector<Proposal> proposals_;
     std::deque<PathVertex> fresh_;
     std::size_t freshCount_ = 0;
-};
-
-/// Draws fresh y_0: next event. Implemented by the walker (and by tests on finite spaces).
-class LightSampler {
-  public:
-    virtual ~LightSampler() = default;
-    /// False where the draw gives nothing: no light has power, or the point is dark.
-    virtual bool sampleLight(Rng& rng, PathVertex& out) const = 0;
 };
 
 /// What a selector may look at.

@@ -10,13 +10,14 @@ namespace {
 /// The part of effectiveCount that reads more than two flags.
 double samplesByDensity(const FullPath& path, const TechniqueCounts& counts, int t) {
     const auto s = std::size_t(path.edges + 1 - t);
-    return counts.connections->effectiveSamples(
+    const double samples = counts.connections->effectiveSamples(
         {.eye = {path.vertex[s], path.vertex[s + 1], t, path.scatter[s], path.asEye[s]},
          .light = {path.vertex[s - 1], s >= 2 ? path.vertex[s - 2] : nullptr, int(s),
                    path.scatter[s - 1], path.asLight[s - 1]},
          .beta = path.beta[s - 1],
          .geometry = path.geometry[s - 1],
          .order = path.orderOf(int(s))});
+    return s == 1 ? samples * counts.samplesOfLamp(*path.vertex[0], *path.vertex[1]) : samples;
 }
 
 /// effectiveCount() where it depends on nothing but the kind of strategy.
@@ -24,7 +25,11 @@ class CountsByKind {
   public:
     CountsByKind(const FullPath& path, const TechniqueCounts& counts) : path_(path) {
         const auto constants = counts.constants.value_or(ConnectionDensity::Constants{});
-        counts_ = {0.0, constants.indirect, constants.direct,
+        double direct = constants.direct;
+        if (direct > 0.0 && path.edges > 1 && !path.delta[1]) {
+            direct *= counts.samplesOfLamp(*path.vertex[0], *path.vertex[1]);
+        }
+        counts_ = {0.0, constants.indirect, direct,
                    path.edges == 1 && !path.splattable ? 0.0 : counts.splats,
                    counts.hit && path.hittable ? 1.0 : 0.0};
     }

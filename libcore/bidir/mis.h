@@ -13,6 +13,7 @@
 
 #include "libcore/bidir/density.h"
 #include "libcore/bidir/full_path.h"
+#include "libcore/bidir/light_sampler.h"
 
 namespace lacuna {
 
@@ -21,9 +22,11 @@ struct TechniqueCounts {
     bool hit = false;   ///< s = 0: eye paths that run into a light
     double splats = 0;  ///< t = 1: light paths that splat (L); 0: there is no such technique
     const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
-    /// connections->constants(), looked up once. Set all three by connectThrough.
+    /// connections->constants(), looked up once. Set all four by connectThrough.
     std::optional<ConnectionDensity::Constants> constants = std::nullopt;
-    bool labels = false;    ///< connections->keepsLabels(), likewise
+    bool labels = false;  ///< connections->keepsLabels(), likewise
+    /// What s = 1 counts times seenSamples of; null: s = 1 draws y_0 as light walks do.
+    const LightSampler* seen = nullptr;
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
     /// Whether there are none but s = 0 and s = 1.
@@ -31,10 +34,15 @@ struct TechniqueCounts {
         return splats == 0.0 && (!connections || (constants && constants->indirect == 0.0));
     }
 
-    void connectThrough(const ConnectionDensity& density) {
+    void connectThrough(const ConnectionDensity& density, const LightSampler& lights) {
         connections = &density;
         constants = density.constants();
         labels = density.keepsLabels();
+        seen = density.lamps() == Lamps::Seen ? &lights : nullptr;
+    }
+    /// What n r of s = 1 is still to be multiplied by, from y_0 and the eye's end.
+    double samplesOfLamp(const PathVertex& light, const PathVertex& eye) const {
+        return seen ? seen->seenSamples(light, eye) : 1.0;
     }
     /// Labels a whole walk, where the density keeps labels: once, before anything is closed.
     void labelWalk(std::span<PathVertex> walk) const {

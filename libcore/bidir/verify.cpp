@@ -159,18 +159,19 @@ class Products {
             return k_ == 1 && !isHittable(source_.kind) ? 0.0 : counts_.splats;
         }
         if (!counts_.connections) return 0.0;
+        const double ofLamp = s == 1 ? counts_.samplesOfLamp(x(0), x(1)) : 1.0;
         if (const auto c = counts_.connections->constants()) {
-            return s == 1 ? c->direct : c->indirect;
+            return s == 1 ? c->direct * ofLamp : c->indirect;
         }
         const auto v = std::size_t(s);
         int order = 1;
         for (int i = s + 1; i < k_; ++i) order += smooth(i);
-        return counts_.connections->effectiveSamples(
-            {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
-             .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
-             .beta = beta_[v - 1],
-             .geometry = geometry_[v - 1],
-             .order = order});
+        return ofLamp * counts_.connections->effectiveSamples(
+                            {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
+                             .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
+                             .beta = beta_[v - 1],
+                             .geometry = geometry_[v - 1],
+                             .order = order});
     }
 
     /// log(n_t r_t p_t).

@@ -13,6 +13,10 @@ namespace lacuna {
 namespace {
 /// More of them do not fit into the processor's first cache.
 constexpr std::size_t kTogether = 8;
+
+Viewpoint viewpointOf(const PathVertex& eye) {
+    return {eye.position, scatteringSide(eye)};
+}
 }  // namespace
 
 bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
@@ -23,21 +27,38 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
     const Lights& lights = scene_.lights();
     if (lights.empty()) return std::nullopt;
     const LightPoint p = lights.samplePoint(rng);
+    if (!setLightVertex(p, out)) return std::nullopt;
+    return p;
+}
+
+double Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
+    const Lights& lights = scene_.lights();
+    if (lights.empty()) return 0.0;
+    const Lights::SeenPoint seen = lights.sampleSeenPoint(viewpointOf(eye), rng);
+    return setLightVertex(seen.point, out) ? seen.samples : 0.0;
+}
+
+double Walker::seenSamples(const PathVertex& light, const PathVertex& eye) const {
+    return scene_.lights().seenSamples(light.light, viewpointOf(eye));
+}
+
+/// False where the point is dark.
+bool Walker::setLightVertex(const LightPoint& p, PathVertex& out) const {
     const Rgb throughput = p.throughput();
-    if (isBlack(throughput)) return std::nullopt;
+    if (isBlack(throughput)) return false;
     std::construct_at(&out);
     out.kind = isInfinite(p.kind) ? VertexKind::Infinite : VertexKind::LightSource;
     out.position = p.position;
     out.ng = p.ng;
     out.light = p.light;
     out.lightUv = p.uv;
-    out.twoSided = lights.twoSided(p.light);
+    out.twoSided = scene_.lights().twoSided(p.light);
     if (p.kind == LightKind::Area && !scene_.absorption().empty()) {
-        out.material = lights.material(p.light);
+        out.material = scene_.lights().material(p.light);
     }
     out.pdfA = p.pdf;
     out.throughput = throughput;
-    return p;
+    return true;
 }
 
 PathVertex Walker::sampleLens(Rng& rng) const {

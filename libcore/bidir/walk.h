@@ -56,11 +56,14 @@ class Walker final : public LightSampler {
     void finish(std::span<Walk> walks, RayTally& tally) const;
 
     bool sampleLight(Rng& rng, PathVertex& out) const override;
+    double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
+    double seenSamples(const PathVertex& light, const PathVertex& eye) const override;
     /// z_0: a point on the lens.
     PathVertex sampleLens(Rng& rng) const;
 
   private:
     std::optional<LightPoint> sampleLightPoint(Rng& rng, PathVertex& out) const;
+    bool setLightVertex(const LightPoint& point, PathVertex& out) const;
     void finishAlone(Walk& walk, RayTally& tally) const;
     void finishTogether(std::span<Walk> walks, RayTally& tally) const;
     std::optional<Hit> nextHit(const Walk& walk, RayTally& tally) const;

@@ -2,8 +2,8 @@
 //
 // Every pixel traces one light subpath of its own; every eye vertex is connected to each of its
 // vertices (M = 1, all are proposed with weight 1, so r = 1). With next_event the own y_0 makes way
-// for a fresh light point per eye vertex: the same density, so r = 1 as well, without the
-// correlation of all direct light along an eye path.
+// for a fresh light point per eye vertex, without the correlation of all direct light along an eye
+// path: r = 1 as well where lamps are picked by power, else the quotient of the densities.
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/picks.h"
 
@@ -13,14 +13,17 @@ namespace {
 
 struct Options {
     bool nextEvent = true;
+    Lamps lamps = Lamps::Seen;
 };
 
 class Bidirectional final : public Method {
   public:
-    explicit Bidirectional(const Options& options) : nextEvent_(options.nextEvent) {}
+    explicit Bidirectional(const Options& options)
+        : nextEvent_(options.nextEvent),
+          density_(1.0, 1.0, lampsOf(options.nextEvent, options.lamps)) {}
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (nextEvent_) proposeFreshLight(context, rng, sink);
+        if (nextEvent_) proposeFreshLight(context, density_.lamps(), rng, sink);
         for (std::size_t s = nextEvent_ ? 2 : 1; s <= context.ownLightPath.size(); ++s) {
             const Subpath prefix = context.ownLightPath.first(s);
             if (prefix.back().connectable()) sink.add({prefix, 1.0, 0});
@@ -29,14 +32,14 @@ class Bidirectional final : public Method {
 
   private:
     bool nextEvent_;
-    ConstantDensity density_{1.0, 1.0};
+    ConstantDensity density_;
 };
 
 }  // namespace
 
 MethodRow bptRow() {
     OptionTable<Options> table;
-    addNextEvent(table, &Options::nextEvent);
+    addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow(
         {.name = "bpt",
          .reference = "Veach97",

@@ -26,6 +26,7 @@ struct Options {
     Lengths lengths = Lengths::Share;
     double eyeShare = 0.25;
     bool nextEvent = false;
+    Lamps lamps = Lamps::Seen;
 
     bool aware() const { return weights == Believed::Aware; }
     double credit() const { return double(records.subpaths); }
@@ -42,6 +43,7 @@ class RecordDensity final : public ConnectionDensity {
         if (options_.aware() || options_.lengths != Lengths::Every) return std::nullopt;
         return Constants{options_.nextEvent ? 1.0 : options_.credit(), options_.credit()};
     }
+    Lamps lamps() const override { return lampsOf(options_.nextEvent, options_.lamps); }
     bool keepsLabels() const override { return options_.aware(); }
     void labelWalk(std::span<PathVertex> walk) const override { records_.labelAsEye(walk); }
 
@@ -79,7 +81,7 @@ class ImportanceCaching final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (options_.nextEvent) proposeFreshLight(context, options_.lamps, rng, sink);
         const std::uint32_t serving = records_.serving(context.vertex, context.vertex.asEye);
         const auto m = double(options_.records.subpaths);
         picks_.forEachPick(vertices_, context.order(), rng, [&](int s, double u, double n) {
@@ -121,18 +123,18 @@ MethodRow icbptRow() {
     addBelieved(table, &Options::weights);
     addLengths(table, &Options::lengths);
     addEyeShare(table, &Options::eyeShare);
-    addNextEvent(table, &Options::nextEvent);
-    return methodRow(
-        {.name = "icbpt",
-         .reference = "Georgiev12",
-         .summary = "light vertices resampled at importance records on surfaces",
-         .techniques = {.hits = true, .connects = true, .splats = true},
-         .proposalLabels = {"full", "unoccluded", "bounded", "uniform", "fallback"},
-         .paper = {"eye_share=0", "first_connections=0", "lengths=every", "weights=credit"}},
-        table, [](Options o) {
-            o.records.aware = o.aware();
-            return std::make_unique<ImportanceCaching>(o);
-        });
+    addNextEvent(table, &Options::nextEvent, &Options::lamps);
+    return methodRow({.name = "icbpt",
+                      .reference = "Georgiev12",
+                      .summary = "light vertices resampled at importance records on surfaces",
+                      .techniques = {.hits = true, .connects = true, .splats = true},
+                      .proposalLabels = {"full", "unoccluded", "bounded", "uniform", "fallback"},
+                      .paper = {"eye_share=0", "first_connections=0", "lamps=power",
+                                "lengths=every", "weights=credit"}},
+                     table, [](Options o) {
+                         o.records.aware = o.aware();
+                         return std::make_unique<ImportanceCaching>(o);
+                     });
 }
 
 }  // namespace lacuna

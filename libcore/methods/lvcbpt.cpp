@@ -16,6 +16,7 @@ struct Options {
     std::uint64_t subpaths = 100'000;  ///< M
     PickOptions picks = {.connections = 3};
     bool nextEvent = false;
+    Lamps lamps = Lamps::Seen;
 };
 
 class LightVertexCache final : public Method {
@@ -24,13 +25,14 @@ class LightVertexCache final : public Method {
         : subpaths_(options.subpaths),
           picks_(options.picks.picks()),
           nextEvent_(options.nextEvent),
-          density_(picks_, nextEvent_, 1.0) {}
+          lamps_(options.lamps),
+          density_(picks_, nextEvent_, lamps_, 1.0) {}
 
     int warmupIterations() const override { return 1; }
     PoolRequest pool() const override { return {subpaths_}; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
-        density_ = PicksDensity(picks_, nextEvent_, double(subpaths_) / expected_.value());
+        density_ = PicksDensity(picks_, nextEvent_, lamps_, double(subpaths_) / expected_.value());
         return density_;
     }
 
@@ -40,7 +42,7 @@ class LightVertexCache final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (nextEvent_) proposeFreshLight(context, rng, sink);
+        if (nextEvent_) proposeFreshLight(context, lamps_, rng, sink);
         const auto size = std::uint32_t(candidates_.size());
         if (size == 0) return;
         const int picks = picks_.at(context.order());
@@ -60,6 +62,7 @@ class LightVertexCache final : public Method {
     std::uint64_t subpaths_;
     Picks picks_;
     bool nextEvent_;
+    Lamps lamps_;
     bool warm_ = false;
     ExpectedVertices expected_;
     PicksDensity density_;
@@ -73,7 +76,7 @@ MethodRow lvcbptRow() {
     OptionTable<Options> table;
     table.integer("candidates", &Options::subpaths, 1, 1e8, "light subpaths", "in the pool, M");
     table.include("", &Options::picks, pickOptions(Options{}.picks));
-    addNextEvent(table, &Options::nextEvent);
+    addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow(
         {.name = "lvcbpt",
          .reference = "Davidovic14",

@@ -13,7 +13,7 @@ MethodRow pcbptRow() {
          .reference = "Popov15",
          .summary = "probabilistic connections: light vertices resampled at nearby cache points",
          .techniques = {.hits = true, .connects = true, .splats = true},
-         .paper = {"first_connections=0", "next_event=off", "target=flow-bsdf"}},
+         .paper = {"first_connections=0", "lamps=power", "next_event=off", "target=flow-bsdf"}},
         cacheResamplingOptions({.subpaths = 100}), makeCacheResampling);
 }
 

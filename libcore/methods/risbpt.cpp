@@ -24,7 +24,8 @@ MethodRow risbptRow() {
          .reference = "Nabata20a",
          .summary = "light vertices resampled at cache points, weights aware of the resampling",
          .techniques = {.hits = true, .connects = true, .splats = true},
-         .paper = {"first_connections=0", "eye_share=0", "next_event=off", "q_iterations=1"}},
+         .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off",
+                   "q_iterations=1"}},
         table, makeCacheResampling);
 }
 
@@ -37,7 +38,7 @@ MethodRow risbptCurrentRow() {
          // weights of a path would no longer add up to one. Without them Q alone is to blame.
          .techniques = {.hits = true, .connects = true},
          .biased = true,
-         .paper = {"first_connections=0", "eye_share=0", "next_event=off"}},
+         .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off"}},
         awareResamplingOptions(
             {.subpaths = 200, .weights = Options::Weights::Ris, .currentQ = true}),
         makeCacheResampling);

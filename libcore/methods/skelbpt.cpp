@@ -30,6 +30,7 @@ struct Options {
     Believed weights = Believed::Aware;
     Lengths lengths = Lengths::Share;
     bool nextEvent = false;
+    Lamps lamps = Lamps::Seen;
 
     bool aware() const { return weights == Believed::Aware; }
     double credit() const { return double(subpaths); }
@@ -65,6 +66,7 @@ class SkeletonDensity final : public ConnectionDensity {
         return Constants{options_.nextEvent ? 1.0 : options_.credit(), options_.credit()};
     }
 
+    Lamps lamps() const override { return lampsOf(options_.nextEvent, options_.lamps); }
     bool keepsLabels() const override { return options_.aware() && nodes_.nodes() > 0; }
     void labelWalk(std::span<PathVertex> walk) const override {
         const bool eye = !walk.empty() && walk.front().kind == VertexKind::Lens;
@@ -143,7 +145,7 @@ class SkeletonConnections final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (options_.nextEvent) proposeFreshLight(context, options_.lamps, rng, sink);
         const PathVertex& z = context.vertex;
         const std::uint32_t slot =
             nodes_.slotOf(z.asEye != kNone ? z.asEye : nodes_.nodeOf(z, z.toPrevious));
@@ -215,7 +217,7 @@ MethodRow skelbptRow() {
         "which of visible (v), unoccluded (u) and uniform (c) there are at a node");
     addBelieved(table, &Options::weights);
     addLengths(table, &Options::lengths);
-    addNextEvent(table, &Options::nextEvent);
+    addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow(
         {.name = "skelbpt",
          .reference = "Noel15",
@@ -223,7 +225,7 @@ MethodRow skelbptRow() {
          .techniques = {.hits = true, .connects = true, .splats = true},
          .needs = {{"skeleton", "voxels.", voxelOptions().options()}},
          .proposalLabels = {"visible", "unoccluded", "uniform", "fallback"},
-         .paper = {"first_connections=0", "weights=credit", "lengths=every"}},
+         .paper = {"first_connections=0", "weights=credit", "lengths=every", "lamps=power"}},
         table, [](Options o) {
             o.nodes.sight = o.aware();
             return std::make_unique<SkeletonConnections>(o);

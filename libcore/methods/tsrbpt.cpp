@@ -57,6 +57,7 @@ struct Options {
     int earlierIterations = 16;  ///< whose Q are averaged
     double eyeShare = 0.1;
     bool nextEvent = true;
+    Lamps lamps = Lamps::Seen;
 };
 
 class TwoStageDensity final : public ConnectionDensity {
@@ -71,6 +72,7 @@ class TwoStageDensity final : public ConnectionDensity {
         uniform_ = m1 / expectedVertices;
     }
 
+    Lamps lamps() const override { return lampsOf(options_.nextEvent, options_.lamps); }
     bool keepsLabels() const override { return true; }
     void labelWalk(std::span<PathVertex> walk) const override { points_->labelAsEye(walk); }
 
@@ -132,7 +134,7 @@ class TwoStageResampling final : public Method {
     explicit TwoStageResampling(const Options& options)
         : options_(options),
           picks_(options.picks.picks()),
-          plain_(picks_, options.nextEvent, 1.0),
+          plain_(picks_, options.nextEvent, options.lamps, 1.0),
           density_(options),
           earlier_(2, options.earlierIterations, kEarlierPoints) {}
 
@@ -177,7 +179,7 @@ class TwoStageResampling final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (options_.nextEvent) proposeFreshLight(context, options_.lamps, rng, sink);
         if (candidates_.empty()) return;
         const auto around = points_.around(points_.serving(context.vertex, context.vertex.asEye));
         const int picks = picks_.at(context.order());
@@ -384,14 +386,15 @@ MethodRow tsrbptRow() {
     addClamp(table, &Options::clamp);
     addEarlierIterations(table, &Options::earlierIterations);
     addEyeShare(table, &Options::eyeShare);
-    addNextEvent(table, &Options::nextEvent);
+    addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow(
         {.name = "tsrbpt",
          .reference = "Nabata20b",
          .summary = "two-stage resampling: a light tree's cut at every cache point, then its pmf",
          .techniques = {.hits = true, .connects = true, .splats = true},
-         .paper = {"first_connections=0", "eye_share=0", "next_event=off", "q_iterations=1",
-                   "cache_points=3", "points=weighted", "target=printed", "defensive=0"}},
+         .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off",
+                   "q_iterations=1", "cache_points=3", "points=weighted", "target=printed",
+                   "defensive=0"}},
         table, [](const Options& o) {
             if (o.defensive == 0.0 && o.points == Points::Even) {
                 throw UsageError(

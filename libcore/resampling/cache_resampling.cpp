@@ -25,6 +25,7 @@ class ResampledDensity final : public ConnectionDensity {
         perVertex_ = m / expectedVertices;
     }
 
+    Lamps lamps() const override { return lampsOf(options_.nextEvent, options_.lamps); }
     bool keepsLabels() const override { return true; }
     void labelWalk(std::span<PathVertex> walk) const override { points_->labelAsEye(walk); }
 
@@ -58,7 +59,7 @@ class CacheResampling final : public Method {
     explicit CacheResampling(const CacheResamplingOptions& options)
         : options_(options),
           picks_(options.picks.picks()),
-          plain_(picks_, options.nextEvent, 1.0),
+          plain_(picks_, options.nextEvent, options.lamps, 1.0),
           density_(options),
           earlier_(1, options.earlierIterations, kEarlierPoints) {}
 
@@ -101,7 +102,7 @@ class CacheResampling final : public Method {
     }
 
     void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const override {
-        if (options_.nextEvent) proposeFreshLight(context, rng, sink);
+        if (options_.nextEvent) proposeFreshLight(context, options_.lamps, rng, sink);
         if (candidates_.empty()) return;
         const double uniform = 1.0 / double(candidates_.size());
         const auto around = points_.around(points_.serving(context.vertex, context.vertex.asEye));
@@ -194,7 +195,7 @@ OptionTable<CacheResamplingOptions> cacheResamplingOptions(const CacheResampling
         {{"flow", CacheTarget::Flow}, {"flow-bsdf", CacheTarget::FlowThrough}},
         "what pmfs are proportional to: light that arrives at the cache point, or what "
         "its BSDF scatters of that towards the eye");
-    addNextEvent(table, &O::nextEvent);
+    addNextEvent(table, &O::nextEvent, &O::lamps);
     return table;
 }
 

@@ -33,6 +33,7 @@ struct CacheResamplingOptions {
     int cachePoints = 3;          ///< N_c
     CacheTarget target = CacheTarget::Flow;
     bool nextEvent = true;
+    Lamps lamps = Lamps::Seen;
     Weights weights = Weights::Plain;  ///< the rest is read where they are Ris
     int earlierIterations = 16;        ///< whose Q are averaged
     double clamp = 1e-3;

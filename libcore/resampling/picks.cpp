@@ -27,9 +27,12 @@ void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Ent
     if (!direct) std::erase_if(entries, [](const auto& e) { return e.count == 1; });
 }
 
-void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink) {
+void proposeFreshLight(const EyeContext& context, Lamps lamps, Rng& rng, ProposalSink& sink) {
     PathVertex& y0 = sink.newVertex();
-    if (context.lights.sampleLight(rng, y0)) sink.add({Subpath(&y0, 1), 1.0, 0});
+    const double samples = lamps == Lamps::Seen
+                               ? context.lights.sampleSeenLight(context.vertex, rng, y0)
+                               : double(context.lights.sampleLight(rng, y0));
+    if (samples > 0.0) sink.add({Subpath(&y0, 1), 1.0 / samples, 0});
 }
 
 }  // namespace lacuna

@@ -36,12 +36,25 @@ struct PickOptions {
 /// `connections` and `first_connections`, and `deep_connections` where `deep`.
 OptionTable<PickOptions> pickOptions(const PickOptions& defaults, bool deep = false);
 
-/// `next_event`, a switch of every method that may take s = 1 from the pool.
+/// `lamps`, of every method with next event.
 template <class Record, class Field>
-void addNextEvent(OptionTable<Record>& table, Field field) {
+void addLamps(OptionTable<Record>& table, Field field) {
+    table.template choice<Lamps>(
+        "lamps", field, {{"seen", Lamps::Seen}, {"power", Lamps::Power}},
+        "how next event picks a lamp: by what the eye vertex can see of it, or by power alone");
+}
+
+/// `next_event`, a switch of every method that may take s = 1 from the pool, and `lamps`.
+template <class Record, class Field, class LampsField>
+void addNextEvent(OptionTable<Record>& table, Field field, LampsField lamps) {
     table.onOff("next_event", field,
                 "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light "
                 "points");
+    addLamps(table, lamps);
+}
+/// ConnectionDensity::lamps of those methods.
+inline Lamps lampsOf(bool nextEvent, Lamps lamps) {
+    return nextEvent ? lamps : Lamps::Power;
 }
 
 /// `eye_share`: see withEyeShare.
@@ -79,27 +92,30 @@ class ExpectedVertices {
     std::uint64_t vertices_ = 0, pools_ = 0;
 };
 
-/// Proposes one fresh light point: next event (s = 1, r = 1).
-void proposeFreshLight(const EyeContext& context, Rng& rng, ProposalSink& sink);
+/// Proposes one fresh light point: next event (s = 1). By power r = 1, else r = seenSamples.
+void proposeFreshLight(const EyeContext& context, Lamps lamps, Rng& rng, ProposalSink& sink);
 
 /// A density that depends on nothing but whether s = 1.
 class ConstantDensity final : public ConnectionDensity {
   public:
-    ConstantDensity(double direct, double indirect) : constants_{direct, indirect} {}
+    ConstantDensity(double direct, double indirect, Lamps lamps = Lamps::Power)
+        : constants_{direct, indirect}, lamps_(lamps) {}
     std::optional<Constants> constants() const override { return constants_; }
     double effectiveSamples(const Connection& c) const override {
         return c.light.count == 1 ? constants_.direct : constants_.indirect;
     }
+    Lamps lamps() const override { return lamps_; }
 
   private:
     Constants constants_;
+    Lamps lamps_;
 };
 
 /// n r where every pick is worth the same r: picks x r. With next event s = 1 has one sample.
 class PicksDensity final : public ConnectionDensity {
   public:
-    PicksDensity(const Picks& picks, bool nextEvent, double r)
-        : picks_(picks), nextEvent_(nextEvent), r_(r) {}
+    PicksDensity(const Picks& picks, bool nextEvent, Lamps lamps, double r)
+        : picks_(picks), nextEvent_(nextEvent), lamps_(lamps), r_(r) {}
     std::optional<Constants> constants() const override {
         if (!picks_.alike()) return std::nullopt;
         return Constants{at(1, 1), at(2, 1)};
@@ -107,12 +123,14 @@ class PicksDensity final : public ConnectionDensity {
     double effectiveSamples(const Connection& c) const override {
         return at(c.light.count, c.order);
     }
+    Lamps lamps() const override { return lampsOf(nextEvent_, lamps_); }
 
   private:
     double at(int s, int order) const { return nextEvent_ && s == 1 ? 1.0 : picks_.at(order) * r_; }
 
     Picks picks_;
     bool nextEvent_;
+    Lamps lamps_;
     double r_;
 };
 

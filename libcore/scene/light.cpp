@@ -1,5 +1,6 @@
 #include "libcore/scene/light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -97,6 +98,35 @@ Rgb meanEmission(const EmissiveTriangle& t) {
     const bool constant = !t.texture && !t.alpha->varies();
     return constant ? sum * (1.0f / float(n)) : sum * (1.0f / float(n)) + Rgb(1e-3f);
 }
+
+PlacedLight placedTriangle(const EmissiveTriangle& t, std::uint32_t light, double power) {
+    const auto& [a, b, c] = t.corners;
+    return {light,
+            min(a, min(b, c)),
+            max(a, max(b, c)),
+            {Vec3d(triangleNormal(a, b, c)), 0.0, true, t.twoSided},
+            power / double(perRadiance(t))};
+}
+
+/// Whether the two are one flat lamp, cut along a diagonal.
+bool areHalves(const EmissiveTriangle& a, const EmissiveTriangle& b) {
+    const auto normalOf = [](const EmissiveTriangle& t) {
+        return triangleNormal(t.corners[0], t.corners[1], t.corners[2]);
+    };
+    int common = 0;
+    for (const Vec3& corner : a.corners) {
+        common += int(std::ranges::count(b.corners, corner));
+    }
+    return common == 2 && a.material == b.material && dot(normalOf(a), normalOf(b)) > 0.9999f;
+}
+
+void join(PlacedLight& first, const PlacedLight& second) {
+    first.low = min(first.low, second.low);
+    first.high = max(first.high, second.high);
+    first.cone.add(second.cone);
+    first.share = first.intensity / (first.intensity + second.intensity);
+    first.intensity += second.intensity;
+}
 }  // namespace
 
 Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const PunctualLight> punctual,
@@ -119,6 +149,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     }
     const std::vector<double> power = powers();
     selection_ = DiscreteDistribution(power);
+    tree_ = makeTree(power);
     chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
         const EmissiveTriangle& t = triangles_[i];
@@ -158,6 +189,48 @@ std::vector<double> Lights::powers() const {
     return power;
 }
 
+/// Over the lights that can be picked.
+LampTree Lights::makeTree(std::span<const double> powers) const {
+    std::vector<PlacedLight> placed;
+    std::vector<DistantLight> distant;
+    const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
+    const auto canBePicked = [&](std::uint32_t i) { return selection_.pmf(i) > 0.0; };
+    for (std::uint32_t i = 0; i < kinds_.size(); ++i) {
+        if (!canBePicked(i)) continue;
+        if (kinds_[i] == LightKind::Area) {
+            const EmissiveTriangle& t = triangles_[i];
+            placed.push_back(placedTriangle(t, i, powers[i]));
+            const std::uint32_t next = i + 1;
+            if (next < triangles_.size() && canBePicked(next) && areHalves(t, triangles_[next])) {
+                join(placed.back(), placedTriangle(triangles_[next], next, powers[next]));
+                ++i;
+            }
+            continue;
+        }
+        if (kinds_[i] == LightKind::Environment) {
+            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter.
+            distant.push_back({i, {}, 0.25 * powers[i] / disk});
+            continue;
+        }
+        const std::size_t p = i - triangles_.size();
+        const PunctualLight& l = punctual_[p];
+        if (kinds_[i] == LightKind::Directional) {
+            distant.push_back({i, -punctualDirection_[p], powers[i] / disk});
+            continue;
+        }
+        // A spot's edge is dark: to round its cone up costs nothing.
+        const double cone = kinds_[i] == LightKind::Point
+                                ? std::numbers::pi
+                                : std::min(l.outerConeAngle + 1e-3, std::numbers::pi);
+        placed.push_back({i,
+                          punctualPosition_[p],
+                          punctualPosition_[p],
+                          {Vec3d(punctualDirection_[p]), cone, false, false},
+                          meanOf(l.intensity)});
+    }
+    return LampTree(std::move(placed), distant, diskRadius_, kinds_.size());
+}
+
 void Lights::chooseUnit(double power) {
     if (!(power > 0.0) || std::abs(std::ilogb(power)) <= kRoom) return;
     unit_ = std::ldexp(1.0, std::ilogb(power));
@@ -186,29 +259,59 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
     return p;
 }
 
+const double Lights::kByPower = 0.1;
+
 LightPoint Lights::samplePoint(Rng& rng) const {
     const Rng::Draw draw = rng.draw();
     const DiscreteDistribution::Pick pick = selection_.sample(draw.pick);
-    const std::uint32_t light = pick.index;
+    return pointOn(pick.index, pick.remapped(), draw.u1, draw.u2);
+}
+
+Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
+    const Rng::Draw draw = rng.draw();
+    if (!tree_.chooses() || draw.pick < kByPower) {
+        const double u = tree_.chooses() ? draw.pick / kByPower : draw.pick;
+        const DiscreteDistribution::Pick pick = selection_.sample(u);
+        return {pointOn(pick.index, pick.remapped(), draw.u1, draw.u2),
+                seenSamples(pick.index, from)};
+    }
+    const LampTree::Pick pick = tree_.pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
+    return {pointOn(pick.light, pick.remapped, draw.u1, draw.u2),
+            seenSamples(pick.light, pick.pmf)};
+}
+
+double Lights::seenSamples(std::uint32_t light, const Viewpoint& from) const {
+    if (!tree_.chooses()) return selection_.pmf(light) > 0.0 ? 1.0 : 0.0;
+    return seenSamples(light, tree_.pmf(from, light));
+}
+
+double Lights::seenSamples(std::uint32_t light, double pmfOfTree) const {
+    const double byPower = selection_.pmf(light);
+    return byPower > 0.0 ? kByPower + (1.0 - kByPower) * (pmfOfTree / byPower) : 0.0;
+}
+
+/// A point on the light; `u` picks among an environment's texels.
+LightPoint Lights::pointOn(std::uint32_t light, double u, float u1, float u2) const {
     if (light < area_.size()) {
         const AreaLight& a = area_[light];
-        const float s = std::sqrt(draw.u1);
-        const Vec2 b{1.0f - s, draw.u2 * s};
+        const float s = std::sqrt(u1);
+        const Vec2 b{1.0f - s, u2 * s};
         return areaPoint(light, a.corner + a.edge1 * b.x + a.edge2 * b.y, a.ng, b);
     }
     LightPoint p;
     p.light = light;
     p.kind = kinds_[light];
+    const double pmf = selection_.pmf(light);
     if (p.kind == LightKind::Environment) {
-        const Environment::Sample s = environment_->sample(pick.remapped(), draw.u1, draw.u2);
+        const Environment::Sample s = environment_->sample(u, u1, u2);
         p.position = s.direction;
-        p.pdf = float(pick.pmf) * s.pdfW;
+        p.pdf = float(pmf) * s.pdfW;
         p.exitance = skyExitance(environment_->radiance(s.direction));
         return p;
     }
     const std::size_t i = light - triangles_.size();
     const PunctualLight& l = punctual_[i];
-    p.pdf = float(pick.pmf);
+    p.pdf = float(pmf);
     if (p.kind == LightKind::Directional) {
         p.position = -punctualDirection_[i];
         p.exitance = l.intensity;

@@ -28,6 +28,7 @@
 #include "libcore/scene/alpha.h"
 #include "libcore/scene/description.h"
 #include "libcore/scene/environment.h"
+#include "libcore/scene/lamp_tree.h"
 #include "libcore/scene/ray.h"
 
 namespace lacuna {
@@ -98,6 +99,21 @@ class Lights {
     /// Draws y_0. Not to be called when empty().
     LightPoint samplePoint(Rng& rng) const;
 
+    /// The same on a light that is picked by what `from` sees of it. Its pdf is still that of
+    /// samplePoint; `samples` says how many of those points it stands for.
+    struct SeenPoint {
+        LightPoint point;
+        double samples;
+    };
+    SeenPoint sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
+    /// Its density over that of samplePoint, which is a function of the light alone; at least
+    /// kByPower where the light has power, else zero.
+    double seenSamples(std::uint32_t light, const Viewpoint& from) const;
+    /// Share of the points of sampleSeenPoint that go by power all the same: nothing that the tree
+    /// does not know costs more than 1 / kByPower of the samples.
+    static const double kByPower;
+    const LampTree& tree() const { return tree_; }
+
     /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
     /// included).
     LightPoint areaPoint(std::uint32_t light, const Vec3& position, const Vec3& ng, Vec2 uv) const {
@@ -164,6 +180,9 @@ class Lights {
     }
     std::vector<double> powers() const;
     void chooseUnit(double power);
+    LampTree makeTree(std::span<const double> powers) const;
+    LightPoint pointOn(std::uint32_t light, double u, float u1, float u2) const;
+    double seenSamples(std::uint32_t light, double pmfOfTree) const;
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
     float opacityAt(std::uint32_t light, Vec2 barycentric) const {
@@ -189,6 +208,7 @@ class Lights {
     const Environment* environment_;
     std::uint32_t environmentIndex_ = kNone;  // the last one
     DiscreteDistribution selection_;
+    LampTree tree_;
     float diskRadius_;
     double unit_ = 1.0;
 };

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from . import materials as m
 from . import objects, pictures
-from .building import SUNK, arch_panel, barrel_vault, boxes, rib, room, rows
+from .building import SUNK, arch_panel, barrel_vault, boxes, rib, room, rows, slab
 from .glb import SceneFile
-from .mesh import box, cylinder, drapery, lathe, moved, sphere, torus
-from .vector import about_x, about_y, towards
+from .mesh import box, cylinder, drapery, lathe, merged, moved, quad, sphere, torus
+from .vector import about_x, about_y, rotated, towards
 
 
 def drapery_hall() -> SceneFile:
@@ -154,4 +154,57 @@ def nave() -> SceneFile:
     return s
 
 
-SCENES = [drapery_hall, court, nave]
+def lamp_warehouse() -> SceneFile:
+    """Cells of 6 m in 25 columns and 20 rows, each closed and each with the same twenty lamps; one doorway, in the camera's cell."""
+    s = SceneFile("lamp-warehouse", "Warehouse of 500 closed cells with twenty small lamps each; the camera is in one of them", 640, 360)
+    plaster = s.material(m.lambert("plaster", (0.70, 0.68, 0.64)))
+    concrete = s.material(m.lambert("concrete", (0.45, 0.44, 0.42)))
+    wood = s.material(m.lambert("wood", (0.46, 0.30, 0.17)))
+    steel = s.material(m.metal("steel", (0.80, 0.80, 0.82), 0.25))
+    enamel = s.material(m.coated("enamel", (0.50, 0.08, 0.06), 0.1))
+    lamp = s.material(m.emitter("lamp", (1150.0, 980.0, 760.0)))
+
+    cell, height, columns, lines = 6.0, 3.0, 25, 20
+    x1, z1 = cell * columns / 2, cell * lines / 2
+    for side, mesh in room((-x1, 0, -z1), (x1, height, z1), 0.3).items():
+        s.add(side, mesh, concrete if side == "floor" else plaster)
+    # Partitions reach into floor, ceiling and outer walls, and into each other, nowhere equally far.
+    across = s.mesh("partition across", (box((-x1 - 0.1, -0.02, -0.05), (x1 + 0.1, height + 0.02, 0.05)), plaster))
+    along = s.mesh("partition along", (box((-0.05, -0.03, -z1 - 0.1), (0.05, height + 0.03, z1 + 0.1)), plaster))
+    for i in range(1, lines):
+        s.node(f"partition across {i}", across, at=(0.0, 0.0, cell * i - z1))
+    door = 12  # the partition with the doorway; the camera's cell is to its right
+    for i in range(1, columns):
+        if i != door:
+            s.node(f"partition along {i}", along, at=(cell * i - x1, 0.0, 0.0))
+    middle = cell * door - x1 + cell / 2
+    doorway = (z1 + 0.1 + 2.2, z1 + 0.1 + 3.2, 0.0, 2.13)
+    s.add("partition with a doorway", slab((cell * door - x1 + 0.05, -0.03, z1 + 0.1), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0),
+                                           2 * z1 + 0.2, height + 0.06, 0.1, [doorway]), plaster)
+
+    shades = []
+    for i in range(20):
+        # Steps of the golden ratio: even, and not in rows.
+        u, v = (0.618034 * i) % 1.0, (i + 0.5) / 20
+        shade = quad((-0.02, 0.0, -0.02), (0.04, 0.0, 0.0), (0.0, 0.0, 0.04))
+        turn, lean = about_y(137.5 * i), about_x(35.0 * ((0.7548777 * i) % 1.0))
+        place = lambda p: rotated(turn, rotated(lean, p))  # noqa: E731
+        shade.positions, shade.normals = [place(p) for p in shade.positions], [place(n) for n in shade.normals]
+        shades.append(moved(shade, (5.0 * u - 2.5, 2.3 + 0.5 * ((0.5698403 * i) % 1.0), 5.0 * v - 2.5)))
+    # Five cells at a time: a node takes as many bytes as a lamp.
+    lamps = s.mesh("lamps of five cells", (merged(moved(shade, (0.0, 0.0, cell * (k + 0.5))) for k in range(5) for shade in shades), lamp))
+    for i in range(columns):
+        for j in range(0, lines, 5):
+            s.node(f"lamps {i} {j}", lamps, at=(cell * (i + 0.5) - x1, 0.0, cell * j - z1))
+
+    here = s.node("cell", at=(middle, 0.0, -cell / 2))
+    crate = s.mesh("crate", (box((-0.4, -SUNK, -0.4), (0.4, 0.8, 0.4)), wood))
+    for i, (x, y, z, turn) in enumerate(((-1.9, 0.0, -2.2, 8), (-0.9, 0.0, -2.3, -5), (-1.45, 0.8, -2.25, 21), (1.9, 0.0, -1.9, 33))):
+        s.node(f"crate {i + 1}", crate, parent=here, at=(x, y, z), turned=about_y(turn))
+    s.add("drum", cylinder(0.33, 0.95, 32), steel, parent=here, at=(0.75, -SUNK, -1.7))
+    s.add("jug", objects.jug(0.34), enamel, parent=here, at=(1.9, 0.8 - 2 * SUNK, -1.9))
+    s.camera((middle + 1.6, 1.6, -cell / 2 + 2.6), (middle - 0.7, 1.15, -cell / 2 - 1.4), 58.0)
+    return s
+
+
+SCENES = [drapery_hall, court, nave, lamp_warehouse]

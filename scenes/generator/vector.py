@@ -56,6 +56,12 @@ def about_z(degrees: float) -> Quat:
     return about((0, 0, 1), degrees)
 
 
+def rotated(q: Quat, v: Sequence[float]) -> Vec3:
+    """`v` turned by the rotation `q`."""
+    t = scaled(cross(q[:3], v), 2.0)
+    return add(add(v, scaled(t, q[3])), cross(q[:3], t))
+
+
 def towards(direction: Sequence[float]) -> Quat:
     """Rotation that turns -Z, along which glTF's lights shine, into `direction`."""
     d = unit(direction)

@@ -102,7 +102,8 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
     shot.maxDepth = 5;
     shot.iterations = 2 * GetParam().iterations;
     shot.seed = 100;
-    const Picture reference = render(scene, rowNamed(GetParam().caustics ? "bpt" : "pt"), shot);
+    const Picture reference =
+        render(scene, GetParam().caustics ? rowNamed("bpt") : pathTracer(), shot);
     shot.seed = 1;
     shot.iterations = GetParam().iterations;
     for (const std::string& name : rowNames()) {

@@ -283,7 +283,14 @@ bool isTestRow(const MethodRow& row) {
 }
 
 const MethodRow& pathTracer() {
-    return findMethod("pt");
+    static const MethodRow row = [] {
+        MethodRow byPower = findMethod("pt");
+        for (Option& o : byPower.options) {
+            if (o.name == "lamps") o.standard = std::string("power");
+        }
+        return byPower;
+    }();
+    return row;
 }
 
 }  // namespace lacuna::test

@@ -133,6 +133,7 @@ Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
 bool walksFromLights(const MethodRow& row);
 /// The test's own rows, whose weights believe nonsense on purpose.
 bool isTestRow(const MethodRow& row);
+/// pt, its lamps picked by power: what rows do that pick by sight is judged by what does not.
 const MethodRow& pathTracer();
 
 }  // namespace lacuna::test

@@ -76,7 +76,7 @@ TEST(Labels, areThoseOfAWalkThatCameThisWay) {
         counts[i].hit = true;
         counts[i].splats = 5.0;
         counts[i].rouletteDepth = 2;
-        counts[i].connectThrough(densities[i]);
+        counts[i].connectThrough(densities[i], walker);
     }
     std::vector<PathVertex> lightPath, eyePath;
     FullPath path;

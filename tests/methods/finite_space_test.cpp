@@ -142,7 +142,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
         TechniqueCounts counts;
         counts.hit = row.techniques.hits;
         counts.splats = row.techniques.splats ? 5.0 : 0.0;
-        if (row.techniques.connects) counts.connectThrough(method->freeze(0));
+        if (row.techniques.connects) counts.connectThrough(method->freeze(0), space);
         counts.rouletteDepth = FiniteSpace::kRouletteDepth;
 
         Rng rng(5, 0, StreamKind::User, 0);

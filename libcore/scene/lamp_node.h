@@ -1,0 +1,78 @@
+// A node of the lamp tree, for the two files that make and read the tree (lamp_tree.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "libcore/scene/lamp_tree.h"
+
+namespace lacuna {
+
+/// Eight children side by side, so that one instruction weighs all of them.
+struct alignas(32) LampTree::Node {
+    static constexpr std::size_t kWidth = 8;
+    using Lanes = std::array<float, kWidth>;
+
+    Lanes x{}, y{}, z{};                        // middle of the box
+    Lanes extentX{}, extentY{}, extentZ{};      // half of its size
+    Lanes radius{};                             // half of its diagonal
+    Lanes axisX{}, axisY{}, axisZ{};            // of the cone
+    Lanes sine{}, cosine{};                     // of its half angle
+    Lanes fades{}, twoSided{};                  // 1 or 0
+    Lanes intensity{};                          // 0: no such child
+    std::array<std::uint32_t, kWidth> child{};  // 0: a leaf
+    std::array<std::uint32_t, kWidth> begin;    // its first leaf; no child: beyond all leaves
+
+    Node() { begin.fill(~0u); }
+
+    void set(std::size_t i, const Extent& e, std::uint32_t first);
+    void weigh(const Viewpoint& from, Lanes& importance) const;
+    Shares shares(const Viewpoint& from) const;
+    /// The child that the leaf is under.
+    std::size_t childOf(std::uint32_t leaf) const {
+        std::uint32_t begun = 0;
+        for (const std::uint32_t b : begin) begun += b <= leaf ? 1 : 0;
+        return begun - 1;
+    }
+};
+
+/// Of children: what each is picked in proportion to.
+struct LampTree::Shares {
+    Node::Lanes weights{};
+    double sum = 0.0;
+
+    double operator[](std::size_t i) const { return double(weights[i]) / sum; }
+};
+
+/// What a node has of its lights.
+struct LampTree::Extent {
+    Vec3 low, high;
+    ShiningCone cone;
+    double intensity = 0.0;  // 0: of none yet
+
+    void add(const Vec3& l, const Vec3& h, const ShiningCone& c, double i) {
+        if (intensity == 0.0) {
+            *this = {l, h, c, i};
+            return;
+        }
+        low = min(low, l);
+        high = max(high, h);
+        cone.add(c);
+        intensity += i;
+    }
+    void add(const PlacedLight& l) { add(l.low, l.high, l.cone, l.intensity); }
+    void add(const Extent& e) {
+        if (e.intensity > 0.0) add(e.low, e.high, e.cone, e.intensity);
+    }
+    /// What a split is to make small [Conty18 eq 2], with the diagonal in place of the surface,
+    /// which lights in a row have none of.
+    static std::uint32_t split(std::span<PlacedLight> own);
+    double cost() const {
+        return intensity == 0.0 ? 0.0
+                                : intensity * cone.measure() * double(lengthSquared(high - low));
+    }
+};
+
+}  // namespace lacuna

@@ -1,0 +1,186 @@
+#include "libcore/scene/lamp_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/scene/lamp_node.h"
+#include "libcore/scene/ray.h"
+
+namespace lacuna {
+
+namespace {
+
+/// What is not behind a surface counts as so far in front of it at least: rounding again.
+constexpr float kLeastCosine = 1e-4f;
+
+double below1(double u) {
+    return std::min(u, 0x1.fffffffffffffp-1);
+}
+
+}  // namespace
+
+/// From above: intensity over squared distance with the cosines at both ends, wherever in the box
+/// and in the cone the light may be. Distances are no less than the box's own size, so that nodes
+/// around the point stay comparable. Without branches: for all children at once.
+void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
+    const Vec3 p = from.position, side = from.side;
+    const Vec3 size{std::fabs(side.x), std::fabs(side.y), std::fabs(side.z)};
+    // Without a side everything is above it, and every cosine is one.
+    const float up = side == Vec3{} ? 2.0f : 0.0f;
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        const float tx = x[i] - p.x, ty = y[i] - p.y, tz = z[i] - p.z;
+        const float d2 = tx * tx + ty * ty + tz * tz, r2 = radius[i] * radius[i];
+        const float inverse = 1.0f / std::sqrt(std::max(d2, r2));
+        // Half the angle under which the box is seen; a right angle inside it.
+        const float boxSine = radius[i] * inverse;
+        const float boxCosine = std::sqrt(std::max(0.0f, 1.0f - boxSine * boxSine));
+
+        const float across = side.x * tx + side.y * ty + side.z * tz;
+        const float highest =
+            across + size.x * extentX[i] + size.y * extentY[i] + size.z * extentZ[i];
+        const float c = std::min(1.0f, std::max(-1.0f, across * inverse)) + up;
+        const float s = std::sqrt(std::max(0.0f, 1.0f - c * c));
+        const float nearest = std::max(kLeastCosine, c * boxCosine + s * boxSine);
+        const float above = highest + up > 0.0f ? 1.0f : 0.0f;
+        const float arriving = c >= boxCosine ? above : above * nearest;
+
+        const float toAxis = -(axisX[i] * tx + axisY[i] * ty + axisZ[i] * tz) * inverse;
+        const float either = twoSided[i] > 0.0f ? std::fabs(toAxis) : toAxis;
+        const float a = std::min(1.0f, std::max(-1.0f, either));
+        const float b = std::sqrt(std::max(0.0f, 1.0f - a * a));
+        const bool inCone = a >= cosine[i];
+        const float offCosine = inCone ? 1.0f : a * cosine[i] + b * sine[i];
+        const float offSine = inCone ? 0.0f : b * cosine[i] - a * sine[i];
+        const bool mayBeIn = offCosine >= boxCosine;
+        const float faded = std::max(0.0f, offCosine * boxCosine + offSine * boxSine) * fades[i];
+        const float leaving = mayBeIn ? 1.0f : faded;
+
+        const float cosines = d2 <= r2 ? above : arriving * leaving;
+        importance[i] = intensity[i] * cosines / std::max(d2, r2);
+    }
+}
+
+/// Where no child can send anything, it does not matter which is picked: all shares still sum to
+/// one.
+LampTree::Shares LampTree::Node::shares(const Viewpoint& from) const {
+    Shares result;
+    weigh(from, result.weights);
+    for (const float w : result.weights) result.sum += double(w);
+    if (result.sum > 0.0) return result;
+    result.weights = intensity;
+    for (const float w : result.weights) result.sum += double(w);
+    return result;
+}
+
+double LampTree::importanceOf(const Distant& light, const Viewpoint& from) {
+    if (from.side == Vec3{} || light.direction == Vec3{}) return double(light.irradiance);
+    const float cosine = dot(from.side, light.direction);
+    return cosine > 0.0f ? double(light.irradiance) * double(cosine) : 0.0;
+}
+
+LampTree::Roots LampTree::roots(const Viewpoint& from) const {
+    if (distant_.empty()) return {1.0, 1.0, false};
+    double tree = 0.0;
+    if (!nodes_.empty()) {
+        Node::Lanes weights;
+        nodes_[0].weigh(from, weights);
+        for (const float w : weights) tree += double(w);
+    }
+    double sum = tree;
+    for (const Distant& d : distant_) sum += importanceOf(d, from);
+    if (sum > 0.0) return {tree, sum, false};
+    const double ofTree = nodes_.empty() ? 0.0 : 1.0;
+    return {ofTree, ofTree + double(distant_.size()), true};
+}
+
+double LampTree::shareOf(const Roots& roots, const Distant& light, const Viewpoint& from) {
+    return (roots.even ? 1.0 : importanceOf(light, from)) / roots.sum;
+}
+
+LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
+    const Viewpoint from = scaled(fileFrom);
+    const Roots top = roots(from);
+    double pmf = top.tree / top.sum;
+    if (u >= pmf && !distant_.empty()) {
+        u -= pmf;
+        // The last one that can be picked at all has what rounding leaves over.
+        Pick found{};
+        for (const Distant& d : distant_) {
+            const double p = shareOf(top, d, from);
+            if (!(p > 0.0)) continue;
+            found = {d.light, p, below1(u / p)};
+            if (u < p) break;
+            u -= p;
+        }
+        return found;
+    }
+    u = below1(u / pmf);
+    for (const Node* node = &nodes_[0];;) {
+        const Shares shares = node->shares(from);
+        std::size_t chosen = 0;
+        double rest = u * shares.sum;
+        for (std::size_t i = 0; i < Node::kWidth; ++i) {
+            const double weight = double(shares.weights[i]);
+            if (!(weight > 0.0)) continue;
+            chosen = i;
+            if (rest < weight) break;
+            rest -= weight;
+        }
+        pmf *= shares[chosen];
+        u = below1(rest / double(shares.weights[chosen]));
+        if (node->child[chosen] != 0) {
+            node = &nodes_[node->child[chosen]];
+            continue;
+        }
+        const Leaf& leaf = leaves_[node->begin[chosen]];
+        const bool isFirst = u < leaf.share;
+        const std::uint32_t light = leaf.light + (isFirst ? 0 : 1);
+        const double ofLeaf = leaf.shareOf(light);
+        return {light, pmf * ofLeaf, below1((isFirst ? u : u - leaf.share) / ofLeaf)};
+    }
+}
+
+double LampTree::pmf(const Viewpoint& fileFrom, std::uint32_t light) const {
+    const std::uint32_t place = placeOf_[light];
+    if (place == kNone) return 0.0;
+    const Viewpoint from = scaled(fileFrom);
+    const Roots top = roots(from);
+    if (place >= leaves_.size()) return shareOf(top, distant_[place - leaves_.size()], from);
+    double pmf = top.tree / top.sum;
+    std::uint32_t next = 0;
+    do {
+        const Node& node = nodes_[next];
+        const std::size_t child = node.childOf(place);
+        pmf *= node.shares(from)[child];
+        next = node.child[child];
+    } while (next != 0 && pmf > 0.0);
+    return pmf * leaves_[place].shareOf(light);
+}
+
+double LampTree::importance(const Viewpoint& fileFrom, std::uint32_t light) const {
+    const std::uint32_t place = placeOf_[light];
+    if (place == kNone) return 0.0;
+    const Viewpoint from = scaled(fileFrom);
+    if (place >= leaves_.size()) return importanceOf(distant_[place - leaves_.size()], from);
+    const Node* node = &nodes_[0];
+    std::size_t child = node->childOf(place);
+    while (node->child[child] != 0) {
+        node = &nodes_[node->child[child]];
+        child = node->childOf(place);
+    }
+    Node::Lanes weights;
+    node->weigh(from, weights);
+    return double(weights[child]);
+}
+
+std::uint64_t LampTree::bytes() const {
+    return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) +
+           placeOf_.size() * sizeof(std::uint32_t);
+}
+
+LampTree::LampTree() = default;
+LampTree::LampTree(LampTree&&) noexcept = default;
+LampTree& LampTree::operator=(LampTree&&) noexcept = default;
+LampTree::~LampTree() = default;
+
+}  // namespace lacuna

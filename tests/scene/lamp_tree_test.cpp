@@ -1,0 +1,270 @@
+// Lights picked by what a point sees of them: what is never picked sends nothing, probabilities are
+// those of the picks. False alarms: 1e-3 over all comparisons of this file.
+#include "libcore/scene/lamp_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "libcore/scene/environment.h"
+#include "libcore/scene/light.h"
+#include "tests/base/chi_square.h"
+#include "tests/scene/scene_builder.h"
+
+namespace lacuna::test {
+namespace {
+
+constexpr double kSignificance = 1e-3 / 64;  // Sidak of fewer than 64 comparisons
+
+class SomeLights {
+  public:
+    explicit SomeLights(std::uint64_t seed) : rng_(seed, 0, StreamKind::User, 0) {}
+
+    float between(float a, float b) { return a + (b - a) * rng_.uniform(); }
+    Vec3 point() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
+    Vec3 direction() { return normalize(point()); }
+    Viewpoint viewpoint(bool oneSide) { return {point(), oneSide ? direction() : Vec3{}}; }
+    Rng& rng() { return rng_; }
+
+    void addTriangles(int count, bool twoSided, float size = 0.1f) {
+        for (int i = 0; i < count; ++i) {
+            EmissiveTriangle t;
+            const Vec3 p = point();
+            t.corners = {p, p + direction() * size, p + direction() * size};
+            t.radiance = Rgb(between(0.1f, 10.0f));
+            t.twoSided = twoSided;
+            triangles.push_back(t);
+        }
+    }
+    /// Flat lamps in two triangles each, of which one may be the brighter.
+    void addQuads(int count) {
+        for (int i = 0; i < count; ++i) {
+            addTriangles(1, i % 2 == 0);
+            EmissiveTriangle other = triangles.back();
+            const auto& [a, b, c] = triangles.back().corners;
+            other.corners = {c, b, b + c - a};
+            other.radiance *= 1.0f + float(i % 3);
+            triangles.push_back(other);
+        }
+    }
+    void addPunctual() {
+        for (int i = 0; i < 5; ++i) {
+            punctual.push_back(pointLight(Vec3d(point()), Rgb(between(0.1f, 1))));
+            const double outer = 0.01 + 1.5 * double(rng_.uniform());
+            punctual.push_back(spotLight(Vec3d(point()), Vec3d(direction()), Rgb(between(0.1f, 1)),
+                                         0.5 * outer, outer));
+        }
+    }
+    void addDistant() {
+        Image image(4, 2);
+        for (Rgb& c : image.pixels) c = Rgb(between(0, 0.2f));
+        sky_ = std::make_unique<Environment>(image, 1.0, 0.0, "sky");
+        punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.3f)));
+        punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.2f)));
+    }
+    Lights lights() const { return Lights(triangles, punctual, {}, sky_.get(), 2.0f); }
+
+    std::vector<EmissiveTriangle> triangles;
+    std::vector<PunctualLight> punctual;
+
+  private:
+    Rng rng_;
+    std::unique_ptr<Environment> sky_;
+};
+
+/// Of everything: surfaces of one side and of two, large and small, punctual lights, infinity.
+SomeLights allKinds(std::uint64_t seed) {
+    SomeLights lamps(seed);
+    lamps.addTriangles(40, false);
+    lamps.addTriangles(20, true);
+    lamps.addTriangles(3, false, 1.5f);
+    lamps.addQuads(10);
+    lamps.addPunctual();
+    lamps.addDistant();
+    return lamps;
+}
+
+TEST(LampTree, whatIsNeverPickedSendsNothing) {
+    SomeLights lamps = allKinds(11);
+    const Lights lights = lamps.lights();
+    int sends = 0, dark = 0;
+    for (int n = 0; n < 40000; ++n) {
+        const Viewpoint from = lamps.viewpoint(n % 4 != 0);
+        const LightPoint y = lights.samplePoint(lamps.rng());
+        const bool infinite = isInfinite(y.kind);
+        const Vec3 to = infinite ? y.position : normalize(y.position - from.position);
+        const bool scatters = from.side == Vec3{} || dot(from.side, to) > 0.0f;
+        const double pmf = lights.tree().pmf(from, y.light);
+        if (scatters && lights.emission(y, -to).profile > 0.0f) {
+            ++sends;
+            EXPECT_GT(pmf, 0.0) << "light " << y.light << ", kind " << int(y.kind);
+            EXPECT_GT(lights.tree().importance(from, y.light), 0.0);
+        } else {
+            dark += pmf == 0.0;
+        }
+    }
+    EXPECT_GT(sends, 5000);
+    EXPECT_GT(dark, 5000) << "the cones tell nothing";
+}
+
+TEST(LampTree, probabilitiesSumToOneWhereverOneStands) {
+    for (const std::uint64_t seed : {12u, 13u, 14u}) {
+        SomeLights lamps = allKinds(seed);
+        const Lights lights = lamps.lights();
+        for (int n = 0; n < 500; ++n) {
+            Viewpoint from = lamps.viewpoint(n % 2 == 0);
+            if (n % 5 == 0) from.position = lights.samplePoint(lamps.rng()).position;  // on one
+            if (n % 7 == 0) from.position = from.position * 1e6f;
+            double byTree = 0, all = 0;
+            for (std::uint32_t l = 0; l < lights.size(); ++l) {
+                byTree += lights.tree().pmf(from, l);
+                all += lights.seenSamples(l, from) * lights.pmf(l);
+                if (lights.pmf(l) > 0.0) {
+                    EXPECT_GE(lights.seenSamples(l, from), Lights::kByPower);
+                }
+            }
+            EXPECT_NEAR(byTree, 1.0, 1e-12);
+            EXPECT_NEAR(all, 1.0, 1e-12);
+        }
+    }
+}
+
+TEST(LampTree, whatIsAskedForIsWhatThePickHad) {
+    SomeLights lamps = allKinds(15);
+    const Lights lights = lamps.lights();
+    for (int n = 0; n < 20000; ++n) {
+        const Viewpoint from = lamps.viewpoint(n % 2 == 0);
+        const LampTree::Pick pick = lights.tree().pick(from, lamps.rng().uniformDouble());
+        EXPECT_EQ(pick.pmf, lights.tree().pmf(from, pick.light));
+        EXPECT_GT(pick.pmf, 0.0);
+        EXPECT_TRUE(pick.remapped >= 0.0 && pick.remapped < 1.0);
+        const Lights::SeenPoint seen = lights.sampleSeenPoint(from, lamps.rng());
+        EXPECT_EQ(seen.samples, lights.seenSamples(seen.point.light, from));
+    }
+}
+
+TEST(LampTree, picksComeAsOftenAsTheirProbabilitySays) {
+    SomeLights lamps = allKinds(16);
+    const Lights lights = lamps.lights();
+    constexpr std::uint64_t kDraws = 100'000;
+    for (int n = 0; n < 12; ++n) {
+        const Viewpoint from = lamps.viewpoint(n % 2 == 0);
+        std::vector<std::uint64_t> counts(lights.size()), ofTree(lights.size()), rests(16);
+        std::vector<double> pmf, pmfOfTree;
+        for (std::uint32_t l = 0; l < lights.size(); ++l) {
+            pmf.push_back(lights.seenSamples(l, from) * lights.pmf(l));
+            pmfOfTree.push_back(lights.tree().pmf(from, l));
+        }
+        for (std::uint64_t i = 0; i < kDraws; ++i) {
+            ++counts[lights.sampleSeenPoint(from, lamps.rng()).point.light];
+            const auto pick = lights.tree().pick(from, lamps.rng().uniformDouble());
+            ++ofTree[pick.light];
+            ++rests[std::size_t(pick.remapped * 16)];
+        }
+        EXPECT_GT(chiSquareSignificance(counts, pmf, kDraws), kSignificance);
+        EXPECT_GT(chiSquareSignificance(ofTree, pmfOfTree, kDraws), kSignificance);
+        const std::vector<double> even(16, 1.0 / 16);
+        EXPECT_GT(chiSquareSignificance(rests, even, kDraws), kSignificance);
+    }
+}
+
+TEST(LampTree, nearLampsComeFirst) {
+    SomeLights lamps(17);
+    for (int i = 0; i < 1000; ++i) {
+        lamps.punctual.push_back(pointLight({double(i), 0, 0}, Rgb(1.0f)));
+    }
+    const Lights lights(lamps.triangles, lamps.punctual, {}, nullptr, 1000.0f);
+    const Viewpoint from{{500.0f, 0.5f, 0.0f}, {0, -1, 0}};
+    double near = 0.0;
+    for (std::uint32_t l = 495; l <= 505; ++l) near += lights.seenSamples(l, from) * lights.pmf(l);
+    EXPECT_GT(near, 0.7) << "by power 0.011";
+}
+
+TEST(LampTree, oneLightOrNoneIsNoChoice) {
+    SomeLights none(18);
+    EXPECT_TRUE(none.lights().empty());
+    EXPECT_FALSE(none.lights().tree().chooses());
+
+    SomeLights one(19);
+    one.addTriangles(1, false);
+    EmissiveTriangle dark = one.triangles[0];
+    dark.radiance = {};
+    EmissiveTriangle flat = one.triangles[0];
+    flat.corners[2] = flat.corners[1];
+    one.triangles.insert(one.triangles.begin(), {dark, flat});
+    const Lights lights = one.lights();
+    const Viewpoint from = one.viewpoint(true);
+    for (std::uint64_t n = 0; n < 100; ++n) {
+        Rng a(1, 0, StreamKind::User, n), b = a;
+        const LightPoint p = lights.samplePoint(a);
+        const Lights::SeenPoint seen = lights.sampleSeenPoint(from, b);
+        EXPECT_EQ(seen.point.light, 2u);
+        EXPECT_EQ(seen.point.position, p.position);
+        EXPECT_EQ(seen.samples, 1.0);
+        EXPECT_EQ(a.bits(), b.bits());
+    }
+    for (const std::uint32_t l : {0u, 1u}) EXPECT_EQ(lights.seenSamples(l, from), 0.0);
+    EXPECT_EQ(lights.seenSamples(2, from), 1.0);
+
+    SomeLights quad(22);
+    quad.addQuads(1);
+    EXPECT_FALSE(quad.lights().tree().chooses()) << "two halves are one lamp";
+}
+
+TEST(LampTree, lightsInOnePlaceAndWithoutPowerDoNoHarm) {
+    SomeLights lamps(20);
+    lamps.addTriangles(1, false);
+    for (int i = 0; i < 100; ++i) lamps.triangles.push_back(lamps.triangles[0]);
+    for (std::size_t i = 0; i < 100; i += 3) lamps.triangles[i].radiance = {};
+    for (std::size_t i = 1; i < 100; i += 3) {
+        lamps.triangles[i].corners[1] = lamps.triangles[i].corners[0];  // no area
+    }
+    for (int i = 0; i < 10; ++i) {
+        lamps.punctual.push_back(pointLight({0.5, 0.5, 0.5}, Rgb(i % 2 ? 1.0f : 1e-30f)));
+    }
+    const Lights lights = lamps.lights();
+    for (int n = 0; n < 200; ++n) {
+        Viewpoint from = lamps.viewpoint(true);
+        if (n % 4 == 0) from.position = {0.5f, 0.5f, 0.5f};
+        double sum = 0;
+        for (std::uint32_t l = 0; l < lights.size(); ++l) {
+            const double samples = lights.seenSamples(l, from);
+            ASSERT_TRUE(std::isfinite(samples));
+            sum += samples * lights.pmf(l);
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-12);
+        const Lights::SeenPoint seen = lights.sampleSeenPoint(from, lamps.rng());
+        EXPECT_GT(lights.pmf(seen.point.light), 0.0);
+    }
+}
+
+TEST(LampTree, powersOfTwoInSizeChangeNoBit) {
+    SomeLights lamps = allKinds(21);
+    const Lights lights = lamps.lights();
+    for (const float scale : {0x1p-20f, 0x1p30f}) {
+        SomeLights other = allKinds(21);
+        for (EmissiveTriangle& t : other.triangles) {
+            for (Vec3& c : t.corners) c = c * scale;
+            t.radiance *= 1.0f / scale / scale;
+        }
+        for (PunctualLight& l : other.punctual) {
+            l.position = l.position * double(scale);
+            // The sun and the sky shine on an area.
+            if (l.kind == PunctualLight::Kind::Directional) l.intensity *= 1.0f / scale / scale;
+        }
+        const Lights scaled(other.triangles, other.punctual, {}, nullptr, 2.0f * scale);
+        const Lights same(lamps.triangles, lamps.punctual, {}, nullptr, 2.0f);
+        for (int n = 0; n < 200; ++n) {
+            const Viewpoint from = lamps.viewpoint(n % 2 == 0);
+            for (std::uint32_t l = 0; l < same.size(); ++l) {
+                EXPECT_EQ(same.tree().pmf(from, l),
+                          scaled.tree().pmf({from.position * scale, from.side}, l));
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
