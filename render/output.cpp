@@ -42,6 +42,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["method"] = r.method->name;
     a["parameters"] = parametersJson(*r.method, r.settings).dump();
     a["seed"] = integerAttribute(r.seed);
+    a["sampler"] = std::string(nameOf(r.sampling));
     a["iterations"] = integerAttribute(r.iterations);
     a["blockIterations"] = integerAttribute(r.blocks.iterations);
     a["renderTimeSeconds"] = r.seconds;
@@ -166,6 +167,7 @@ json reportJson(const RenderReport& r) {
            {"threads", r.threads},
            {"ranks", r.ranks},
            {"seed", r.seed},
+           {"sampler", nameOf(r.sampling)},
            {"warmup_iterations", r.warmupIterations},
            {"block_iterations", r.blocks.iterations},
            {"first_block", r.firstBlock},

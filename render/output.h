@@ -24,6 +24,7 @@ struct RenderReport {
     const MethodRow* method = nullptr;
     Settings settings;
     std::uint64_t seed = 1;
+    Sampling sampling = Sampling::Sobol;
     int threads = 1;  ///< of rank 0
     int ranks = 1;
     std::uint64_t receivedBytes = 0;  ///< from other ranks

@@ -186,8 +186,15 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
     return p;
 }
 
+/// By even numbers of 24 bits and another one, which gives each 26 more: skies have rare texels.
+Environment::Sample Lights::sampleSky(double rest, float across, float down) const {
+    const double scaled = rest * 0x1p26, first = std::floor(scaled);
+    return environment_->sampleSquare(double(across) + first * 0x1p-50,
+                                      double(down) + (scaled - first) * 0x1p-24);
+}
+
 LightPoint Lights::samplePoint(Rng& rng) const {
-    const Rng::Draw draw = rng.draw();
+    const Rng::Draw draw = rng.evenDraw();
     const DiscreteDistribution::Pick pick = selection_.sample(draw.pick);
     const std::uint32_t light = pick.index;
     if (light < area_.size()) {
@@ -200,7 +207,9 @@ LightPoint Lights::samplePoint(Rng& rng) const {
     p.light = light;
     p.kind = kinds_[light];
     if (p.kind == LightKind::Environment) {
-        const Environment::Sample s = environment_->sample(pick.remapped(), draw.u1, draw.u2);
+        const Environment::Sample s = draw.even
+                                          ? sampleSky(pick.remapped(), draw.u1, draw.u2)
+                                          : environment_->sample(pick.remapped(), draw.u1, draw.u2);
         p.position = s.direction;
         p.pdf = float(pick.pmf) * s.pdfW;
         p.exitance = skyExitance(environment_->radiance(s.direction));
@@ -240,7 +249,7 @@ Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& directio
 }
 
 std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point, Rng& rng) const {
-    const float u1 = rng.uniform(), u2 = rng.uniform();
+    const auto [u1, u2] = rng.evenPair();
     switch (point.kind) {
         case LightKind::Area: {
             const bool twoSided = area_[point.light].twoSided;

@@ -162,6 +162,7 @@ class Lights {
     static Rgb scaled(const Rgb& c, double s) {
         return {float(double(c.r) * s), float(double(c.g) * s), float(double(c.b) * s)};
     }
+    Environment::Sample sampleSky(double rest, float across, float down) const;
     std::vector<double> powers() const;
     void chooseUnit(double power);
     Rgb skyExitance(const Rgb& radiance) const;
