@@ -27,7 +27,7 @@ SHARED = ("veach-mis", "veach-bidir", "staircase", "classroom", "door-pg2015")
 OPEN = {"blender-still-life", "court", "light-environment", "cornell-box", "veach-mis"}
 SAMPLERS = ("independent", "sobol")
 SIZE = ["--width", "64", "--height", "36"]
-POOL = ["--set", "candidates=4000"]
+POOL = ["--set", "candidates=1000"]
 TRAINED = ["--prepare", "--set", "train.paths=50000", "--set", "train.subspaces=100", "--set",
            "train.light_paths=100000"]
 ROWS = {"pt": [], "bpt": [], "risbpt": POOL + ["--set", "cache_density=0.01"],
@@ -37,8 +37,8 @@ SEEDS = (1, 2, 3)
 REFERENCE = ["--method", "spcbpt", *ROWS["spcbpt"], "--iterations", "2048", "--seed", "1000001",
              "--sampler", "independent"]
 COST_SCENES = ("blender-still-life", "court", "door")
-COST_ITERATIONS = 24
-COST_ROUNDS = 5
+COST_ITERATIONS = 16
+COST_ROUNDS = 3
 
 
 def scenes(names):
@@ -149,7 +149,7 @@ def page(found, spent, chosen, command):
         "`spcbpt` with independent numbers and another seed. A figure says how much longer "
         "independent numbers take to the error of even ones, iterations for iterations (mape^-2): "
         "the median over seeds, its lowest and highest. After one iteration there is no "
-        "difference: an iteration alone has the same distribution. Pools have 4000 light "
+        "difference: an iteration alone has the same distribution. Pools have 1000 light "
         "subpaths, risbpt few cache points, spcbpt 100 subspaces, so that all this takes minutes.", ""]
     for n in ITERATIONS:
         lines += [f"## After {n} iterations, mape", "",
@@ -198,8 +198,7 @@ def main():
     chosen = scenes(names)
     found = measure(program, directory, chosen)
     spent = costs(program, directory, chosen)
-    command = "python3 tests/calibration/sampler.py " + " ".join(
-        [str(pathlib.Path(program).resolve().relative_to(ROOT)), "DIRECTORY", "PAGE", *names])
+    command = " ".join(["python3 tests/calibration/sampler.py", program, "DIRECTORY PAGE", *names])
     pathlib.Path(target).write_text(page(found, spent, chosen, command))
 
 
