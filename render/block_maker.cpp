@@ -18,7 +18,7 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
     const PixelRect& crop = stage.settings.crop;
     if (options.techniques) {
         techniques_ = std::make_unique<TechniqueFilm>(
-            crop.width(), crop.height(), stage.settings.limits.maxDepth, plan_.areSamples);
+            crop.width(), crop.height(), stage.settings.limits.maxDepth, plan_.sampleIterations());
         integrator_->delivery().setTechniqueFilm(techniques_.get());
         layers_.push_back(techniques_.get());
     }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "libcore/base/error.h"
+#include "libcore/bidir/sampler.h"
 
 namespace lacuna {
 namespace {
@@ -27,6 +28,7 @@ BlockPlan planOf(const RenderOptions& options, const Method& method) {
                       : method.learns() ? kLearningBlockIterations
                                         : kBlockIterations;
     if (options.blockIterations) plan.iterations = std::uint64_t(*options.blockIterations);
+    plan.groupIterations = Sampler::groupOf(options.sampling);
     return plan;
 }
 

@@ -82,7 +82,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
     }
 
     const BlockPlan plan = files.front().part.plan;
-    SumTree blocks(false);
+    SumTree blocks(1);
     FilmSum last;  // the open block at the end: it is no item of the tree
     IterationStatistics statistics;
     double seconds = 0.0;
@@ -93,7 +93,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
         statistics.add(part.statistics);
         seconds += part.seconds;
         for (SumTree::Node& node : part.sums.blocks) blocks.add(std::move(node), &pool);
-        SumTree open(plan.areSamples);
+        SumTree open(plan.sampleIterations());
         for (SumTree::Node& node : part.sums.open) open.add(std::move(node), &pool);
         FilmSum sum;
         open.addTo(sum, &pool);

@@ -60,6 +60,12 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--estimate", o.estimate,
                  "Print what accuracy costs, after some seconds; writes no image")
         ->group(effort);
+    app.add_option(
+           "--sampler", o.samplerText,
+           "Random numbers: sobol (even over pixels' samples and light paths; the default), "
+           "independent")
+        ->type_name("NAME")
+        ->group(effort);
     app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
@@ -251,6 +257,13 @@ PixelRect parseCrop(const std::string& text) {
     return r;
 }
 
+Sampling parseSampler(const std::string& text) {
+    for (const Sampling sampling : {Sampling::Sobol, Sampling::Independent}) {
+        if (text == nameOf(sampling)) return sampling;
+    }
+    throw UsageError("--sampler: expected sobol or independent, found '" + text + "'");
+}
+
 BlockRange parseBlocks(const std::string& text) {
     const std::vector<std::string_view> parts = splitAtCommas(text);
     BlockRange r;
@@ -299,6 +312,7 @@ void checkOptions(RenderOptions& o) {
     if (!o.timeText.empty()) o.timeSeconds = parseDuration("--time", o.timeText);
     if (!o.untilText.empty()) o.until = parseUntil(o.untilText);
     if (!o.blocksText.empty()) o.blocks = parseBlocks(o.blocksText);
+    o.sampling = parseSampler(o.samplerText);
     if (!o.checkpointEveryText.empty()) {
         o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/sampler.h"
 #include "libcore/methods/registry.h"
 #include "libcore/tool/scene_options.h"
 #include "render/accuracy.h"
@@ -33,7 +34,7 @@ struct RenderOptions : SceneOptions {
     std::string output, method;
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
-    std::string timeText, cropText, replayText;
+    std::string timeText, cropText, replayText, samplerText = "sobol";
     std::string untilText;
     bool countSetup = false, estimate = false;
     std::string reference, log;
@@ -48,6 +49,7 @@ struct RenderOptions : SceneOptions {
     // Made from the texts above by checkOptions.
     std::optional<double> timeSeconds;
     std::optional<UntilRequest> until;
+    Sampling sampling = Sampling::Sobol;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;
@@ -76,6 +78,8 @@ void checkOutputs(const RenderOptions& options);
 double parseDuration(const std::string& option, const std::string& text);
 /// "A,B", half open, not empty. Throws UsageError.
 BlockRange parseBlocks(const std::string& text);
+/// Throws UsageError.
+Sampling parseSampler(const std::string& text);
 /// "x0,x1,y0,y1", half open, not empty. Throws UsageError.
 PixelRect parseCrop(const std::string& text);
 /// Throws UsageError.

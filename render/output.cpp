@@ -43,6 +43,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["parameters"] = parametersJson(*r.method, r.settings).dump();
     if (r.choice) a["chosen"] = utf8Text(r.choice->json(), -1);
     a["seed"] = integerAttribute(r.seed);
+    a["sampler"] = std::string(nameOf(r.sampling));
     a["iterations"] = integerAttribute(r.iterations);
     a["blockIterations"] = integerAttribute(r.blocks.iterations);
     a["renderTimeSeconds"] = r.seconds;
@@ -167,6 +168,7 @@ json reportJson(const RenderReport& r) {
            {"threads", r.threads},
            {"ranks", r.ranks},
            {"seed", r.seed},
+           {"sampler", nameOf(r.sampling)},
            {"warmup_iterations", r.warmupIterations},
            {"block_iterations", r.blocks.iterations},
            {"first_block", r.firstBlock},

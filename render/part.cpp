@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 constexpr const char* kAttributes[] = {"partInputs", "partSums", "partTotals"};
 constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
@@ -159,7 +159,8 @@ Part readPart(LayeredImage& image) {
     part.height = image.height();
     const json sums = json::parse(text("partSums"));
     if (sums.at("format") != kFormat) throw std::invalid_argument("another format");
-    part.plan = {sums.at("block_iterations"), sums.at("blocks_are_samples")};
+    part.plan = {sums.at("block_iterations"), sums.at("blocks_are_samples"),
+                 sums.at("group_iterations")};
     part.firstBlock = sums.at("first_block");
     part.sums.openBlock = sums.at("open_block");
     std::size_t number = 0;
@@ -190,6 +191,7 @@ void addPart(LayeredImage& image, const Part& part) {
     json sums{{"format", kFormat},
               {"block_iterations", part.plan.iterations},
               {"blocks_are_samples", part.plan.areSamples},
+              {"group_iterations", part.plan.groupIterations},
               {"first_block", part.firstBlock},
               {"open_block", part.sums.openBlock}};
     std::size_t number = 0;

@@ -25,6 +25,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     add("program", hashOfFile("/proc/self/exe"));  // another build may round in another way
     add("method", row.name);
     add("seed", std::to_string(options.common.seed));
+    add("sampler", nameOf(options.sampling));
     add("film", std::to_string(film.width) + " x " + std::to_string(film.height));
     add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
                     std::to_string(crop.y0) + "," + std::to_string(crop.y1));

@@ -78,6 +78,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.choice = choice;
     r.settings = settings;
     r.seed = options.common.seed;
+    r.sampling = options.sampling;
     r.threads = pool.threads();
     r.ranks = ranks.size();
     r.filmWidth = stage_.camera->film().width;

@@ -30,6 +30,9 @@ class DiscreteDistribution {
         return index < size() ? cdf_[index + 1] - cdf_[index] : 0.0;
     }
 
+    /// Of all outcomes before `index`, at most size().
+    double before(std::size_t index) const { return cdf_[index]; }
+
     struct Pick {
         std::uint32_t index;
         double pmf;

@@ -22,6 +22,13 @@ enum class StreamKind : std::uint32_t {
     CacheDraw,   ///< draws at a cache point, index = cache point
 };
 
+/// A point of a sequence whose points lie evenly (owen.h).
+struct EvenPoint {
+    std::uint64_t sequence = 0;
+    std::uint32_t index = 0;
+    std::uint32_t dimensions = 0;  ///< how many it has; 0: there is no sequence
+};
+
 /// One stream of uniform numbers: Philox4x32-7 [Salmon et al. 2011], the fewest rounds that pass
 /// BigCrush there, keyed by (seed, iteration), counted by (block, kind, index).
 class Rng {
@@ -50,6 +57,7 @@ class Rng {
     struct Draw {
         double pick;
         float u1, u2;
+        bool even = false;  ///< u1, u2: in the square; pick: by itself
     };
     Draw draw() {
         if (used_ != 4) {
@@ -66,7 +74,35 @@ class Rng {
         return std::uint32_t((std::uint64_t(bits()) * n) >> 32);
     }
 
+    /// Where the stream's even numbers come from. Beyond the point's dimensions, and without a
+    /// point, they are the stream's next ones.
+    void follow(const EvenPoint& point) { point_ = point; }
+    /// The next even number is that of `dimension`: the same whatever was drawn before.
+    void toDimension(std::uint32_t dimension) { dimension_ = dimension; }
+    struct Pair {
+        float u1, u2;
+    };
+    /// Of one dimension each.
+    float evenUniform() { return isEven() ? evenFloat() : uniform(); }
+    Pair evenPair() {
+        if (isEven()) return evenSquare();
+        const float u1 = uniform(), u2 = uniform();
+        return {u1, u2};
+    }
+    /// Of two dimensions.
+    Draw evenDraw() { return isEven() ? evenDrawn() : draw(); }
+    /// The i-th of n that are drawn from one dimension, even together.
+    double evenPick(std::uint32_t i, std::uint32_t n) {
+        return isEven() ? evenDouble(point_.index * n + i) : uniformDouble();
+    }
+    bool isEven() const { return dimension_ < point_.dimensions; }
+
   private:
+    float evenFloat();
+    Pair evenSquare();
+    Draw evenDrawn();
+    double evenDouble(std::uint32_t index) const;
+
     using Philox = r123::Philox4x32_R<7>;
     static float floatOf(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
     static double doubleOf(std::uint64_t high, std::uint64_t low) {
@@ -78,6 +114,8 @@ class Rng {
     Philox::ctr_type counter_;
     Philox::ctr_type block_{};
     unsigned used_ = 4;
+    std::uint32_t dimension_ = 0;
+    EvenPoint point_;
 };
 
 /// Uniform float in [0, 1) that depends on nothing but the words: a draw where there is no stream.

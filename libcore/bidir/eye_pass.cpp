@@ -57,9 +57,9 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     worker.rngs.clear();
     worker.walks.clear();
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
-        Rng& rng = worker.rngs.emplace_back(setup_.settings.seed, iteration.number,
-                                            StreamKind::EyePath, filmIndex + i);
-        const float jitterX = rng.uniform(), jitterY = rng.uniform();
+        Rng& rng = worker.rngs.emplace_back(
+            setup_.sampler.stream(iteration.number, StreamKind::EyePath, filmIndex + i));
+        const auto [jitterX, jitterY] = rng.evenPair();
         worker.walks.push_back(setup_.walker.startEye(
             {float(x0 + int(i)) + jitterX, float(y) + jitterY}, rng, worker.eye[i]));
     }
@@ -113,12 +113,13 @@ void EyePass::select(const PixelPaths& paths, const Iteration& iteration, Worker
     worker.proposalEnds.assign(paths.eye.size() + 1, 0);
     if (!setup_.techniques.connects) return;
     const auto filmIndex = std::uint32_t(paths.sample.number);
-    Rng rng(setup_.settings.seed, iteration.number, StreamKind::Connection, filmIndex);
+    Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Connection, filmIndex);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const PathVertex& z = paths.eye[t - 1];
         const std::size_t before = worker.proposals.proposals().size();
         result.clock.start();
         if (!z.infinite() && z.connectable() && int(t) <= setup_.settings.limits.maxDepth) {
+            rng.toDimension(dimension::ofPicks(std::uint32_t(t)));
             iteration.method.select({z, paths.eye.first(t), paths.ownLight, filmIndex,
                                      iteration.number, setup_.walker, setup_.space, result.tally},
                                     rng, worker.proposals);

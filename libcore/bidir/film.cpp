@@ -31,7 +31,7 @@ std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rg
 }
 
 Film::Film(int width, int height, BlockPlan plan, std::uint64_t first)
-    : width_(width), height_(height), plan_(plan), open_(plan.areSamples), block_(first) {}
+    : width_(width), height_(height), plan_(plan), open_(plan.sampleIterations()), block_(first) {}
 
 FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
                    const ThreadPool* threads) {
@@ -49,7 +49,7 @@ void Film::measure(const ErrorMeter& meter) {
 
 /// Iterations of the open block: where it lies says which are worth comparing.
 void Film::measureOpen() {
-    open_.measure(meter_, block_ * plan_.iterations, 1);
+    open_.measure(plan_.areSamples ? nullptr : meter_, block_ * plan_.iterations, 1);
 }
 
 void Film::add(std::span<const Rgb> pixels, const ThreadPool& threads) {

@@ -49,6 +49,12 @@ struct BlockPlan {
     std::uint64_t iterations = kEndless;  ///< B, of a block
     /// Iterations of a block share light paths: variances come from blocks.
     bool areSamples = false;
+    /// Else they come from groups of so many iterations, a power of two, whose random numbers lie
+    /// evenly together.
+    std::uint64_t groupIterations = 1;
+
+    /// Of an independent sample.
+    std::uint64_t sampleIterations() const { return areSamples ? iterations : groupIterations; }
 };
 
 /// The open block's iterations as one sum, with what its layers hold. `threads` may be null.
@@ -110,7 +116,7 @@ class Film {
     BlockPlan plan_;
     std::vector<BlockLayers*> layers_;
     const ErrorMeter* meter_ = nullptr;
-    SumTree blocks_{false}, open_;
+    SumTree blocks_{1}, open_;
     std::uint64_t block_, inBlock_ = 0, iterations_ = 0;
 };
 

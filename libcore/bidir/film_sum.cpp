@@ -157,7 +157,7 @@ void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool*
 }
 
 void SumTree::measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations) {
-    meter_ = oneSample_ ? nullptr : meter;
+    meter_ = meter;
     first_ = first;
     itemIterations_ = iterations;
 }
@@ -181,19 +181,26 @@ void SumTree::joinLast(const ThreadPool* threads) {
     // What a node says depends on its range alone, whoever makes it. The last block may have fewer
     // iterations than others.
     const bool even = left.sum->iterations == right.sum->iterations;
+    const bool oneSample = 2 * left.size <= sampleItems_;
     const std::uint64_t end = first_ + (right.begin + right.size) * itemIterations_;
     std::optional<HalfDifference> difference;
     if (meter_ && even && ErrorMeter::wants(2 * left.sum->iterations, end)) {
         difference = meter_->difference(*left.sum, *right.sum, threads);
     }
-    join(*left.sum, *right.sum, oneSample_, threads);
+    join(*left.sum, *right.sum, oneSample, threads);
     if (difference) addDifference(left.sum->differences, *difference);
     left.size *= 2;
     nodes_.pop_back();
 }
 
 void SumTree::addTo(FilmSum& sum, const ThreadPool* threads) const {
-    for (const Node& node : nodes_) join(sum, *node.sum, oneSample_, threads);
+    // The last ones, smaller than a sample, are one that is not whole.
+    FilmSum last;
+    for (const Node& node : nodes_) {
+        const bool whole = node.size >= sampleItems_;
+        join(whole ? sum : last, *node.sum, !whole, threads);
+    }
+    join(sum, last, false, threads);
 }
 
 }  // namespace lacuna

@@ -34,8 +34,7 @@ struct HalfDifference {
 /// The mean of a number of iterations, and how far they lie from it.
 struct FilmSum {
     std::uint64_t iterations = 0;
-    /// Independent samples of the picture among them: iterations, or the blocks that they lie in
-    /// where a block's iterations share light paths.
+    /// Independent samples of the picture among them (BlockPlan::sampleIterations).
     std::uint64_t samples = 0;
     std::vector<Rgb> mean;  ///< by pixel
     /// By pixel and channel: root of the sum over the samples of (a sample's iterations) x (its
@@ -74,11 +73,11 @@ class SumTree {
         std::shared_ptr<FilmSum> sum;       ///< not changed while anyone else holds it
     };
 
-    /// `oneSample`: all items are parts of one sample.
-    explicit SumTree(bool oneSample) : oneSample_(oneSample) {}
+    /// `sampleItems`: so many items are one sample, those behind a multiple of it.
+    explicit SumTree(std::uint64_t sampleItems) : sampleItems_(sampleItems) {}
 
     /// Compares the halves of nodes from now on. Item i is `iterations` iterations from `first` + i
-    /// times that many on. Says nothing where all items are parts of one sample.
+    /// times that many on. Halves of a sample must not be alike; unlike ones say too much (theory.md).
     void measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations);
     /// A node behind all others. `threads` may be null.
     void add(Node node, const ThreadPool* threads);
@@ -92,7 +91,7 @@ class SumTree {
   private:
     void joinLast(const ThreadPool* threads);
 
-    bool oneSample_;
+    std::uint64_t sampleItems_;
     const ErrorMeter* meter_ = nullptr;
     std::uint64_t first_ = 0, itemIterations_ = 1;
     std::vector<Node> nodes_;

@@ -51,8 +51,8 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
     worker.rngs.clear();
     worker.walks.clear();
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        Rng& rng = worker.rngs.emplace_back(setup_.settings.seed, iteration.number, purpose.stream,
-                                            numbers[i]);
+        Rng& rng = worker.rngs.emplace_back(
+            setup_.sampler.stream(iteration.number, purpose.stream, numbers[i]));
         const auto walk = setup_.walker.startLight(rng, worker.light[i]);
         if (walk) worker.walks.push_back(*walk);
     }

@@ -9,6 +9,7 @@
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/method.h"
 #include "libcore/bidir/mis.h"
+#include "libcore/bidir/sampler.h"
 #include "libcore/bidir/scene_paths.h"
 #include "libcore/bidir/walk.h"
 
@@ -21,6 +22,7 @@ struct RenderSettings {
     std::uint64_t lightPaths = 0;  ///< L; 0: one per pixel of the full film
     /// B: what methods learn begins anew with every block of so many iterations.
     std::uint64_t blockIterations = BlockPlan::kEndless;
+    Sampling sampling = Sampling::Independent;
 };
 
 /// Shared by the passes; all references outlive the render.
@@ -33,6 +35,7 @@ struct RenderSetup {
           settings(settings_),
           threads(threads_),
           walker(scene_, camera_, settings_.limits),
+          sampler(settings_.sampling, settings_.seed, settings_.blockIterations),
           lightPaths(settings_.lightPaths ? settings_.lightPaths : filmPixels()) {}
 
     RenderSetup(const RenderSetup&) = delete;
@@ -57,6 +60,7 @@ struct RenderSetup {
     const RenderSettings settings;
     const ThreadPool& threads;
     const Walker walker;
+    const Sampler sampler;
     const ScenePaths space{walker};
     const std::uint64_t lightPaths;  ///< L
 };

@@ -24,8 +24,12 @@ void forEachTechnique(int maxDepth, const Visit& visit) {
 
 }  // namespace
 
-TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth, bool blocksAreSamples)
-    : width_(width), height_(height), maxDepth_(maxDepth), blocksAreSamples_(blocksAreSamples) {
+bool TechniqueFilm::Moments::isZero() const {
+    return std::ranges::all_of(now, lacuna::isZero) && std::ranges::all_of(sum, lacuna::isZero);
+}
+
+TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations)
+    : width_(width), height_(height), maxDepth_(maxDepth), sampleIterations_(sampleIterations) {
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
     techniques_.assign(indexOf(0, maxDepth + 1) + std::size_t(maxDepth) + 1, Technique(pixels));
     groups_.assign(TechniqueGroup::kCount, Moments(pixels));
@@ -80,14 +84,17 @@ void TechniqueFilm::forEachMoments(const Visit& visit) {
 
 void TechniqueFilm::countIteration() {
     ++iterations_;
-    forEachMoments([](Moments& m) {
-        if (std::ranges::all_of(m.now, isZero)) return;
+    if (++inSample_ < sampleIterations_) return;
+    const float count = float(inSample_);
+    forEachMoments([&](Moments& m) {
+        if (std::ranges::all_of(m.now, lacuna::isZero)) return;
         for (std::size_t i = 0; i < m.now.size(); ++i) {
             m.sum[i] += m.now[i];
-            m.squares[i] += m.now[i] * m.now[i];
+            m.squares[i] += m.now[i] * m.now[i] / count;
         }
         std::ranges::fill(m.now, 0.0f);
     });
+    inSample_ = 0;
 }
 
 Image TechniqueFilm::mean(const std::vector<Rgb>& sum) const {
@@ -97,17 +104,21 @@ Image TechniqueFilm::mean(const std::vector<Rgb>& sum) const {
     return image;
 }
 
-std::vector<float> TechniqueFilm::meanOf(const std::vector<float>& sum) const {
-    std::vector<float> mean = sum;
+std::vector<float> TechniqueFilm::meanOf(const Moments& moments) const {
+    std::vector<float> mean = moments.sum;
     const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
-    for (float& value : mean) value *= scale;
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (mean[i] + moments.now[i]) * scale;
     return mean;
 }
 
+/// The sample under way counts by its iterations.
 std::vector<float> TechniqueFilm::meanSquareOf(const Moments& moments) const {
-    if (!blocksAreSamples_) return meanOf(moments.squares);
-    std::vector<float> squares = meanOf(moments.sum);
-    for (float& value : squares) value *= value;
+    std::vector<float> squares = moments.squares;
+    const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
+    const float count = inSample_ ? float(inSample_) : 1.0f;
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        squares[i] = (squares[i] + moments.now[i] * moments.now[i] / count) * scale;
+    }
     return squares;
 }
 
@@ -122,9 +133,9 @@ Layers TechniqueFilm::means() const {
         image.channel(kSquare + name) = meanSquareOf(technique.moments);
     });
     for (std::size_t i = 0; i < groups_.size(); ++i) {
-        if (std::ranges::all_of(groups_[i].sum, isZero)) continue;
+        if (groups_[i].isZero()) continue;
         const std::string name = TechniqueGroup::at(i).name();
-        image.channel(kWeighted + name) = meanOf(groups_[i].sum);
+        image.channel(kWeighted + name) = meanOf(groups_[i]);
         image.channel(kSquare + name) = meanSquareOf(groups_[i]);
     }
     return image.channels();
@@ -138,7 +149,7 @@ void TechniqueFilm::clear() {
     forEachMoments([](Moments& m) {
         for (auto* plane : {&m.now, &m.sum, &m.squares}) std::ranges::fill(*plane, 0.0f);
     });
-    iterations_ = 0;
+    iterations_ = inSample_ = 0;
 }
 
 std::vector<float> techniqueVariance(const Layers& layers, const std::string& name,

@@ -24,8 +24,8 @@ struct TechniqueSample {
 /// mean of the channels over independent samples, which variances are made of.
 class TechniqueFilm final : public BlockLayers {
   public:
-    /// `blocksAreSamples`: the iterations of a block share light paths, only blocks are independent.
-    TechniqueFilm(int width, int height, int maxDepth, bool blocksAreSamples = false);
+    /// `sampleIterations`: BlockPlan's.
+    TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations = 1);
 
     /// "s02t03"
     static std::string layerName(int s, int t);
@@ -40,10 +40,12 @@ class TechniqueFilm final : public BlockLayers {
     Image unweighted(int s, int t) const { return mean(techniques_[indexOf(s, t)].unweighted); }
 
   private:
-    /// Of a value per pixel: of this iteration, and over all of them sums of it and its square.
+    /// Of a value per pixel: its sum over the sample under way, and over those before sums of it and
+    /// of its square per iteration of the sample.
     struct Moments {
         std::vector<float> now, sum, squares;
         explicit Moments(std::size_t pixels) : now(pixels), sum(pixels), squares(pixels) {}
+        bool isZero() const;
     };
     struct Technique {
         std::vector<Rgb> weighted, unweighted;
@@ -54,14 +56,14 @@ class TechniqueFilm final : public BlockLayers {
 
     std::size_t indexOf(int s, int t) const;
     Image mean(const std::vector<Rgb>& sum) const;
-    std::vector<float> meanOf(const std::vector<float>& sum) const;
+    std::vector<float> meanOf(const Moments& moments) const;
     std::vector<float> meanSquareOf(const Moments& moments) const;
     template <class Visit>
     void forEachMoments(const Visit& visit);
 
     int width_, height_, maxDepth_;
-    bool blocksAreSamples_;
-    std::uint64_t iterations_ = 0;
+    std::uint64_t sampleIterations_;
+    std::uint64_t iterations_ = 0, inSample_ = 0;
     std::vector<Technique> techniques_;
     std::vector<Moments> groups_;
 };

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "libcore/bidir/absorption.h"
+#include "libcore/bidir/sampler.h"
 
 namespace lacuna {
 
@@ -65,8 +66,8 @@ PathVertex Walker::sampleLens(Rng& rng) const {
     PathVertex z0;
     z0.kind = VertexKind::Lens;
     // The pinhole needs no numbers; the draw keeps the stream's layout the same for every lens.
-    const float u1 = rng.uniform(), u2 = rng.uniform();
-    z0.position = camera_.sampleLens({u1, u2});
+    const Rng::Pair u = rng.evenPair();
+    z0.position = camera_.sampleLens({u.u1, u.u2});
     z0.pdfA = 1.0f;  // the lens's density is the same in every strategy and cancels
     z0.throughput = Rgb(1.0f);
     return z0;
@@ -212,13 +213,18 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     if (out.size() == maxVertices) return false;
 
     PathVertex& v = out.back();
+    Rng& rng = *walk.rng;
     float survival = 1.0f;
     if (int(v.index) >= limits_.rouletteDepth) {
         survival = v.survival;
-        if (survival < 1.0f && walk.rng->uniform() >= survival) return false;
+        rng.toDimension(dimension::ofWalk(v.index));
+        if (survival < 1.0f && rng.evenUniform() >= survival) return false;
     }
-    const float uLobe = walk.rng->uniform(), u1 = walk.rng->uniform(), u2 = walk.rng->uniform();
-    const std::optional<BsdfSample> sample = v.bsdf.sample(walk.side, v.toPrevious, uLobe, u1, u2);
+    rng.toDimension(dimension::ofWalk(v.index) + 1);
+    const float uLobe = rng.evenUniform();
+    const Rng::Pair u = rng.evenPair();
+    const std::optional<BsdfSample> sample =
+        v.bsdf.sample(walk.side, v.toPrevious, uLobe, u.u1, u.u2);
     if (!sample) return false;
     const BsdfEvaluation& e = sample->evaluation;
     const float forward = walk.side == Side::Eye ? e.pdfWToLight : e.pdfWToEye;

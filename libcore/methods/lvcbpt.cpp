@@ -48,7 +48,9 @@ class LightVertexCache final : public Method {
         const int picks = picks_.at(context.order());
         const double weight = double(size) / (double(subpaths_) * picks);
         for (int i = 0; i < picks; ++i) {
-            sink.add({pool_->prefix(candidates_[rng.below(size)]), weight, 0});
+            const std::uint32_t pick =
+                rng.isEven() ? choose(rng, size, i, picks).index : rng.below(size);
+            sink.add({pool_->prefix(candidates_[pick]), weight, 0});
         }
     }
 

@@ -298,9 +298,9 @@ class SubspaceConnections final : public Method {
         };
         std::array<Pick, Picks::kMost> storage;  // not initialised: few of them are used
         const auto picks = std::span(storage).first(std::size_t(picks_.at(context.order())));
-        for (Pick& p : picks) {
-            p.u = rng.uniformDouble();
-            column.prefetch(p.u);
+        for (std::size_t i = 0; i < picks.size(); ++i) {
+            picks[i].u = rng.evenPick(std::uint32_t(i), std::uint32_t(picks.size()));
+            column.prefetch(picks[i].u);
         }
         for (Pick& p : picks) {
             const AliasTable::Pick subspace = column.sample(p.u);

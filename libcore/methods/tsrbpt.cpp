@@ -184,7 +184,7 @@ class TwoStageResampling final : public Method {
         const auto around = points_.around(points_.serving(context.vertex, context.vertex.asEye));
         const int picks = picks_.at(context.order());
         for (int i = 0; i < picks; ++i) {
-            const double u = rng.uniformDouble();
+            const double u = rng.evenPick(std::uint32_t(i), std::uint32_t(picks));
             if (around.empty()) {
                 const Pick pick = pickEvenly(u);
                 sink.add({prefixOf(pick), pick.weight / picks, 0});

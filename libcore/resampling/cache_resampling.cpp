@@ -110,8 +110,7 @@ class CacheResampling final : public Method {
             around.begin(), around.end(), [&](std::uint32_t c) { return !pmfs_.empty(c); }));
         const int picks = picks_.at(context.order());
         for (int n = 0; n < picks; ++n) {
-            const std::uint32_t choice = rng.below(std::uint32_t(filled) + 1);
-            const double u = rng.uniformDouble();
+            const auto [choice, u] = choose(rng, std::uint32_t(filled) + 1, n, picks);
             std::uint32_t index = 0;
             if (choice == filled) {
                 index = std::uint32_t(u * double(candidates_.size()));

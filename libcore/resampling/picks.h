@@ -76,6 +76,22 @@ double withEyeShare(double samples, int order, double share);
 /// lights themselves (s = 1) where `direct`.
 void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Entry>& entries);
 
+/// A choice among n outcomes alike, and a number in [0, 1) to choose on with: the i-th of an eye
+/// vertex's `picks`.
+struct Choice {
+    std::uint32_t index;
+    double u;
+};
+inline Choice choose(Rng& rng, std::uint32_t n, int i, int picks) {
+    if (!rng.isEven()) {
+        const std::uint32_t index = rng.below(n);
+        return {index, rng.uniformDouble()};
+    }
+    const double u = rng.evenPick(std::uint32_t(i), std::uint32_t(picks)) * double(n);
+    const auto index = std::uint32_t(u);  // below n: the product is rounded down
+    return {index, u - double(index)};
+}
+
 /// Mean number of vertices that pools had to pick from. At least one: any positive number is
 /// unbiased, and one stands in where none was seen.
 class ExpectedVertices {

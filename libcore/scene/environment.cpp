@@ -81,7 +81,22 @@ Rgb Environment::radianceAt(Vec2 uv) const {
 }
 
 Environment::Sample Environment::sample(double uTexel, float u1, float u2) const {
-    const DiscreteDistribution::Pick pick = texels_.sample(uTexel);
+    return inTexel(texels_.sample(uTexel), u1, u2);
+}
+
+Environment::Sample Environment::sampleSquare(double across, double down) const {
+    const auto width = std::size_t(width_);
+    const std::size_t row = texels_.sample(down).index / width;
+    const double begin = texels_.before(row * width), end = texels_.before((row + 1) * width);
+    // Rounding must not lead into the next row.
+    const double u = std::min(begin + across * (end - begin), std::nextafter(end, begin));
+    const DiscreteDistribution::Pick texel = texels_.sample(u);
+    return inTexel(texel, float(texel.remapped()), float((down - begin) / (end - begin)));
+}
+
+/// Uniform in it.
+Environment::Sample Environment::inTexel(const DiscreteDistribution::Pick& pick, float u1,
+                                         float u2) const {
     const int x = int(pick.index) % width_, y = int(pick.index) / width_;
     const Row& row = rows_[std::size_t(y)];
     // Uniform in solid angle inside the texel: uniform in longitude and in the cosine.

@@ -35,6 +35,8 @@ class Environment {
     };
     /// Not to be called for a black map.
     Sample sample(double uTexel, float u1, float u2) const;
+    /// The same density from a point of the square: points that are even there are even in the sky.
+    Sample sampleSquare(double across, double down) const;
 
     bool black() const { return texels_.empty(); }
     /// Integral of the radiance over all directions (by texel means).
@@ -44,6 +46,7 @@ class Environment {
     Vec2 uvOf(Vec3 direction) const;
     Rgb radianceAt(Vec2 uv) const;
     float pdfWAt(Vec2 uv) const;
+    Sample inTexel(const DiscreteDistribution::Pick& texel, float u1, float u2) const;
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;

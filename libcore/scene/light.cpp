@@ -261,23 +261,28 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
 
 const double Lights::kByPower = 0.1;
 
+/// By even numbers of 24 bits and another one, which gives each 26 more: skies have rare texels.
+Environment::Sample Lights::sampleSky(double rest, float across, float down) const {
+    const double scaled = rest * 0x1p26, first = std::floor(scaled);
+    return environment_->sampleSquare(double(across) + first * 0x1p-50,
+                                      double(down) + (scaled - first) * 0x1p-24);
+}
+
 LightPoint Lights::samplePoint(Rng& rng) const {
-    const Rng::Draw draw = rng.draw();
+    const Rng::Draw draw = rng.evenDraw();
     const DiscreteDistribution::Pick pick = selection_.sample(draw.pick);
-    return pointOn(pick.index, pick.remapped(), draw.u1, draw.u2);
+    return pointOn(pick.index, pick.remapped(), draw);
 }
 
 Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
-    const Rng::Draw draw = rng.draw();
+    const Rng::Draw draw = rng.evenDraw();
     if (!tree_.chooses() || draw.pick < kByPower) {
         const double u = tree_.chooses() ? draw.pick / kByPower : draw.pick;
         const DiscreteDistribution::Pick pick = selection_.sample(u);
-        return {pointOn(pick.index, pick.remapped(), draw.u1, draw.u2),
-                seenSamples(pick.index, from)};
+        return {pointOn(pick.index, pick.remapped(), draw), seenSamples(pick.index, from)};
     }
     const LampTree::Pick pick = tree_.pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
-    return {pointOn(pick.light, pick.remapped, draw.u1, draw.u2),
-            seenSamples(pick.light, pick.pmf)};
+    return {pointOn(pick.light, pick.remapped, draw), seenSamples(pick.light, pick.pmf)};
 }
 
 double Lights::seenSamples(std::uint32_t light, const Viewpoint& from) const {
@@ -291,11 +296,11 @@ double Lights::seenSamples(std::uint32_t light, double pmfOfTree) const {
 }
 
 /// A point on the light; `u` picks among an environment's texels.
-LightPoint Lights::pointOn(std::uint32_t light, double u, float u1, float u2) const {
+LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const {
     if (light < area_.size()) {
         const AreaLight& a = area_[light];
-        const float s = std::sqrt(u1);
-        const Vec2 b{1.0f - s, u2 * s};
+        const float s = std::sqrt(draw.u1);
+        const Vec2 b{1.0f - s, draw.u2 * s};
         return areaPoint(light, a.corner + a.edge1 * b.x + a.edge2 * b.y, a.ng, b);
     }
     LightPoint p;
@@ -303,7 +308,8 @@ LightPoint Lights::pointOn(std::uint32_t light, double u, float u1, float u2) co
     p.kind = kinds_[light];
     const double pmf = selection_.pmf(light);
     if (p.kind == LightKind::Environment) {
-        const Environment::Sample s = environment_->sample(u, u1, u2);
+        const Environment::Sample s =
+            draw.even ? sampleSky(u, draw.u1, draw.u2) : environment_->sample(u, draw.u1, draw.u2);
         p.position = s.direction;
         p.pdf = float(pmf) * s.pdfW;
         p.exitance = skyExitance(environment_->radiance(s.direction));
@@ -343,7 +349,7 @@ Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& directio
 }
 
 std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point, Rng& rng) const {
-    const float u1 = rng.uniform(), u2 = rng.uniform();
+    const auto [u1, u2] = rng.evenPair();
     switch (point.kind) {
         case LightKind::Area: {
             const bool twoSided = area_[point.light].twoSided;

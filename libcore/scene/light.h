@@ -178,10 +178,11 @@ class Lights {
     static Rgb scaled(const Rgb& c, double s) {
         return {float(double(c.r) * s), float(double(c.g) * s), float(double(c.b) * s)};
     }
+    Environment::Sample sampleSky(double rest, float across, float down) const;
     std::vector<double> powers() const;
     void chooseUnit(double power);
     LampTree makeTree(std::span<const double> powers) const;
-    LightPoint pointOn(std::uint32_t light, double u, float u1, float u2) const;
+    LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const;
     double seenSamples(std::uint32_t light, double pmfOfTree) const;
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;

@@ -39,8 +39,8 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
         if (!maker_.beginBlock(work.begin, cancel, totals)) return part;
         open_ = block;
     }
-    SumTree tree(plan.areSamples);
-    tree.measure(&meter_, block * plan.iterations, 1);
+    SumTree tree(plan.sampleIterations());
+    tree.measure(plan.areSamples ? nullptr : &meter_, block * plan.iterations, 1);
     for (std::uint64_t i = 0; i < work.count; ++i) {
         const bool must = work.first && i == 0;
         if (!must && stop()) break;

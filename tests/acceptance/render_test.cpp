@@ -31,8 +31,8 @@ Settings settingsOf(const MethodRow& row, const Shot& shot) {
     return resolve(row, assignments);
 }
 
-double threshold(double tests, std::uint64_t iterations) {
-    return allowedErrors(kFalseAlarm, tests, double(iterations) - 1.0);
+double threshold(double tests, std::uint64_t samples) {
+    return allowedErrors(kFalseAlarm, tests, double(samples) - 1.0);
 }
 
 float channel(const Rgb& c, int i) {
@@ -81,12 +81,12 @@ void expectValid(const Picture& p, const std::string& what) {
 
 void judgeAll(const Picture& a, const Image& pixels, const Image& pixelVariance,
               const Image& blocks, const Image& blockVariance, const double mean[3],
-              const double meanError[3], std::uint64_t iterations, const std::string& what,
+              const double meanError[3], std::uint64_t samples, const std::string& what,
               Judge which) {
     double tests = 3;
     if (which != Judge::MeanOnly) tests += 3.0 * double(blocks.pixels.size());
     if (which == Judge::Everything) tests += 3.0 * double(pixels.pixels.size());
-    const double z = threshold(tests, std::min(iterations, a.pixels.iterations()));
+    const double z = threshold(tests, std::min(samples, a.pixels.sum().samples));
     if (which == Judge::Everything) {
         judge(a.pixels.image(), a.pixels.variance(), pixels, pixelVariance, z, what + ": pixel");
     }
@@ -149,6 +149,7 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     RenderSettings r;
     r.limits = {shot_.maxDepth, shot_.rouletteDepth};
     r.seed = shot_.seed;
+    r.sampling = shot_.sampling;
     r.crop = cropOf(shot_);
     r.lightPaths = lightPathsOf(settings_);
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
@@ -170,7 +171,7 @@ void Render::iterate(std::uint32_t iteration) {
 
 Picture Render::run() {
     const PixelRect crop = cropOf(shot_);
-    Picture picture(crop);
+    Picture picture(crop, {BlockPlan::kEndless, false, Sampler::groupOf(shot_.sampling)});
     const ThreadPool& threads = shot_.threads ? *shot_.threads : pool();
     const int width = crop.width(), blocksX = picture.blocks.width();
     std::vector<Rgb> blocks(std::size_t(blocksX) * std::size_t(picture.blocks.height()));
@@ -202,7 +203,7 @@ void expectSame(const Picture& a, const Picture& b, const std::string& what, Jud
     expectValid(b, what);
     const FilmSum::MeanColour m = b.pixels.meanColour();
     judgeAll(a, b.pixels.image(), b.pixels.variance(), b.blocks.image(), b.blocks.variance(),
-             m.mean, m.standardError, b.pixels.iterations(), what, which);
+             m.mean, m.standardError, b.pixels.sum().samples, what, which);
 }
 
 void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const std::string& what,
@@ -224,7 +225,7 @@ void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const
         }
     }
     judgeAll(picture, pixels, Image(width, height), blocks, Image(blocks.width, blocks.height),
-             mean, none, picture.pixels.iterations(), what, which);
+             mean, none, picture.pixels.sum().samples, what, which);
 }
 
 void expectRadiance(const Picture& picture, double exact, const std::string& what, Judge which) {

@@ -1,8 +1,8 @@
 // Renders a scene with one row of the method table and compares pictures by z-tests.
 //
 // What the tests state: `kFalseAlarm` is the probability that one comparison of two pictures fails
-// by chance (Sidak over its pixels, blocks and channels; Student's t over iterations, with the
-// fewer ones of the two). A program has a few hundred comparisons, so one in about 10^4 changes of
+// by chance (Sidak over its pixels, blocks and channels; Student's t over independent samples, with
+// the fewer ones of the two). A program has a few hundred comparisons, so one in about 10^4 changes of
 // random numbers raises a false alarm. Scenes must keep samples tame enough for that, and renders
 // be long enough: no tiny light behind a mirror, no corner that is lit by unweighted connections.
 #pragma once
@@ -32,6 +32,7 @@ struct Shot {
     Camera::Lens lens{};
     int iterations = 256;
     std::uint64_t seed = 1;
+    Sampling sampling = Sampling::Independent;
     std::uint64_t lightPaths = 0;  ///< where the row has that parameter; 0: one per pixel
     float gain = 1;                ///< what pixels are multiplied by before they are judged
     int candidates = 0;            ///< likewise; 0: one light subpath per pixel
@@ -46,9 +47,9 @@ Shot quickShot(int iterations = 100);
 
 /// Sums of one render: by pixel, and by blocks of 4 x 4 pixels where the size allows it.
 struct Picture {
-    explicit Picture(PixelRect crop)
-        : pixels(crop.width(), crop.height()),
-          blocks(std::max(1, crop.width() / 4), std::max(1, crop.height() / 4)) {}
+    explicit Picture(PixelRect crop, BlockPlan plan = {})
+        : pixels(crop.width(), crop.height(), plan),
+          blocks(std::max(1, crop.width() / 4), std::max(1, crop.height() / 4), plan) {}
     Film pixels, blocks;
     IterationStatistics statistics;
 

@@ -94,8 +94,8 @@ TEST(Film, anyPieceOfAPictureGoesOnToTheSameSums) {
     const ThreadPool threads(1);
     constexpr std::uint64_t kEnd = 103;
     for (const std::uint64_t size : {1u, 5u, 8u, 64u}) {
-        for (const bool samples : {false, true}) {
-            const BlockPlan plan{size, samples};
+        for (const BlockPlan plan :
+             {BlockPlan{size, false}, BlockPlan{size, true}, BlockPlan{size, false, 4}}) {
             const FilmSum whole = filmOf(0, kEnd, plan).sum();
             for (const std::uint64_t stop : {1u, 4u, 37u, 64u, 102u}) {
                 SCOPED_TRACE(std::to_string(size) + " to a block, stopped at " +
@@ -131,7 +131,7 @@ TEST(SumTree, neighboursJoinToTheSumOfBoth) {
     const FilmSum whole = filmOf(0, 13 * 3, plan).sum();
     for (const std::uint64_t a : {1u, 4u, 5u}) {
         for (const std::uint64_t b : {6u, 8u, 11u}) {
-            SumTree tree(false);
+            SumTree tree(1);
             for (const auto& [begin, end] : {std::pair{std::uint64_t(0), a}, {a, b}, {b, 13ul}}) {
                 const Film part = filmOf(begin * 3, end * 3, plan, begin);
                 for (const SumTree::Node& node : part.state(false).blocks) tree.add(node, &threads);
@@ -156,6 +156,24 @@ TEST(Film, whereIterationsShareLightPathsBlocksAreTheSamples) {
     EXPECT_FLOAT_EQ(film.variance().at(0, 0).r, 6.25f);
     EXPECT_NEAR(film.meanColour().standardError[0], 2.5, 1e-12);
     EXPECT_EQ(filmOf(0, 2, {2, true}).variance().at(0, 0).r, 0.0f) << "one block has no spread";
+}
+
+// Groups of two, of which the last may be under way: 1.5 and 6.5 as above, then 4.
+TEST(Film, whereNumbersAreEvenGroupsAreTheSamples) {
+    const ThreadPool threads(1);
+    const BlockPlan plan{64, false, 2};
+    Film film(1, 1, plan);
+    for (const float v : {1.0f, 2.0f, 4.0f, 9.0f}) film.add(std::vector<Rgb>{Rgb(v)}, threads);
+    EXPECT_EQ(film.sum().samples, 2u);
+    EXPECT_FLOAT_EQ(film.variance().at(0, 0).r, 6.25f);
+    film.add(std::vector<Rgb>{Rgb(4.0f)}, threads);
+    EXPECT_EQ(film.sum().samples, 3u);
+    EXPECT_FLOAT_EQ(film.image().at(0, 0).r, 4.0f);
+    EXPECT_FLOAT_EQ(film.variance().at(0, 0).r, 2 * (2.5f * 2.5f + 2.5f * 2.5f) / (5 * 2));
+    // A group ends with its block.
+    Film blocks(1, 1, {3, false, 2});
+    for (int i = 0; i < 7; ++i) blocks.add(std::vector<Rgb>{Rgb(1.0f)}, threads);
+    EXPECT_EQ(blocks.sum().samples, 5u);
 }
 
 class OneLayer final : public BlockLayers {
@@ -219,8 +237,9 @@ TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
 /// Joined as films join them: `blocks` of iterations, in each of which technique s = 2, t = 3 adds a
 /// value in two halves, behind a mirror, and s = 3, t = 2 one more of the same group.
 Layers layersOf(const std::vector<std::vector<float>>& blocks, bool blocksAreSamples) {
-    TechniqueFilm technique(1, 1, 4, blocksAreSamples);
-    Film film(1, 1, {blocks[0].size(), blocksAreSamples});
+    const BlockPlan plan{blocks[0].size(), blocksAreSamples};
+    TechniqueFilm technique(1, 1, 4, plan.sampleIterations());
+    Film film(1, 1, plan);
     film.addLayers(technique);
     const ThreadPool threads(1);
     for (const std::vector<float>& block : blocks) {

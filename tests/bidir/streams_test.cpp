@@ -41,7 +41,7 @@ class NotesNumbers final : public Method {
         const PathVertex& y0 = context.ownLightPath[0];
         light[0].values[pixel] = double(y0.light);
         light[1].values[pixel] = double(y0.lightUv.x);
-        for (Column& c : picks) c.values[pixel] = double(rng.uniform());
+        for (Column& c : picks) c.values[pixel] = double(rng.evenUniform());
     }
 
     mutable std::array<Column, 2> eye{{{"the eye path's x"}, {"the eye path's y"}}};
@@ -78,12 +78,15 @@ double correlation(const Column& a, const Column& b) {
     return ab / std::sqrt(aa * bb) * std::sqrt(n);
 }
 
-TEST(Streams, ofAPixelAreIndependent) {
+class Streams : public testing::TestWithParam<Sampling> {};
+
+TEST_P(Streams, ofAPixelAreIndependent) {
     const auto scene = room(4);
     const Camera camera = scene->makeCamera("", {kWidth, kHeight}, {});
     NotesNumbers method(camera);
     RenderSettings settings;
     settings.crop = {0, kWidth, 0, kHeight};
+    settings.sampling = GetParam();
     const ThreadPool threads(2);
     BidirIntegrator integrator(*scene, camera, {.connects = true, .ownLightPath = true}, method,
                                settings, threads);
@@ -103,6 +106,9 @@ TEST(Streams, ofAPixelAreIndependent) {
     expectIndependent(method.eye, method.picks);
     expectIndependent(method.light, method.picks);
 }
+INSTANTIATE_TEST_SUITE_P(Samplings, Streams,
+                         testing::Values(Sampling::Independent, Sampling::Sobol),
+                         [](const auto& test) { return std::string(nameOf(test.param)); });
 
 }  // namespace
 }  // namespace lacuna::test

@@ -171,7 +171,7 @@ FAULTS = [
           {"bidir": "Streams.ofAPixelAreIndependent"}),
     Fault("eye-paths-draw-light-paths-numbers", "a pixel's eye path and its own light path have the same numbers",
           "libcore/bidir/eye_pass.cpp",
-          "StreamKind::EyePath, filmIndex + i);", "StreamKind::LightPath, filmIndex + i);",
+          "StreamKind::EyePath, filmIndex + i));", "StreamKind::LightPath, filmIndex + i));",
           {"bidir": "Streams.ofAPixelAreIndependent"}),
     Fault("label-of-the-light-end", "a connection's light end keeps the eye label of its own walk",
           "libcore/bidir/close.cpp",
@@ -249,7 +249,7 @@ FAULTS = [
     # --techniques
     Fault("technique-variance-of-iterations", "techniques' variances are of iterations where only blocks are samples",
           "libcore/bidir/technique_film.cpp",
-          "if (!blocksAreSamples_) return meanOf(moments.squares);", "if (iterations_ > 0) return meanOf(moments.squares);",
+          "if (++inSample_ < sampleIterations_) return;", "++inSample_;",
           {"bidir": "TechniqueFilm.*"}),
     Fault("technique-group-by-edges", "techniques are grouped by the number of edges behind, mirrors counted",
           "libcore/bidir/delivery.cpp",

@@ -79,7 +79,7 @@ TEST(Pieces, arriveAsTheyWereSent) {
     part.statistics.rays[0] = 7;
     part.statistics.invalidReplays = {"1,2,3"};
     const std::vector<Rgb> pixels{{1, 2, 3}, {4, 5, 6}, {0, 0, 0}, {-1, 0, 1e30f}, {7, 8, 9}, {}};
-    SumTree tree(false);
+    SumTree tree(1);
     for (std::uint64_t i = 8; i < 12; ++i) {
         tree.add({i, 1, std::make_shared<FilmSum>(FilmSum::ofIteration(pixels, 3, threads))},
                  nullptr);

@@ -1,0 +1,44 @@
+#include "libcore/bidir/sampler.h"
+
+#include "libcore/base/owen.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Errors fall faster the more there are, but variances are told by whole groups: a render of 64
+/// iterations should have some.
+constexpr std::uint64_t kGroup = 16;
+
+std::uint32_t dimensionsOf(StreamKind kind) {
+    constexpr std::uint32_t kOfVertices = dimension::kVertices * dimension::kPerVertex;
+    switch (kind) {
+        case StreamKind::LightPath:
+        case StreamKind::EyePath:
+            return dimension::kStart + kOfVertices;
+        case StreamKind::Connection:
+            return kOfVertices;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
+
+std::uint64_t Sampler::groupOf(Sampling sampling) {
+    return sampling == Sampling::Sobol ? kGroup : 1;
+}
+
+Rng Sampler::stream(std::uint32_t iteration, StreamKind kind, std::uint64_t index) const {
+    Rng rng(seed_, iteration, kind, index);
+    const std::uint32_t dimensions = dimensionsOf(kind);
+    if (sampling_ == Sampling::Independent || dimensions == 0) return rng;
+    const std::uint64_t inGroup = iteration % blockIterations_ % kGroup,
+                        first = iteration - inGroup;
+    const std::uint64_t ofGroup = mixBits(mixBits(seed_) ^ first);
+    rng.follow({mixBits(ofGroup ^ (std::uint64_t(kind) << 56 | index)), std::uint32_t(inGroup),
+                dimensions});
+    return rng;
+}
+
+}  // namespace lacuna

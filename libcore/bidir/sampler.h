@@ -1,0 +1,56 @@
+// Where the random numbers of a render's streams come from. (theory.md, "Even numbers")
+#pragma once
+
+#include <cstdint>
+
+#include "libcore/base/rng.h"
+
+namespace lacuna {
+
+enum class Sampling {
+    Sobol,        ///< even over the iterations of a group
+    Independent,  ///< all of them independent
+};
+/// As --sampler names it.
+constexpr const char* nameOf(Sampling sampling) {
+    return sampling == Sampling::Sobol ? "sobol" : "independent";
+}
+
+/// Dimensions of streams. A vertex has its own, whatever the vertices before it drew.
+namespace dimension {
+/// Before the first vertex of a walk: pixel and lens, or lamp and direction.
+inline constexpr std::uint32_t kStart = 3;
+/// Of a vertex of a walk: roulette, lobe, direction. Of one that picks: lamp, its point, pick.
+inline constexpr std::uint32_t kPerVertex = 3;
+/// How many vertices have any.
+inline constexpr std::uint32_t kVertices = 6;
+
+/// The first one of vertex `index` >= 1 of its subpath.
+constexpr std::uint32_t ofWalk(std::uint32_t index) {
+    return kStart + (index - 1) * kPerVertex;
+}
+/// Of what z_{t-1} picks, t >= 2.
+constexpr std::uint32_t ofPicks(std::uint32_t t) {
+    return (t - 2) * kPerVertex;
+}
+}  // namespace dimension
+
+class Sampler {
+  public:
+    /// `blockIterations`: of a block; groups begin anew with each.
+    Sampler(Sampling sampling, std::uint64_t seed, std::uint64_t blockIterations)
+        : sampling_(sampling), seed_(seed), blockIterations_(blockIterations) {}
+
+    /// Iterations of a group, a power of two: streams of one kind and index are even over them, and
+    /// independent of all others.
+    static std::uint64_t groupOf(Sampling sampling);
+
+    /// A stream of an iteration, even where its kind has dimensions.
+    Rng stream(std::uint32_t iteration, StreamKind kind, std::uint64_t index) const;
+
+  private:
+    Sampling sampling_;
+    std::uint64_t seed_, blockIterations_;
+};
+
+}  // namespace lacuna
