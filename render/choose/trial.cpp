@@ -62,6 +62,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     RenderSettings render = stage.settings;
     render.seed = seed;
     render.crop = small.crop;
+    render.sampling = Sampling::Independent;  // errors are told by halves of independent iterations
     const Camera camera = stage.camera->withFilm(small.film);
     // A technique that is forced off is off for all.
     Techniques techniques = row.techniques;
