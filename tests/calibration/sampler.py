@@ -145,7 +145,7 @@ def page(found, spent, chosen, command):
     lines = [
         "# Even numbers: what --sampler sobol is worth", "",
         f"Date {datetime.date.today()}, commit {commit}, {platform.machine()}. `{command}`.", "",
-        f"{' '.join(SIZE[1::2])} pixels, seeds {', '.join(map(str, SEEDS))}, each against 2048 iterations of "
+        f"{' x '.join(SIZE[1::2])} pixels, seeds {', '.join(map(str, SEEDS))}, each against 2048 iterations of "
         "`spcbpt` with independent numbers and another seed. A figure says how much longer "
         "independent numbers take to the error of even ones, iterations for iterations (mape^-2): "
         "the median over seeds, its lowest and highest. After one iteration there is no "
