@@ -62,9 +62,10 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(effort);
     app.add_option(
            "--sampler", o.samplerText,
-           "Random numbers: sobol (even over pixels' samples and light paths; the default), "
-           "independent")
+           "Random numbers: sobol (even over iterations), or independent (default: by auto, else "
+           "independent)")
         ->type_name("NAME")
+        ->take_last()
         ->group(effort);
     app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
         ->group(effort);
@@ -312,7 +313,7 @@ void checkOptions(RenderOptions& o) {
     if (!o.timeText.empty()) o.timeSeconds = parseDuration("--time", o.timeText);
     if (!o.untilText.empty()) o.until = parseUntil(o.untilText);
     if (!o.blocksText.empty()) o.blocks = parseBlocks(o.blocksText);
-    o.sampling = parseSampler(o.samplerText);
+    if (!o.samplerText.empty()) o.sampling = parseSampler(o.samplerText);
     if (!o.checkpointEveryText.empty()) {
         o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
     }

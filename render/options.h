@@ -34,7 +34,7 @@ struct RenderOptions : SceneOptions {
     std::string output, method;
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
-    std::string timeText, cropText, replayText, samplerText = "sobol";
+    std::string timeText, cropText, replayText, samplerText;
     std::string untilText;
     bool countSetup = false, estimate = false;
     std::string reference, log;
@@ -49,7 +49,7 @@ struct RenderOptions : SceneOptions {
     // Made from the texts above by checkOptions.
     std::optional<double> timeSeconds;
     std::optional<UntilRequest> until;
-    Sampling sampling = Sampling::Sobol;
+    Sampling sampling = Sampling::Independent;
     std::optional<PixelRect> crop;
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;

@@ -26,7 +26,7 @@ struct RenderReport {
     std::optional<Choice> choice;  ///< where `auto` chose the method
     Settings settings;
     std::uint64_t seed = 1;
-    Sampling sampling = Sampling::Sobol;
+    Sampling sampling = Sampling::Independent;
     int threads = 1;  ///< of rank 0
     int ranks = 1;
     std::uint64_t receivedBytes = 0;  ///< from other ranks

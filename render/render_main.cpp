@@ -144,6 +144,7 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
                 choice = choose(options, *stage, ranks, pool, interrupt, progress);
                 row = &findMethod(choice->method);
                 settings = resolve(*row, choice->assignments);
+                options.sampling = choice->sampling;
                 useMethod(*stage, options, *row, settings);
                 for (int i = 1; leaders && i < ranks.size(); ++i) {
                     ranks.send(i, Ranks::Tag::Inputs, choice->text());

@@ -57,6 +57,7 @@ void useMethod(Stage& stage, const RenderOptions& options, const MethodRow& meth
                const Settings& settings) {
     useMethod(static_cast<SceneStage&>(stage), options, method);
     stage.settings.lightPaths = lightPathsOf(settings);
+    stage.settings.sampling = options.sampling;
 }
 
 }  // namespace lacuna

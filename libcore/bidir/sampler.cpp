@@ -7,8 +7,8 @@ namespace lacuna {
 namespace {
 
 /// Errors fall faster the more there are, but variances are told by whole groups: a render of 64
-/// iterations should have some.
-constexpr std::uint64_t kGroup = 16;
+/// iterations has eight.
+constexpr std::uint64_t kGroup = 8;
 
 std::uint32_t dimensionsOf(StreamKind kind) {
     constexpr std::uint32_t kOfVertices = dimension::kVertices * dimension::kPerVertex;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/tool/tool.h"
+#include "render/options.h"
 
 namespace lacuna {
 
@@ -10,7 +11,7 @@ std::string Choice::byName() const {
     std::string text = "--method " + method;
     if (!findMethod(method).needs.empty()) text += " --prepare";
     for (const std::string& a : assignments) text += " --set " + shellQuoted(a);
-    return text;
+    return text + " --sampler " + nameOf(sampling);
 }
 
 nlohmann::json Choice::json() const {
@@ -26,14 +27,18 @@ nlohmann::json Choice::json() const {
 }
 
 std::string Choice::text() const {
-    return nlohmann::json{
-        {"method", method}, {"set", assignments}, {"why", why}, {"speeds", speeds}}
+    return nlohmann::json{{"method", method},
+                          {"set", assignments},
+                          {"sampler", nameOf(sampling)},
+                          {"why", why},
+                          {"speeds", speeds}}
         .dump();
 }
 
 Choice Choice::ofText(const std::string& text) {
     const nlohmann::json j = nlohmann::json::parse(text);
-    return {j.at("method"), j.at("set"), j.at("why"), j.at("speeds")};
+    return {j.at("method"), j.at("set"), parseSampler(j.at("sampler")), j.at("why"),
+            j.at("speeds")};
 }
 
 Choice Choice::ofInputs(const CacheStamp& inputs) {
@@ -41,7 +46,8 @@ Choice Choice::ofInputs(const CacheStamp& inputs) {
         const auto found = inputs.inputs.find(name);
         return found == inputs.inputs.end() ? std::string{} : found->second;
     };
-    Choice choice{value("method"), {}, "as the checkpoint has it", {}};
+    Choice choice{
+        value("method"), {}, parseSampler(value("sampler")), "as the checkpoint has it", {}};
     const MethodRow& row = findMethod(choice.method, "the checkpoint's method");
     for (const Option& option : row.options) {
         const std::string text = value(option.name);

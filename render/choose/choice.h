@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "libcore/bidir/sampler.h"
 #include "libcore/cache/cache_name.h"
 #include "libcore/methods/registry.h"
 
@@ -17,13 +18,14 @@ inline constexpr const char* kAuto = "auto";
 struct Choice {
     std::string method;                    ///< a row's name
     std::vector<std::string> assignments;  ///< "name=value", as --set takes them
-    std::string why;                       ///< a sentence
+    Sampling sampling = Sampling::Independent;
+    std::string why;  ///< a sentence
     /// How many times as fast as bpt the rows that were tried seem to be, setup counted; by name.
     std::vector<std::pair<std::string, double>> speeds;
 
     /// How to ask for the same by name: "--method spcbpt --prepare --set train.paths=20000".
     std::string byName() const;
-    /// {"method", "parameters": {name: value}, "why", "by_name", "speeds": {row: times bpt}}
+    /// {"method", "parameters": {name: value}, "sampler", "why", "by_name", "speeds": {row: times bpt}}
     nlohmann::json json() const;
 
     /// As other ranks are told.

@@ -201,7 +201,11 @@ class Pilot {
             least = loss(t);
             chosen = &t;
         }
-        Choice choice{chosen->row->method, assignments(*chosen->row, subpathsFor(film())), "", {}};
+        Choice choice{chosen->row->method,
+                      assignments(*chosen->row, subpathsFor(film())),
+                      sampling(*chosen),
+                      "",
+                      {}};
         for (const Tried& t : tried_) {
             choice.speeds.emplace_back(t.row->method, loss(bpt) / loss(t));
         }
@@ -214,6 +218,15 @@ class Pilot {
             choice.why = std::string(times) + ": light " + chosen->row->strength;
         }
         return choice;
+    }
+
+    /// Even numbers where groups enough are expected to know the variance by; with a time limit a
+    /// better picture is worth more than that.
+    Sampling sampling(const Tried& t) const {
+        if (!options_.samplerText.empty()) return options_.sampling;
+        const double expected = byClock() ? budget_ / t.cost : double(iterations());
+        const std::uint64_t wanted = (byClock() ? 2 : 8) * Sampler::groupOf(Sampling::Sobol);
+        return expected >= double(wanted) ? Sampling::Sobol : Sampling::Independent;
     }
 
     const RenderOptions& options_;
@@ -238,7 +251,7 @@ Choice chooseMethod(const RenderOptions& options, const Stage& stage, const Thre
                     const std::atomic<bool>& cancel, Progress& progress,
                     const std::function<void(const Image&)>& show) {
     progress.phase(kPhase);
-    if (stage.scene->lights().empty()) return {"pt", {}, "there is no light", {}};
+    if (stage.scene->lights().empty()) return {"pt", {}, options.sampling, "there is no light", {}};
     return Pilot(options, stage, pool, cancel, progress).choose(show);
 }
 

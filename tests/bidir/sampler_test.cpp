@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kAlarm = 1e-3;
 constexpr double kComparisons = 7;
-constexpr std::uint32_t kGroup = 16;
+constexpr std::uint32_t kGroup = 8;
 constexpr std::uint64_t kBlock = 64;
 
 const Sampler kSobol(Sampling::Sobol, 3, kBlock), kIndependent(Sampling::Independent, 3, kBlock);
@@ -56,19 +56,19 @@ TEST(Sampler, iterationsOfAGroupAreEven) {
     ASSERT_EQ(Sampler::groupOf(Sampling::Independent), 1u);
     for (const StreamKind kind :
          {StreamKind::EyePath, StreamKind::LightPath, StreamKind::Connection}) {
-        for (const std::uint32_t first : {0u, 16u, 48u, 64u, 6400u}) {
+        for (const std::uint32_t first : {0u, 8u, 48u, 64u, 6400u}) {
             std::set<int> squares, columns, picks;
             for (std::uint32_t i = first; i < first + kGroup; ++i) {
                 Rng rng = kSobol.stream(i, kind, 9);
                 rng.toDimension(dimension::ofPicks(4));
                 const auto [u1, u2] = rng.evenPair();
-                squares.insert(int(u1 * 4) * 4 + int(u2 * 4));
-                columns.insert(int(u1 * 16));
-                for (std::uint32_t n = 0; n < 4; ++n) picks.insert(int(rng.evenPick(n, 4) * 64));
+                squares.insert(int(u1 * 4) * 2 + int(u2 * 2));
+                columns.insert(int(u1 * 8));
+                for (std::uint32_t n = 0; n < 4; ++n) picks.insert(int(rng.evenPick(n, 4) * 32));
             }
-            EXPECT_EQ(squares.size(), 16u) << first;
-            EXPECT_EQ(columns.size(), 16u) << first;
-            EXPECT_EQ(picks.size(), 64u) << first;
+            EXPECT_EQ(squares.size(), 8u) << first;
+            EXPECT_EQ(columns.size(), 8u) << first;
+            EXPECT_EQ(picks.size(), 32u) << first;
         }
     }
 }
@@ -83,9 +83,9 @@ TEST(Sampler, aGroupEndsWithItsBlock) {
         }
         return seen.size();
     };
-    EXPECT_EQ(columns(0, 16), 16u);
+    EXPECT_EQ(columns(0, 8), 8u);
     EXPECT_EQ(columns(16, 20), 4u);
-    EXPECT_EQ(columns(20, 36), 16u);
+    EXPECT_EQ(columns(20, 28), 8u);
 }
 
 /// Of pairs of numbers in 8 x 8 cells.
@@ -111,7 +111,7 @@ TEST(Sampler, allElseIsIndependent) {
         return std::pair(at(3, eye, i), at(3 + kGroup, eye, i));
     });
     expectIndependent("blocks", [&](std::uint32_t i) {
-        return std::pair(at(i % 16 + i / 16 * 128, eye, 1), at(i % 16 + i / 16 * 128 + 64, eye, 1));
+        return std::pair(at(i % 8 + i / 8 * 128, eye, 1), at(i % 8 + i / 8 * 128 + 64, eye, 1));
     });
     expectIndependent("pixels",
                       [&](std::uint32_t i) { return std::pair(at(3, eye, i), at(3, eye, i + 1)); });
@@ -125,7 +125,7 @@ TEST(Sampler, allElseIsIndependent) {
         return std::pair(at(3, eye, i), Sampler(Sampling::Sobol, 4, kBlock).stream(3, eye, i));
     });
     expectIndependent("dimensions", [&](std::uint32_t i) {
-        Rng a = at(i % 16, eye, i / 16), b = a;
+        Rng a = at(i % 8, eye, i / 8), b = a;
         b.toDimension(1);
         return std::pair(a, b);
     });

@@ -54,10 +54,7 @@ TEST_F(RenderUntil, theErrorIsWhatWasAskedFor) {
     std::filesystem::rename(path("out.exr"), path("reference.exr"));
     for (const auto& [measure, bound] : {std::pair{"mape", 0.08}, std::pair{"relmse", 0.02}}) {
         const std::string until = std::string("--until ") + measure + "=" + std::to_string(bound);
-        // relmse needs 16 samples.
-        const std::string sampler =
-            std::string(measure) == "relmse" ? " --sampler independent" : "";
-        const std::string more = until + sampler + " --reference @reference.exr --iterations 200";
+        const std::string more = until + " --reference @reference.exr --iterations 200";
         ASSERT_EQ(run(room("bpt", more)).exitCode, 0);
         const nlohmann::json j = json("o.json");
         EXPECT_EQ(j["stopped"], "error") << measure << j["estimate_doubts"];

@@ -173,10 +173,10 @@ TEST(Judge, ManagesFewPicturesAndBlackOnes) {
 }
 
 TEST(Choices, TravelAsText) {
-    const Choice choice{"spcbpt", {"train.paths=4000"}, "because", {{"bpt", 1.0}}};
+    const Choice choice{"spcbpt", {"train.paths=4000"}, Sampling::Sobol, "because", {{"bpt", 1.0}}};
     const Choice read = Choice::ofText(choice.text());
     EXPECT_EQ(read.json(), choice.json());
-    EXPECT_EQ(choice.byName(), "--method spcbpt --prepare --set train.paths=4000");
+    EXPECT_EQ(choice.byName(), "--method spcbpt --prepare --set train.paths=4000 --sampler sobol");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ class RenderPiecesOf : public RenderPieces, public ::testing::WithParamInterface
 TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
     // Ten iterations: the last block is not whole.
     const std::string common = quick(GetParam(),
-                                     "--quiet --techniques --iterations 10 "
+                                     "--quiet --techniques --iterations 10 --sampler sobol "
                                      "--block-iterations 4");
     const auto to = [&](const std::string& name) {
         std::string text = common;
@@ -54,13 +54,16 @@ TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
 
 TEST_P(RenderPiecesOf, moreIterationsGoOnFromTheCheckpoint) {
     const auto command = [&](int iterations, const std::string& more) {
-        return quick(GetParam(), "--quiet --block-iterations 4 --json @o.json --iterations " +
-                                     std::to_string(iterations) + " " + more);
+        // Groups of 8 are cut by blocks of 12 and by checkpoints.
+        return quick(GetParam(),
+                     "--quiet --sampler sobol --block-iterations 12 --json @o.json "
+                     "--iterations " +
+                         std::to_string(iterations) + " " + more);
     };
-    ASSERT_EQ(run(command(11, "")).exitCode, 0);
+    ASSERT_EQ(run(command(14, "")).exitCode, 0);
     const nlohmann::json whole = json("o.json");
     std::filesystem::rename(path("out.exr"), path("whole.exr"));
-    for (const int iterations : {2, 6, 8, 11, 11}) {
+    for (const int iterations : {2, 6, 9, 13, 14, 14}) {
         const Outcome o = run(command(iterations, "--checkpoint @ck"));
         ASSERT_EQ(o.exitCode, 0) << o.err;
     }
@@ -69,7 +72,7 @@ TEST_P(RenderPiecesOf, moreIterationsGoOnFromTheCheckpoint) {
     const Outcome fewer = run(command(4, "--checkpoint @ck"));
     EXPECT_EQ(fewer.exitCode, 3);
     EXPECT_NE(fewer.err.find("at most 4 iterations"), std::string::npos) << fewer.err;
-    ASSERT_EQ(run(command(11, "--checkpoint @ck")).exitCode, 0);
+    ASSERT_EQ(run(command(14, "--checkpoint @ck")).exitCode, 0);
     for (const char* key : {"rays_by_kind", "mean_rgb", "mean_rgb_stderr", "iterations"}) {
         EXPECT_EQ(json("o.json")[key], whole[key]) << key;
     }

@@ -134,8 +134,9 @@ class RenderRanks : public RenderTool {
 /// Starting ranks takes seconds: rows that give out nodes, whole blocks and read caches are quick.
 void RenderRanks::expectThePictureOfOneProcess(const std::string& method) const {
     SCOPED_TRACE(method);
-    const std::string common =
-        quick(method, "--quiet --iterations 10 --block-iterations 4 --threads 1 --json @o.json");
+    const std::string common = quick(
+        method,
+        "--quiet --iterations 10 --sampler sobol --block-iterations 4 --threads 1 --json @o.json");
     for (const std::string layers : {"", " --techniques"}) {
         ASSERT_EQ(run(common + layers).exitCode, 0);
         std::filesystem::rename(path("out.exr"), path("whole.exr"));
