@@ -124,7 +124,6 @@ TEST_F(RenderUntil, errorsAreUsage) {
     expectFailure(start + "--estimate --checkpoint @ck", 2, "--checkpoint");
     expectFailure(start + "--estimate --blocks 0,1", 2, "--blocks");
     expectFailure(start + "--estimate --verify", 2, "--verify");
-    expectFailure("@none.glb --method pt --until mape=0.1", 2, "-o");
 }
 
 class RenderEstimate : public RenderUntil {};

@@ -62,11 +62,11 @@ TEST(Picks, noneSaidIsAsManyAsElsewhere) {
 }
 
 TEST(Picks, countInTheDensity) {
-    const PicksDensity alike({3, 3, 3}, true, 0.25);
+    const PicksDensity alike({3, 3, 3}, true, Lamps::Power, 0.25);
     ASSERT_TRUE(alike.constants());
     EXPECT_EQ(alike.constants()->direct, 1.0);  // next event: one fresh light point
     EXPECT_EQ(alike.constants()->indirect, 0.75);
-    const PicksDensity differing({8, 1, 1}, false, 0.25);
+    const PicksDensity differing({8, 1, 1}, false, Lamps::Power, 0.25);
     EXPECT_FALSE(differing.constants());
     EXPECT_EQ(differing.effectiveSamples(connection(1, 1)), 2.0);
     EXPECT_EQ(differing.effectiveSamples(connection(3, 1)), 2.0);
