@@ -25,7 +25,7 @@ constexpr std::uint64_t kIterationsToAnError = 256;
 
 /// A path of training costs as much as so many rays of a render.
 constexpr double kRaysPerTrainingPath = 75.0;
-constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1e6;
+constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1'024'000.0;
 
 constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
 constexpr double kTrialIterations = 8.0;
@@ -53,20 +53,18 @@ constexpr const char* kUsual = "spcbpt";
 
 constexpr const char* kPhase = "choosing a method";
 
-/// Training with `paths` and what goes with so many.
+/// Training with about `paths`, a power of two times the fewest, and what goes with so many: renders
+/// that may take about the same find the same cache.
 std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) {
-    const double p = std::clamp(paths, kFewestTrainingPaths, kMostTrainingPaths);
+    const double ratio =
+        std::clamp(paths, kFewestTrainingPaths, kMostTrainingPaths) / kFewestTrainingPaths;
+    const double factor = std::exp2(std::round(std::log2(ratio)));
+    const double p = kFewestTrainingPaths * factor;
     const auto rounded = [](double value) { return std::to_string(std::llround(value)); };
-    // Two digits: nobody reads more, and caches of like renders are the same.
-    const auto twoDigits = [](double value) {
-        const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-        return std::round(value / unit) * unit;
-    };
-    const double subspaces = 40.0 * std::pow(p / kFewestTrainingPaths, 0.6);
-    return {"candidates=" + std::to_string(subpaths), "train.paths=" + rounded(twoDigits(p)),
-            "train.subspaces=" + rounded(twoDigits(std::clamp(subspaces, 40.0, 1000.0))),
-            "train.light_paths=" + rounded(twoDigits(std::min(4.0 * p + 4000.0, 2e6))),
-            "train.epochs=" + rounded(std::clamp(p / 4000.0, 5.0, 20.0))};
+    return {"candidates=" + std::to_string(subpaths), "train.paths=" + rounded(p),
+            "train.subspaces=" + rounded(std::min(40.0 * std::pow(factor, 0.6), 1000.0)),
+            "train.light_paths=" + rounded(std::min(4.0 * p + 4000.0, 2e6)),
+            "train.epochs=" + rounded(std::clamp(factor, 5.0, 20.0))};
 }
 
 /// A light subpath per pixel is traced anyway: it may as well be in the pool.
@@ -206,15 +204,17 @@ class Pilot {
                       sampling(*chosen),
                       "",
                       {}};
-        for (const Tried& t : tried_) {
-            choice.speeds.emplace_back(t.row->method, loss(bpt) / loss(t));
-        }
+        // Where nothing was seen all are alike.
+        const auto speed = [&](const Tried& t) {
+            return loss(t) > 0.0 ? loss(bpt) / loss(t) : 1.0;
+        };
+        for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->method, speed(t));
         if (chosen == &bpt) {
             choice.why = "no other method was clearly better in a pilot";
         } else {
             char times[64];
             std::snprintf(times, sizeof times, "%.2g times as fast as bpt in a pilot",
-                          loss(bpt) / loss(*chosen));
+                          speed(*chosen));
             choice.why = std::string(times) + ": light " + chosen->row->strength;
         }
         return choice;

@@ -113,7 +113,7 @@ FAULTS = [
     Fault("fresh-lamps-undivided", "light points of next event are not divided by how they were picked",
           "libcore/resampling/picks.cpp",
           "1.0 / samples, 0", "1.0, 0",
-          {"methods": "All/FiniteSpaceRow.meetsTheEnumeratedTruth/pt"}),
+          {"methods": "*FiniteSpaceRow.*/pt"}),
     Fault("spot-falloff-linear", "spot lights fade out linearly",
           "libcore/scene/light.cpp",
           "return x * x;", "return x;",
