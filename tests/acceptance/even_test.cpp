@@ -9,34 +9,29 @@
 namespace lacuna::test {
 namespace {
 
-/// 100 groups, against as many iterations alone.
+/// 200 groups of each row, against as many iterations alone.
+void expectIndependentPathTracing(const Scene& scene, const std::vector<std::string>& rows) {
+    Shot shot = quickShot(1600);
+    shot.seed = 7;
+    const Picture reference = render(scene, rowNamed("pt"), shot);
+    shot.seed = 1;
+    shot.sampling = Sampling::Sobol;
+    for (const std::string& name : rows) {
+        expectSame(render(scene, rowNamed(name), shot), reference, name);
+    }
+}
+
 TEST(EvenNumbersSlow, everyRowAgreesWithIndependentPathTracing) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);
     addLight(b, LightChoice::Sphere);
-    const auto scene = b.build();
-    Shot shot = quickShot(1600);
-    shot.seed = 7;
-    const Picture reference = render(*scene, rowNamed("pt"), shot);
-    shot.seed = 1;
-    shot.sampling = Sampling::Sobol;
-    for (const std::string& name : rowNames()) {
-        expectSame(render(*scene, rowNamed(name), shot), reference, name);
-    }
+    expectIndependentPathTracing(*b.build(), rowNames());
 }
 
 TEST(EvenNumbersSlow, theSkyIsTheSame) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Environment);
-    const auto scene = b.build();
-    Shot shot = quickShot(1600);
-    shot.seed = 7;
-    const Picture reference = render(*scene, rowNamed("pt"), shot);
-    shot.seed = 1;
-    shot.sampling = Sampling::Sobol;
-    for (const char* name : {"pt", "bpt", "lvcbpt"}) {
-        expectSame(render(*scene, rowNamed(name), shot), reference, name);
-    }
+    expectIndependentPathTracing(*b.build(), {"pt", "bpt", "lvcbpt"});
 }
 
 /// Over seeds: the mean over pixels of the stated variance, and of what there is.
