@@ -32,6 +32,14 @@ std::string runColumns(const Results& results, const RunResult& r) {
 }
 }  // namespace
 
+std::vector<const Curve*> Results::curvesOf(std::size_t scene) const {
+    std::vector<const Curve*> curves;
+    for (const RunResult& r : runs) {
+        if (r.run.scene == scene) curves.push_back(&r.curve);
+    }
+    return curves;
+}
+
 std::string rawCsv(const Results& results) {
     std::string text = "scene,name,method,seed,run," + results.runs.at(0).curve.header + "\n";
     for (const RunResult& r : results.runs) {

@@ -37,6 +37,8 @@ struct Results {
 
     /// The runs of one scene and method, in the order of study.seeds.
     std::vector<const RunResult*> of(std::size_t scene, std::size_t method) const;
+    /// Of all runs of a scene.
+    std::vector<const Curve*> curvesOf(std::size_t scene) const;
 };
 
 /// One row per run and checkpoint: scene, name, method, seed, run, then the curve's columns.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/study/band.h"
+#include "render/study/choices.h"
 
 namespace lacuna {
 namespace {
@@ -91,15 +92,6 @@ Table timeTable(const Results& results) {
     return table;
 }
 
-/// The largest x that every run of the scene has.
-double commonEnd(const Results& results, std::size_t scene, Axis axis) {
-    std::vector<const Curve*> curves;
-    for (const RunResult& r : results.runs) {
-        if (r.run.scene == scene) curves.push_back(&r.curve);
-    }
-    return commonEnd(curves, axis);
-}
-
 /// How far the references are from converged themselves.
 Table referenceTable(const Results& results) {
     Table table;
@@ -140,7 +132,7 @@ Table errorTable(const Results& results, Axis axis) {
     forEachMeasure(results, [&](std::size_t s, const std::string& name) {
         const Measure measure = measureOf(name);
         const std::vector<double> at =
-            asked.empty() ? std::vector<double>{commonEnd(results, s, axis)} : asked;
+            asked.empty() ? std::vector<double>{commonEnd(results.curvesOf(s), axis)} : asked;
         for (const double x : at) {
             for (std::size_t m = 0; m < study.methods.size(); ++m) {
                 const Values own = errorsAt(results, s, m, measure, x, axis);
@@ -244,7 +236,8 @@ double referenceMargin(Measure measure) {
 }
 
 std::vector<Table> makeTables(const Results& results) {
-    std::vector<Table> all{timeTable(results),
+    std::vector<Table> all{choiceTable(results),
+                           timeTable(results),
                            errorTable(results, Axis::Seconds),
                            errorTable(results, Axis::SecondsWithSetup),
                            errorTable(results, Axis::Iterations),

@@ -58,6 +58,26 @@ TEST_F(StudyRun, WritesTablesAndGoesOnWhereItStopped) {
     EXPECT_NE(read("out/references.csv").find("bpt, 96 iterations"), std::string::npos);
 }
 
+TEST_F(StudyRun, SaysWhatAutoChoseAndWhatThatCost) {
+    writeStudy(R"({"iterations": null, "time": "1s", "equal_iterations": null, "seeds": [1],
+                   "measures": ["mape", "relmse"],
+                   "methods": [{"method": "auto"}, {"method": "pt"}, {"method": "lvcbpt"}],
+                   "baseline": "pt"})");
+    const Outcome done = study();
+    ASSERT_EQ(done.exitCode, 0) << done.err;
+    const std::string table = read("out/choices.csv");
+    EXPECT_EQ(lines(table), 1u + 2u) << table;  // mape and relmse of the one scene
+    EXPECT_TRUE(std::regex_search(
+        table, std::regex("\nroom,mape,auto,(pt|bpt|risbpt|\"spcbpt, [0-9]+ paths\"),[0-9.e-]+,.*"
+                          " s,(pt|lvcbpt),[0-9.e-]+")))
+        << table;
+    EXPECT_NE(read("out/tables.md").find("medians of regret"), std::string::npos);
+
+    writeStudy();
+    ASSERT_EQ(study().exitCode, 0);
+    EXPECT_EQ(read("out/tables.md").find("medians of regret"), std::string::npos);
+}
+
 TEST_F(StudyRun, SummarySaysHowItWasMade) {
     writeStudy();
     ASSERT_EQ(study("--threads 1 --summary @results.md").exitCode, 0);
