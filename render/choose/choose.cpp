@@ -30,9 +30,12 @@ constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1'024'000.0
 constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
 constexpr double kTrialIterations = 8.0;
 constexpr double kFewestPixels = 256.0, kMostPixels = 6144.0;
+constexpr double kMostFilmPixels = 1e5;           // around a crop, for rows that see all of it
 constexpr double kPixelsPerThread = 512.0;        // two tiles
 constexpr std::uint64_t kTrialSubpaths = 10'000;  // of pools in trials: small pictures need no more
 constexpr std::uint64_t kMostSubpaths = 100'000;
+constexpr double kSplatsPerCropPixel = 4.0;
+constexpr double kFewestSplats = 10'000.0;
 /// A row takes the place of the usual one where it is better by so much: what trials see has noise.
 constexpr double kWorthAChange = 0.85;
 
@@ -41,12 +44,13 @@ constexpr double kWorthAChange = 0.85;
 struct Row {
     const char* method;
     double rayCost;
-    const char* strength;  ///< behind "light ", where it wins
+    const char* strength;    ///< behind "light ", where it wins
+    bool wholeFilm = false;  ///< an iteration costs as much as the film is large, whatever the crop
 };
 constexpr Row kRows[] = {
     {"bpt", 1.0, "is found from both ends"},
     {"pt", 1.05, "is in plain sight"},
-    {"risbpt", 1.6, "comes from many places near and glossy"},
+    {"risbpt", 1.6, "comes from many places near and glossy", true},
     {"spcbpt", 1.6, "takes ways that can be learned"},
 };
 /// Where trials find nothing clearly better.
@@ -68,12 +72,6 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
             "train.epochs=" + rounded(std::clamp(factor, 5.0, 20.0))};
 }
 
-/// A light subpath per pixel is traced anyway: it may as well be in the pool.
-std::uint64_t subpathsFor(const Camera::Film& film) {
-    const auto pixels = std::uint64_t(film.width) * std::uint64_t(film.height);
-    return std::clamp<std::uint64_t>(pixels, 1000, kMostSubpaths);
-}
-
 /// A row that was tried.
 struct Tried {
     const Row* row = nullptr;
@@ -92,6 +90,7 @@ class Pilot {
         sizeUp();
         show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
         for (const Row& row : std::span(kRows).subspan(1)) {
+            if (row.wholeFilm && smallFilmPixels() > kMostFilmPixels) continue;
             if (mayKeepCaches(row)) tryRow(row);
         }
         judge();
@@ -109,7 +108,7 @@ class Pilot {
         const double busy = byClock() ? kPixelsPerThread * double(pool_.threads()) : kFewestPixels;
         small_.emplace(stage_, std::min(pixels, busy));
         Trial first;
-        run(kRows[0], {}, kFewestTrialRays / 4.0, first);
+        run(kRows[0], assignments(kRows[0], 0), kFewestTrialRays / 4.0, first);
         budget_ = double(iterations()) * first.rays;
         if (byClock()) {
             seconds_ = *options_.timeSeconds;
@@ -127,9 +126,36 @@ class Pilot {
         return options_.until ? kIterationsToAnError : kDefaultIterations;
     }
 
-    std::vector<std::string> assignments(const Row& row, std::uint64_t subpaths) const {
-        if (findMethod(row.method).needs.empty()) return {};
-        return subspaceSettings(kTrainingShare * budget_ / kRaysPerTrainingPath, subpaths);
+    double smallFilmPixels() const {
+        return double(small_->film.width) * double(small_->film.height);
+    }
+
+    std::vector<std::string> assignments(const Row& candidate, std::uint64_t subpaths) const {
+        const MethodRow& row = findMethod(candidate.method);
+        std::vector<std::string> result;
+        if (!row.needs.empty()) {
+            result = subspaceSettings(kTrainingShare * budget_ / kRaysPerTrainingPath, subpaths);
+        }
+        if (const std::uint64_t splats = splatsOfCrop(); row.techniques.splats && splats > 0) {
+            result.push_back("light_paths=" + std::to_string(splats));
+        }
+        return result;
+    }
+
+    /// Those that splat are traced anyway: they may as well be in the pool.
+    std::uint64_t poolSubpaths() const {
+        const std::uint64_t splats = splatsOfCrop();
+        const auto pixels = std::uint64_t(film().width) * std::uint64_t(film().height);
+        return std::clamp<std::uint64_t>(splats > 0 ? splats : pixels, 1000, kMostSubpaths);
+    }
+
+    /// Light subpaths that splat, where a crop is so small a part of the picture that one per pixel
+    /// of the whole would take most of the time; else 0, as many as pixels.
+    std::uint64_t splatsOfCrop() const {
+        const PixelRect& crop = stage_.settings.crop;
+        const double wanted = std::max(
+            kFewestSplats, kSplatsPerCropPixel * double(crop.width()) * double(crop.height()));
+        return wanted < double(film().width) * double(film().height) ? std::uint64_t(wanted) : 0;
     }
 
     /// A folder that cannot be written is a reason to do without, not to fail.
@@ -151,10 +177,10 @@ class Pilot {
     void tryRow(const Row& row) {
         Tried tried;
         tried.row = &row;
-        run(row, assignments(row, std::min(subpathsFor(film()), kTrialSubpaths)),
-            rays_ / row.rayCost, tried.trial);
-        tried.cost = byClock() ? tried.trial.seconds / seconds_
-                               : tried.trial.rays * row.rayCost / budget_;
+        run(row, assignments(row, std::min(poolSubpaths(), kTrialSubpaths)), rays_ / row.rayCost,
+            tried.trial);
+        tried.cost =
+            byClock() ? tried.trial.seconds / seconds_ : tried.trial.rays * row.rayCost / budget_;
         tried_.push_back(std::move(tried));
     }
 
@@ -202,7 +228,7 @@ class Pilot {
             chosen = &t;
         }
         Choice choice{chosen->row->method,
-                      assignments(*chosen->row, subpathsFor(film())),
+                      assignments(*chosen->row, poolSubpaths()),
                       sampling(*chosen),
                       "",
                       {}};

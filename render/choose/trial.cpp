@@ -12,10 +12,10 @@ int scaledSide(int side, double factor) {
     return std::max(1, int(std::lround(double(side) * factor)));
 }
 
-/// What grows with the picture and what does not, from an iteration of the small one: the light
-/// subpaths of a pool are as many, those that splat and all that begins at a pixel are not.
-double ofWholePicture(double lightPart, double rest, double small, double whole, double pixels) {
-    return lightPart * whole / small + rest * pixels;
+/// What an iteration of the whole picture takes, from one of the small one: `paths` times the light
+/// subpaths (a pool's are as many, those that splat are not) and `pixels` times the pixels.
+double ofWholePicture(double lightPart, double rest, double paths, double pixels) {
+    return lightPart * paths + rest * pixels;
 }
 
 }  // namespace
@@ -62,6 +62,10 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     RenderSettings render = stage.settings;
     render.seed = seed;
     render.crop = small.crop;
+    const auto pixelsOf = [](Camera::Film f) { return double(f.width) * double(f.height); };
+    const double filmPixels = pixelsOf(stage.camera->film()), smallPixels = pixelsOf(small.film);
+    const auto splats = double(lightPathsOf(settings));  // 0: as many as pixels
+    render.lightPaths = std::uint64_t(std::ceil(splats * smallPixels / filmPixels));
     render.sampling = Sampling::Independent;  // errors are told by halves of independent iterations
     const Camera camera = stage.camera->withFilm(small.film);
     // A technique that is forced off is off for all.
@@ -89,26 +93,23 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
         for (Rgb& c : *sums) c = c * ofHalf;
     }
 
-    // Light subpaths that pixels trace for themselves are part of the eye pass.
+    // Pixels that trace light subpaths for themselves do so in the eye pass.
+    const double own = row.techniques.ownLightPath ? double(pixels) : 0.0;
     const auto pooled = double(method->pool().subpaths);
-    const auto filmPixels = [](Camera::Film f) { return double(f.width) * double(f.height); };
-    const auto paths = [&](double film) {
-        if (row.techniques.ownLightPath) return 1.0;
-        const double splats = stage.settings.lightPaths ? double(stage.settings.lightPaths) : film;
-        return std::max({pooled, row.techniques.splats ? splats : 0.0, 1.0});
+    const auto pathsOf = [&](double splatted, double pixelsOwn) {
+        return std::max({pooled, row.techniques.splats ? splatted : 0.0, pixelsOwn, 1.0});
     };
-    const double few = paths(filmPixels(small.film));
-    const double all = paths(filmPixels(stage.camera->film()));
+    const double few = pathsOf(splats > 0.0 ? double(render.lightPaths) : smallPixels, own);
+    const double all = pathsOf(splats > 0.0 ? splats : filmPixels, own * small.scale);
     const auto count = double(n);
-    const auto lightRays = row.techniques.ownLightPath
-                               ? 0.0
-                               : double(statistics.rays[std::size_t(RayKind::LightWalk)]) +
-                                     double(statistics.rays[std::size_t(RayKind::Splat)]);
+    const auto lightRays = double(statistics.rays[std::size_t(RayKind::LightWalk)]) +
+                           double(statistics.rays[std::size_t(RayKind::Splat)]);
     const auto allRays = double(statistics.totalRays());
-    result.rays = ofWholePicture(lightRays, allRays - lightRays, few, all, small.scale) / count;
+    result.rays = ofWholePicture(lightRays, allRays - lightRays, all / few, small.scale) / count;
     const double lightSeconds = statistics.phaseSeconds["light paths"];
+    const double apart = std::max(1.0, few - own), allApart = all - own * small.scale;
     result.seconds =
-        ofWholePicture(lightSeconds, seconds - lightSeconds, few, all, small.scale) / count;
+        ofWholePicture(lightSeconds, seconds - lightSeconds, allApart / apart, small.scale) / count;
     return true;
 }
 

@@ -60,6 +60,20 @@ TEST_F(RenderAuto, ACheckpointKeepsTheChoice) {
     EXPECT_EQ(json("b.json")["chosen"]["why"], "as the checkpoint has it");
 }
 
+TEST_F(RenderAuto, ACropOfAHugePictureTakesAsLongAsTheCrop) {
+    // A light subpath per pixel of the whole picture would be 60 million rays.
+    const Outcome o =
+        run("@room.gltf -o @crop.exr --json @crop.json --cache @crop-cache --quiet "
+            "--width 4000 --height 2000 --crop 2000,2010,1000,1010 --iterations 2");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_LT(json("crop.json")["rays"], 4e5);
+    const auto named = json("crop.json")["chosen"]["by_name"].get<std::string>();
+    EXPECT_EQ(named.find("light_paths=10000") == std::string::npos,
+              json("crop.json")["method"] == "pt")
+        << named;
+    EXPECT_EQ(json("crop.json")["chosen"]["speeds"].size(), 3u) << "risbpt sees the whole film";
+}
+
 TEST_F(RenderAuto, PartsMergeToThePicture) {
     const std::string blocks = "--iterations 6 --block-iterations 2 ";
     ASSERT_EQ(run(automatic("whole", blocks)).exitCode, 0);
