@@ -33,14 +33,17 @@ constexpr double kFewestPixels = 256.0, kMostPixels = 6144.0;
 constexpr double kMostFilmPixels = 1e5;           // around a crop, for rows that see all of it
 constexpr double kPixelsPerThread = 512.0;        // two tiles
 constexpr std::uint64_t kTrialSubpaths = 10'000;  // of pools in trials: small pictures need no more
-constexpr std::uint64_t kMostSubpaths = 100'000;
+constexpr std::uint64_t kSplatsPerPoolSubpath = 8;
+constexpr std::uint64_t kFewestSubpaths = 1000, kMostSubpaths = 100'000;
 constexpr double kSplatsPerCropPixel = 4.0;
 constexpr double kFewestSplats = 10'000.0;
 /// A row takes the place of the usual one where it is better by so much: what trials see has noise.
 constexpr double kWorthAChange = 0.85;
+/// The errors above which a trial of the usual row tells nothing, and below which another's does.
+constexpr double kBlind = 1.0, kSees = 0.25;
 
 /// What is tried, and what a ray costs with it beside one of bpt: look-ups and waiting included. It
-/// differs by scene (spcbpt: 1.1 to 2.4), so with a time limit the trial's own seconds count.
+/// differs by scene (spcbpt: 0.9 to 2.1), so with a time limit the trial's own seconds count.
 struct Row {
     const char* method;
     double rayCost;
@@ -49,9 +52,9 @@ struct Row {
 };
 constexpr Row kRows[] = {
     {"bpt", 1.0, "is found from both ends"},
-    {"pt", 1.05, "is in plain sight"},
-    {"risbpt", 1.6, "comes from many places near and glossy", true},
-    {"spcbpt", 1.6, "takes ways that can be learned"},
+    {"pt", 1.1, "is in plain sight"},
+    {"risbpt", 1.4, "comes from many places near and glossy", true},
+    {"spcbpt", 1.5, "takes ways that can be learned"},
 };
 /// Where trials find nothing clearly better.
 constexpr const char* kUsual = "spcbpt";
@@ -76,6 +79,7 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
 struct Tried {
     const Row* row = nullptr;
     Trial trial;
+    double error = 0.0;  ///< mape of the trial's picture
     double noise = 0.0;  ///< mape after one iteration, squared
     double cost = 0.0;   ///< of an iteration of the picture, as a share of the budget
 };
@@ -142,12 +146,16 @@ class Pilot {
         return result;
     }
 
-    /// Those that splat are traced anyway: they may as well be in the pool.
+    /// Some of those that splat, which are traced anyway. A small pool lies in the processor's caches
+    /// and serves as well: what its vertices have in common is the smaller part of the variance.
     std::uint64_t poolSubpaths() const {
         const std::uint64_t splats = splatsOfCrop();
-        const auto pixels = std::uint64_t(film().width) * std::uint64_t(film().height);
-        return std::clamp<std::uint64_t>(splats > 0 ? splats : pixels, 1000, kMostSubpaths);
+        const std::uint64_t traced = splats > 0 ? splats : std::uint64_t(filmPixels());
+        return std::clamp<std::uint64_t>(traced / kSplatsPerPoolSubpath, kFewestSubpaths,
+                                         kMostSubpaths);
     }
+
+    std::uint64_t trialSubpaths() const { return std::min(poolSubpaths(), kTrialSubpaths); }
 
     /// Light subpaths that splat, where a crop is so small a part of the picture that one per pixel
     /// of the whole would take most of the time; else 0, as many as pixels.
@@ -155,7 +163,7 @@ class Pilot {
         const PixelRect& crop = stage_.settings.crop;
         const double wanted = std::max(
             kFewestSplats, kSplatsPerCropPixel * double(crop.width()) * double(crop.height()));
-        return wanted < double(film().width) * double(film().height) ? std::uint64_t(wanted) : 0;
+        return wanted < filmPixels() ? std::uint64_t(wanted) : 0;
     }
 
     /// A folder that cannot be written is a reason to do without, not to fail.
@@ -177,14 +185,16 @@ class Pilot {
     void tryRow(const Row& row) {
         Tried tried;
         tried.row = &row;
-        run(row, assignments(row, std::min(poolSubpaths(), kTrialSubpaths)), rays_ / row.rayCost,
-            tried.trial);
+        run(row, assignments(row, trialSubpaths()), rays_ / row.rayCost, tried.trial);
         tried.cost =
             byClock() ? tried.trial.seconds / seconds_ : tried.trial.rays * row.rayCost / budget_;
         tried_.push_back(std::move(tried));
     }
 
-    Camera::Film film() const { return stage_.camera->film(); }
+    double filmPixels() const {
+        const Camera::Film film = stage_.camera->film();
+        return double(film.width) * double(film.height);
+    }
 
     void run(const Row& candidate, const std::vector<std::string>& assignments, double rays,
              Trial& trial) {
@@ -199,7 +209,11 @@ class Pilot {
         }
         // A seed of its own for each: they would share eye subpaths, and so noise.
         const std::uint64_t seed = stage_.settings.seed * 0x9e3779b97f4a7c15u + ++runs_;
-        if (!runTrial(stage_, *small_, row, settings, caches, seed, rays, pool_, cancel_, trial)) {
+        const double poolScale = candidate.wholeFilm
+                                     ? filmPixels() / smallFilmPixels()
+                                     : double(poolSubpaths()) / double(trialSubpaths());
+        if (!runTrial(stage_, *small_, row, settings, caches, poolScale, seed, rays, pool_, cancel_,
+                      trial)) {
             throw Error(130, "interrupted: nothing was written");
         }
     }
@@ -209,6 +223,7 @@ class Pilot {
         for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
         const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
         for (std::size_t i = 0; i < tried_.size(); ++i) {
+            tried_[i].error = errors[i];
             tried_[i].noise = errors[i] * errors[i] * double(tried_[i].trial.iterations);
         }
     }
@@ -221,9 +236,11 @@ class Pilot {
         const auto usual = std::ranges::find_if(
             tried_, [](const Tried& t) { return std::string(t.row->method) == kUsual; });
         const Tried* chosen = usual == tried_.end() ? &bpt : &*usual;
+        // Where light was hardly met, a row that met none of it looks the best.
+        const bool blind = chosen->error > kBlind;
         double least = loss(*chosen) * kWorthAChange;
         for (const Tried& t : tried_) {
-            if (&t == chosen || !(loss(t) < least)) continue;
+            if (&t == chosen || !(loss(t) < least) || (blind && t.error > kSees)) continue;
             least = loss(t);
             chosen = &t;
         }
@@ -237,7 +254,7 @@ class Pilot {
             return loss(t) > 0.0 ? loss(bpt) / loss(t) : 1.0;
         };
         for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->method, speed(t));
-        if (chosen == &bpt) {
+        if (chosen == &bpt || speed(*chosen) <= 1.0) {
             choice.why = "no other method was clearly better in a pilot";
         } else {
             char times[64];

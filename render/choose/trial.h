@@ -32,9 +32,10 @@ struct SmallFilm {
 /// The mean of both halves in the size of `crop`: each pixel shows the small one that covers it.
 Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRect& crop);
 
-/// Pairs of iterations until `rays` rays are traced, at least one. False if cancelled.
+/// Pairs of iterations until `rays` rays are traced, at least one. What a row prepares from its pool
+/// takes `poolScale` times as long for the whole picture. False if cancelled.
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
-              const Settings& settings, const Caches& caches, std::uint64_t seed, double rays,
-              const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result);
+              const Settings& settings, const Caches& caches, double poolScale, std::uint64_t seed,
+              double rays, const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result);
 
 }  // namespace lacuna
