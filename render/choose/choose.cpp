@@ -37,10 +37,6 @@ constexpr std::uint64_t kSplatsPerPoolSubpath = 8;
 constexpr std::uint64_t kFewestSubpaths = 1000, kMostSubpaths = 100'000;
 constexpr double kSplatsPerCropPixel = 4.0;
 constexpr double kFewestSplats = 10'000.0;
-/// A row takes the place of the usual one where it is better by so much: what trials see has noise.
-constexpr double kWorthAChange = 0.85;
-/// The errors above which a trial of the usual row tells nothing, and below which another's does.
-constexpr double kBlind = 1.0, kSees = 0.25;
 
 /// What is tried, and what a ray costs with it beside one of bpt: look-ups and waiting included. It
 /// differs by scene (spcbpt: 0.9 to 2.1), so with a time limit the trial's own seconds count.
@@ -79,9 +75,8 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
 struct Tried {
     const Row* row = nullptr;
     Trial trial;
-    double error = 0.0;  ///< mape of the trial's picture
-    double noise = 0.0;  ///< mape after one iteration, squared
-    double cost = 0.0;   ///< of an iteration of the picture, as a share of the budget
+    Verdict verdict;
+    double cost = 0.0;  ///< of an iteration of the picture, as a share of the budget
 };
 
 class Pilot {
@@ -223,44 +218,35 @@ class Pilot {
         for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
         const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
         for (std::size_t i = 0; i < tried_.size(); ++i) {
-            tried_[i].error = errors[i];
-            tried_[i].noise = errors[i] * errors[i] * double(tried_[i].trial.iterations);
+            // Noise of one iteration times its cost. What was trained is there already.
+            Tried& t = tried_[i];
+            t.verdict = {errors[i], errors[i] * errors[i] * double(t.trial.iterations) * t.cost};
         }
     }
 
-    /// Time to an error, in units that only compare. What was trained is there already.
-    static double loss(const Tried& t) { return t.noise * t.cost; }
-
     Choice best() const {
         const Tried& bpt = tried_.front();
-        const auto usual = std::ranges::find_if(
-            tried_, [](const Tried& t) { return std::string(t.row->method) == kUsual; });
-        const Tried* chosen = usual == tried_.end() ? &bpt : &*usual;
-        // Where light was hardly met, a row that met none of it looks the best.
-        const bool blind = chosen->error > kBlind;
-        double least = loss(*chosen) * kWorthAChange;
-        for (const Tried& t : tried_) {
-            if (&t == chosen || !(loss(t) < least) || (blind && t.error > kSees)) continue;
-            least = loss(t);
-            chosen = &t;
+        std::size_t usual = 0;  // bpt, where the usual one was not tried
+        std::vector<Verdict> verdicts;
+        for (std::size_t i = 0; i < tried_.size(); ++i) {
+            verdicts.push_back(tried_[i].verdict);
+            if (std::string(tried_[i].row->method) == kUsual) usual = i;
         }
-        Choice choice{chosen->row->method,
-                      assignments(*chosen->row, poolSubpaths()),
-                      sampling(*chosen),
-                      "",
-                      {}};
+        const Tried& chosen = tried_[rowToTake(verdicts, usual)];
+        Choice choice{
+            chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(chosen), "", {}};
         // Where nothing was seen all are alike.
         const auto speed = [&](const Tried& t) {
-            return loss(t) > 0.0 ? loss(bpt) / loss(t) : 1.0;
+            return t.verdict.loss > 0.0 ? bpt.verdict.loss / t.verdict.loss : 1.0;
         };
         for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->method, speed(t));
-        if (chosen == &bpt || speed(*chosen) <= 1.0) {
+        if (&chosen == &bpt || speed(chosen) <= 1.0) {
             choice.why = "no other method was clearly better in a pilot";
         } else {
             char times[64];
             std::snprintf(times, sizeof times, "%.2g times as fast as bpt in a pilot",
-                          speed(*chosen));
-            choice.why = std::string(times) + ": light " + chosen->row->strength;
+                          speed(chosen));
+            choice.why = std::string(times) + ": light " + chosen.row->strength;
         }
         return choice;
     }

@@ -8,7 +8,11 @@ namespace lacuna {
 namespace {
 
 constexpr double kEpsilon = 0.01;  // of the error measures: e = 0.01 of the mean
-constexpr int kRounds = 3;         // of weights by errors, and errors by weights
+/// A row takes the place of the usual one where it is better by so much: what trials see has noise.
+constexpr double kWorthAChange = 0.85;
+/// The errors above which a trial of the usual row tells nothing, and below which another's does.
+constexpr double kBlind = 1.0, kSees = 0.25;
+constexpr int kRounds = 3;  // of weights by errors, and errors by weights
 
 using Picture = std::vector<Vec3d>;
 
@@ -112,6 +116,19 @@ std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width) 
         }
     }
     return errors;
+}
+
+std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual) {
+    const bool blind = verdicts[usual].error > kBlind;
+    std::size_t best = usual;
+    double least = verdicts[usual].loss * kWorthAChange;
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+        const Verdict& v = verdicts[i];
+        if (i == usual || !(v.loss < least) || (blind && v.error > kSees)) continue;
+        least = v.loss;
+        best = i;
+    }
+    return best;
 }
 
 }  // namespace lacuna

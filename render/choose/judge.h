@@ -21,4 +21,14 @@ struct HalfPictures {
 /// light that it never met shows in the distance to the others alone. So s_i is the larger of both.
 std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width);
 
+/// What a trial found of a row.
+struct Verdict {
+    double error = 0.0;  ///< mape of its small picture
+    double loss = 0.0;   ///< time to a given error, in units that only compare
+};
+
+/// The row to take: the usual one where none is clearly better. Where it met hardly any light, rows
+/// that met none look the best; then only one that saw enough takes its place.
+std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual);
+
 }  // namespace lacuna

@@ -186,6 +186,18 @@ TEST(Judge, ManagesFewPicturesAndBlackOnes) {
     for (const double error : errorsOf(black, 64)) EXPECT_EQ(error, 0.0);
 }
 
+TEST(Judge, KeepsTheUsualRowUnlessAnotherIsClearlyBetter) {
+    const auto taken = [](std::initializer_list<Verdict> verdicts) {
+        return rowToTake(std::vector(verdicts), 1);
+    };
+    EXPECT_EQ(taken({{0.3, 0.9}, {0.3, 1.0}, {0.3, 2.0}}), 1u);
+    EXPECT_EQ(taken({{0.3, 0.8}, {0.3, 1.0}, {0.3, 0.7}}), 2u);
+    // Black pictures agree with each other.
+    EXPECT_EQ(taken({{0.9, 0.01}, {1.1, 1.0}, {0.5, 0.02}}), 1u);
+    EXPECT_EQ(taken({{0.9, 0.01}, {1.1, 1.0}, {0.1, 0.02}}), 2u);
+    EXPECT_EQ(taken({{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}), 1u);
+}
+
 TEST(Choices, TravelAsText) {
     const Choice choice{"spcbpt", {"train.paths=4000"}, Sampling::Sobol, "because", {{"bpt", 1.0}}};
     const Choice read = Choice::ofText(choice.text());
