@@ -40,8 +40,21 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
         ->type_name("x0,x1,y0,y1")
         ->group(picture);
-    app.add_option("--exposure", o.exposure, "Stops, for .png only (default: 0)")
-        ->type_name("E")
+    app.add_option("--exposure", o.exposureText,
+                   "Stops, or auto: what there is to see becomes mid-grey; for .png only (default: "
+                   "auto)")
+        ->type_name("E|auto")
+        ->group(picture);
+    app.add_option("--tone", o.toneText,
+                   "What is too bright for a screen fades to white (filmic) or is cut off "
+                   "(standard); for .png only (default: filmic)")
+        ->type_name("standard|filmic")
+        ->group(picture);
+    app.add_option("--png-bits", o.pngBits, "8 or 16 bits per channel; for .png only (default: 8)")
+        ->type_name("N")
+        ->group(picture);
+    app.add_option("--sheet", o.sheet, "All layers of the .exr as a page of small pictures as well")
+        ->type_name("FILE.png")
         ->group(picture);
 
     const std::string effort = "Effort";
@@ -159,6 +172,7 @@ void checkAccuracy(const RenderOptions& o) {
                               : !o.reference.empty()  ? "--reference"
                               : o.displayServer       ? "--display-server"
                               : o.writeEverySeconds   ? "--write-every"
+                              : !o.sheet.empty()      ? "--sheet"
                                                       : nullptr;
     if (o.estimate && other) {
         throw UsageError("--estimate: expected a render that writes no image, found " +
@@ -200,6 +214,19 @@ void checkMethod(RenderOptions& o) {
     if (o.replay) {
         throw UsageError("--replay: expected the method of the picture, found --method auto" +
                          byName);
+    }
+}
+
+/// How a .png is made of the picture, and the page of its layers.
+void parsePng(RenderOptions& o) {
+    o.png.exposure = parseExposure("--exposure", o.exposureText);
+    o.png.tone = parseTone("--tone", o.toneText);
+    o.png.bits = int(o.pngBits.value_or(8));
+    if (o.png.bits != 8 && o.png.bits != 16) {
+        throw UsageError("--png-bits: expected 8 or 16, found " + std::to_string(*o.pngBits));
+    }
+    if (!o.sheet.empty() && endingOf(o.sheet) != ".png") {
+        throw UsageError("--sheet: expected a .png, found '" + o.sheet + "'; choose another name");
     }
 }
 
@@ -309,7 +336,7 @@ void checkOptions(RenderOptions& o) {
     }
     requireRange("--iterations", o.iterations, 1, std::int64_t(kMaxIterations));
     requireRange("--block-iterations", o.blockIterations, 1, std::int64_t(kMaxIterations));
-    requireReal("--exposure", o.exposure, -1000.0, 1000.0, "stops from -1000 to 1000");
+    parsePng(o);
     if (!o.timeText.empty()) o.timeSeconds = parseDuration("--time", o.timeText);
     if (!o.untilText.empty()) o.until = parseUntil(o.untilText);
     if (!o.blocksText.empty()) o.blocks = parseBlocks(o.blocksText);
@@ -332,9 +359,9 @@ void checkOptions(RenderOptions& o) {
     if (o.effects) return;
     checkMethod(o);
     if (o.output.empty() && !o.replay && !o.estimate) nameOutput(o);
-    if (o.techniques && !o.replay && endingOf(o.output) != ".exr") {
-        throw UsageError("--techniques: expected an .exr to hold the layers, found '" + o.output +
-                         "'");
+    if (o.techniques && !o.replay && o.sheet.empty() && endingOf(o.output) != ".exr") {
+        throw UsageError("--techniques: expected an .exr or a --sheet to hold the layers, found '" +
+                         o.output + "'");
     }
 }
 
@@ -345,6 +372,7 @@ const MethodRow& namedRow(const RenderOptions& o) {
 void checkOutputs(const RenderOptions& o) {
     using Named = std::pair<const char*, const std::string*>;
     const Named results[] = {{"-o", &o.output},
+                             {"--sheet", &o.sheet},
                              {"--log", &o.log},
                              {"--json", &o.common.json},
                              {"--checkpoint", &o.checkpoint}};
@@ -375,7 +403,7 @@ void checkOutputs(const RenderOptions& o) {
         }
     }
     if (!o.output.empty() && !o.estimate) requireWritable(o.output);
-    for (const std::string* path : {&o.log, &o.common.json, &o.checkpoint}) {
+    for (const std::string* path : {&o.sheet, &o.log, &o.common.json, &o.checkpoint}) {
         if (!path->empty()) const AtomicFile probe(*path);
     }
 }

@@ -8,6 +8,7 @@
 
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/sampler.h"
+#include "libcore/image/tone.h"
 #include "libcore/methods/registry.h"
 #include "libcore/tool/scene_options.h"
 #include "render/accuracy.h"
@@ -35,11 +36,12 @@ struct RenderOptions : SceneOptions {
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
     std::string timeText, cropText, replayText, samplerText;
+    std::string exposureText = "auto", toneText = "filmic", sheet;
+    std::optional<std::int64_t> pngBits;
     std::string untilText;
     bool countSetup = false, estimate = false;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false, denoise = false;
-    double exposure = 0.0;
     bool listMethods = false, effects = false;
     std::string helpMethod;
     std::string displayServerText, displayLayersText, writeEveryText;
@@ -51,6 +53,7 @@ struct RenderOptions : SceneOptions {
     std::optional<UntilRequest> until;
     Sampling sampling = Sampling::Independent;
     std::optional<PixelRect> crop;
+    PngStyle png;
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;
     std::optional<BlockRange> blocks;

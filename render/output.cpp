@@ -189,6 +189,7 @@ json reportJson(const RenderReport& r) {
         j["estimated_error"][measure] = number(m.error);
         if (!m.doubt.empty()) j["estimate_doubts"][measure] = m.doubt;
     }
+    if (r.exposure) j["exposure"] = *r.exposure;
     if (r.verify) {
         j["verify"] = {{"max_difference", r.verify->maxDifference},
                        {"paths", r.verify->paths},

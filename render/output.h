@@ -50,6 +50,7 @@ struct RenderReport {
     FilmSum::MeanColour mean;
     std::optional<WeightVerifier::Result> verify;
     std::optional<ErrorMeasures> error;  ///< against --reference
+    std::optional<double> exposure;      ///< stops of a .png
 
     std::string sceneHash;
     std::map<std::string, std::string> cacheHashes;

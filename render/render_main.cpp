@@ -88,7 +88,7 @@ void showFirst(const RenderOptions& options, const Image& small) {
     LayeredImage image(small.width, small.height);
     image.setRgb("", small);
     image.attributes["stopped"] = std::string("no: choosing a method");
-    writeImage(options.output, image, options.exposure);
+    writeImage(options.output, image, options.png);
 }
 
 /// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.

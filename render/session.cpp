@@ -8,10 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/error.h"
+#include "libcore/base/number_text.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/bidir/features.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
+#include "libcore/image/sheet.h"
 #include "render/black_picture.h"
 #include "render/block_plan.h"
 #include "render/live/layer_names.h"
@@ -368,14 +370,14 @@ void Session::refreshOutput() {
         if (endingOf(options_.output) == ".exr") {
             writeExr(options_.output, image, ExrCompression::None);  // the last one is compressed
         } else {
-            writeImage(options_.output, image, options_.exposure);
+            writeImage(options_.output, image, options_.png);
         }
     });
 }
 
 /// What is written.
 LayeredImage Session::output(const RenderReport& report, const FilmSum& sum) {
-    const bool layers = endingOf(options_.output) == ".exr";
+    const bool layers = endingOf(options_.output) == ".exr" || !options_.sheet.empty();
     LayeredImage image = composeImage(report, sum, layers ? &still() : nullptr);
     if (options_.blocks) {
         addPart(image, {inputs_, film_.width(), film_.height(), plan_, report_.firstBlock,
@@ -444,6 +446,20 @@ void Session::logRow() {
     }
 }
 
+/// The style of .png with stops, also where `auto` finds them: for the report, and for whoever wants
+/// the next picture alike.
+PngStyle Session::fixedExposure(const LayeredImage& image) {
+    PngStyle png = options_.png;
+    if (endingOf(options_.output) != ".png" && options_.sheet.empty()) return png;
+    if (!png.exposure) {
+        // To hundredths, so that what is said makes the same picture.
+        png.exposure = std::round(png.stopsFor(image.rgb()) * 100.0) / 100.0;
+        progress_.remark("--exposure auto: " + numberText(*png.exposure) + " stops");
+    }
+    report_.exposure = png.exposure;
+    return png;
+}
+
 void Session::save() {
     if (!log_) {
         measure();
@@ -467,10 +483,17 @@ void Session::save() {
     progress_.phase("saving");
     if (live_) live_->showLast(shown(sum));
     const LayeredImage image = output(report_, sum);
+    const PngStyle png = fixedExposure(image);
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
         if (refresh_) refresh_->wait();  // or the older image would come last
-        writeImage(options_.output, image, options_.exposure);
+        writeImage(options_.output, image, png);
+        if (!options_.sheet.empty()) {
+            // A part's sums are no layers.
+            const Canvas sheet =
+                layerSheet(options_.blocks ? composeImage(report_, sum, &still()) : image, png);
+            writePngBytes(options_.sheet, sheet.width(), sheet.height(), sheet.bytes());
+        }
     }
     if (!options_.common.json.empty()) {
         writeJson(options_.common.json, reportJson(report_));

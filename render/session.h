@@ -63,6 +63,7 @@ class Session {
     void finishCheckpoint();
     void measure();
     void logRow();
+    PngStyle fixedExposure(const LayeredImage& image);
     void save();
     void warnIfBlack();
     void warnAboutDefects();

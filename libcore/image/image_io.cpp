@@ -25,14 +25,14 @@ Image readImage(const std::string& path) {
                      ending + "'; convert the image");
 }
 
-void writeImage(const std::string& path, const LayeredImage& image, double exposure) {
+void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& style) {
     const std::string ending = endingOf(path);
     if (ending == ".exr") {
         writeExr(path, image);
     } else if (ending == ".pfm") {
         writePfm(path, image.rgb());
     } else if (ending == ".png") {
-        writePng(path, image.rgb(), exposure);
+        writePng(path, image.rgb(), style);
     } else {
         requireWritable(path);  // throws: one place that says which endings there are
     }

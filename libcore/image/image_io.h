@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/image/image.h"
+#include "libcore/image/tone.h"
 
 namespace lacuna {
 
@@ -14,10 +15,10 @@ namespace lacuna {
 /// read.
 Image readImage(const std::string& path);
 
-/// .exr: every channel and attribute; .pfm: R, G, B; .png: R, G, B times 2^exposure as 8-bit sRGB,
-/// clamped, NaN as black. `exposure` in stops, used for .png only. Atomic.
+/// .exr: every channel and attribute; .pfm: R, G, B; .png: R, G, B as sRGB in that style, which is of
+/// use for .png only; NaN as black. Atomic.
 /// Throws UsageError for another ending, RunError if it cannot be written.
-void writeImage(const std::string& path, const LayeredImage& image, double exposure = 0.0);
+void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& style = {});
 
 /// Throws what writeImage would: UsageError for the ending, RunError if the directory or the file
 /// is not writable. For a check before hours of rendering; leaves no file behind.
@@ -34,9 +35,10 @@ Image readPng(const std::string& path);
 /// for anything else, a file that cannot be read as well.
 bool isOurPng(const std::string& path);
 void writePfm(const std::string& path, const Image& image);
-void writePng(const std::string& path, const Image& image, double exposure);
-/// `rgb`: width * height * 3 bytes, sRGB, as they are to stand in the file.
+void writePng(const std::string& path, const Image& image, const PngStyle& style);
+/// `rgb`: width * height * 3 numbers of 8 or 16 bits (the high byte first), sRGB, as they are to
+/// stand in the file. Throws std::invalid_argument for another number of bytes.
 void writePngBytes(const std::string& path, int width, int height,
-                   const std::vector<std::uint8_t>& rgb);
+                   const std::vector<std::uint8_t>& rgb, int bits = 8);
 
 }  // namespace lacuna

@@ -1,34 +1,17 @@
 #include <stb/stb_image.h>
-#include <stb/stb_image_write.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 
-#include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/image/file_bytes.h"
 #include "libcore/image/image_io.h"
+#include "libcore/image/tone.h"
 
 namespace lacuna {
 namespace {
-
-// IEC 61966-2-1, both ways, on [0, 1].
-double srgbToLinear(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-double linearToSrgb(double v) {
-    return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
-}
-
-std::uint8_t encode(double v) {
-    if (!(v > 0.0)) return 0;  // NaN too
-    return std::uint8_t(std::lround(255.0 * linearToSrgb(std::min(v, 1.0))));
-}
 
 /// `T` is the stored integer; `from` holds 3 * pixels of them. One table entry per code value.
 template <class T>
@@ -56,21 +39,7 @@ std::string reason() {
     return text && *text ? text : "a damaged one";
 }
 
-constexpr std::size_t kHeadBytes = 33;  // signature and IHDR
-/// A chunk tEXt, "Software" "Lacuna", with its length and checksum.
-constexpr std::array<std::uint8_t, 27> kSoftware{0,   0,   0,   15,  't', 'E',  'X',  't',  'S',
-                                                 'o', 'f', 't', 'w', 'a', 'r',  'e',  0,    'L',
-                                                 'a', 'c', 'u', 'n', 'a', 0xb7, 0xb6, 0x2e, 0xc0};
-
 }  // namespace
-
-bool isOurPng(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, kHeadBytes + kSoftware.size()> bytes{};
-    if (!file.read(bytes.data(), bytes.size())) return false;
-    return std::equal(kSoftware.begin(), kSoftware.end(), bytes.begin() + kHeadBytes,
-                      [](std::uint8_t a, char b) { return a == std::uint8_t(b); });
-}
 
 Image readPng(const std::string& path) {
     const std::vector<std::uint8_t> bytes = readFileBytes(path);
@@ -99,44 +68,6 @@ Image readPng(const std::string& path) {
         read(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3));
     }
     return image;
-}
-
-void writePngBytes(const std::string& path, int width, int height,
-                   const std::vector<std::uint8_t>& rgb) {
-    if (rgb.size() != std::size_t(width) * std::size_t(height) * 3) {
-        throw std::invalid_argument("PNG: bytes do not match the size");
-    }
-    // stb counts in int and holds the picture three times over.
-    if (rgb.size() > std::size_t(std::numeric_limits<int>::max()) / 2) {
-        throw RunError(path + ": expected at most 2^30 bytes for a PNG, found " +
-                       std::to_string(rgb.size()) + "; write an .exr");
-    }
-    AtomicFile file(path);
-    // Once, with all bytes. No exception may pass through stb: C code calls this back. AtomicFile
-    // remembers the failure.
-    const auto write = [](void* context, void* data, int bytes) noexcept {
-        try {
-            AtomicFile& to = *static_cast<AtomicFile*>(context);
-            to.write(data, kHeadBytes);
-            to.write(kSoftware.data(), kSoftware.size());
-            to.write(static_cast<const char*>(data) + kHeadBytes, std::size_t(bytes) - kHeadBytes);
-        } catch (const Error&) {
-        }
-    };
-    if (!stbi_write_png_to_func(write, &file, width, height, 3, rgb.data(), width * 3)) {
-        throw RunError(path + ": expected to encode a PNG, found: out of memory; write an .exr");
-    }
-    file.commit();
-}
-
-void writePng(const std::string& path, const Image& image, double exposure) {
-    const double scale = std::exp2(exposure);
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(image.pixels.size() * 3);
-    for (const Rgb& p : image.pixels) {
-        for (const float v : {p.r, p.g, p.b}) bytes.push_back(encode(v * scale));
-    }
-    writePngBytes(path, image.width, image.height, bytes);
 }
 
 }  // namespace lacuna

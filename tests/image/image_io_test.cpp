@@ -2,6 +2,7 @@
 #include "libcore/image/image_io.h"
 
 #include <stb/stb_image_write.h>
+#include <zlib.h>
 
 #include <bit>
 #include <cstring>
@@ -94,10 +95,10 @@ TEST_F(ImageIo, PngIsSrgbAfterExposure) {
     EXPECT_EQ(read.at(1, 0).b, 1.0f);
     EXPECT_EQ(read.at(2, 0), Rgb(0, 0, 1));
     EXPECT_NEAR(read.at(3, 0).r, 0.18116f, 1e-5);  // code 118
-    writeImage(path("b.png"), test::layered(image), 2.0);
+    writeImage(path("b.png"), test::layered(image), PngStyle{.exposure = 2.0});
     EXPECT_EQ(readImage(path("b.png")).at(1, 0).r, 1.0f);
     EXPECT_NEAR(readImage(path("b.png")).at(1, 0).g, 0.004f, 4e-4);
-    writeImage(path("c.png"), test::layered(image), -1.0);
+    writeImage(path("c.png"), test::layered(image), PngStyle{.exposure = -1.0});
     EXPECT_NEAR(readImage(path("c.png")).at(0, 0).g, 0.5029f, 1e-4);
 }
 
@@ -108,6 +109,55 @@ TEST_F(ImageIo, PngCodesSurvive) {
     writeImage(path("b.png"), test::layered(readImage(path("a.png"))));
     EXPECT_EQ(test::slurp(path("a.png")), test::slurp(path("b.png")));
     EXPECT_THROW(writePngBytes(path("c.png"), 16, 15, bytes), std::invalid_argument);
+}
+
+TEST_F(ImageIo, PngOfSixteenBits) {
+    Image image(257, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const float v = float(i) / float(image.pixels.size());
+        image.pixels[i] = {v, v * v, 1.0f - v};
+    }
+    const Image back = [&] {
+        writeImage(path("a.png"), test::layered(image), PngStyle{.bits = 16});
+        return readImage(path("a.png"));
+    }();
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        EXPECT_NEAR(back.pixels[i].r, image.pixels[i].r, 2e-5f);
+        EXPECT_NEAR(back.pixels[i].g, image.pixels[i].g, 2e-5f);
+        EXPECT_NEAR(back.pixels[i].b, image.pixels[i].b, 2e-5f);
+    }
+    EXPECT_TRUE(isOurPng(path("a.png")));
+    EXPECT_THROW(writePngBytes(path("c.png"), 1, 1, {1, 2, 3, 4, 5, 6}, 12), std::invalid_argument);
+}
+
+/// Lengths and checksums, which stb_image does not look at; also where the pixels take many chunks.
+TEST_F(ImageIo, PngChunksAreIntact) {
+    for (const int bits : {8, 16}) {
+        writeImage(path("a.png"), test::layered(test::randomImage(301, 200, 3)),
+                   PngStyle{.bits = bits});
+        const test::Bytes bytes = test::slurp(path("a.png"));
+        const auto at = [&](std::size_t i) {
+            std::uint32_t value = 0;
+            for (std::size_t k = 0; k < 4; ++k) value = value << 8 | std::uint8_t(bytes[i + k]);
+            return value;
+        };
+        std::vector<std::string> types;
+        std::size_t i = 8;
+        while (i + 12 <= bytes.size()) {
+            const std::uint32_t length = at(i);
+            ASSERT_LE(i + 12 + length, bytes.size());
+            types.emplace_back(&bytes[i + 4], 4);
+            EXPECT_EQ(at(i + 8 + length),
+                      crc32(0, reinterpret_cast<const Bytef*>(&bytes[i + 4]), 4 + length));
+            i += 12 + length;
+        }
+        EXPECT_EQ(i, bytes.size());
+        ASSERT_GT(types.size(), 4u);
+        EXPECT_EQ(types[0], "IHDR");
+        EXPECT_EQ(types[1], "tEXt");
+        EXPECT_EQ(types[3], "IDAT");
+        EXPECT_EQ(types.back(), "IEND");
+    }
 }
 
 TEST_F(ImageIo, HdrWithinItsPrecision) {

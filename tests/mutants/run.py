@@ -6,6 +6,7 @@
     python3 tests/mutants/run.py --all            all of them: hours
     python3 tests/mutants/run.py --quick NAME     by all quick tests, not only those that should notice
     python3 tests/mutants/run.py --write NAME     and put what notices into the table of tests/README.md
+    python3 tests/mutants/run.py --seconds 60 NAME  tests that then still run are stopped: they noticed
     python3 tests/mutants/run.py --check          whether faults.py and the table in tests/README.md are
                                                   up to date with the sources; nothing is built
 
@@ -16,19 +17,18 @@ Exit 0: every fault was noticed (or costs quality alone, as faults.py says).
 """
 
 import argparse
+import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from faults import FAULTS
 
 ROOT = Path(__file__).resolve().parents[2]
-SECONDS = 900  # for one fault's tests: one that does not end is noticed, too
-
-
 README = ROOT / "tests" / "README.md"
 HEAD = "| name | fault | noticed by |\n|---|---|---|\n"
 
@@ -118,14 +118,15 @@ def copy_sources(to):
 
 
 def run(command, cwd, seconds=None):
-    """The output, and the exit code: none where it did not end in time."""
+    """The output, and the exit code: none where it did not end in time. Tests start renders, which hold the
+    pipe as well: what is stopped is the session of them all."""
     process = subprocess.Popen([str(c) for c in command], cwd=cwd, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, errors="replace")
+                               stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
     try:
         output, _ = process.communicate(timeout=seconds)
         return output, process.returncode
     except BaseException as e:
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)
         output, _ = process.communicate()
         if isinstance(e, subprocess.TimeoutExpired):
             return output, None
@@ -133,18 +134,19 @@ def run(command, cwd, seconds=None):
 
 
 def failed_tests(output, code, program):
-    """Names of the tests that failed; what else went wrong in brackets."""
+    """Names of the tests that failed or did not end; what else went wrong in brackets."""
     names = sorted(set(re.findall(r"\[  FAILED  \] ([\w/]+\.\w[\w/]*)", output)))
     if code is None:
-        return names + [f"[{program} did not end]"]
+        begun = re.findall(r"\[ RUN      \] (\S+)", output)
+        return names + [f"{begun[-1]} (does not end)" if begun else f"[{program} did not end]"]
     if code != 0 and not names:
         return [f"[{program} ended with {code}]"]
     return names
 
 
 class Build:
-    def __init__(self, directory, jobs):
-        self.jobs = jobs
+    def __init__(self, directory, jobs, seconds):
+        self.jobs, self.seconds = jobs, seconds
         if directory:
             self.sources, self.directory = ROOT, Path(directory).resolve()
             return
@@ -168,12 +170,14 @@ class Build:
             print("\n".join(output.split("\n")[-30:]))
             return None
         if quick:
-            output, _ = run(["ctest", "--test-dir", self.directory, "-LE", "slow"], self.sources)
+            output, _ = run(["ctest", "--test-dir", self.directory, "-LE", "slow", "--timeout", self.seconds],
+                            self.sources)
             return re.findall(r"^\s+\d+ - (\S+) \(", output, re.M)
-        found = []
+        found, end = [], time.monotonic() + self.seconds
         for folder, patterns in fault.tests.items():
             program = self.directory / "tests" / f"test_{folder}"
-            output, code = run([program, f"--gtest_filter={gtest_filter(patterns)}", "--gtest_brief=1"], self.directory, SECONDS)
+            output, code = run([program, f"--gtest_filter={gtest_filter(patterns)}"], self.directory,
+                               max(1, end - time.monotonic()))
             if re.search(r"^\[=+\] 0 tests", output, re.M):
                 fail(f"{fault.name}: no test of {program.name} is called {patterns}")
             found += failed_tests(output, code, program.name)
@@ -199,6 +203,7 @@ def main():
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--build", metavar="DIR")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seconds", type=int, default=600, metavar="N")  # for one fault's tests
     options = parser.parse_args()
     if options.list:
         width = max(len(f.name) for f in FAULTS)
@@ -218,7 +223,7 @@ def main():
 
     # An interrupt takes the fault out again.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    build = Build(options.build, options.jobs)
+    build = Build(options.build, options.jobs, options.seconds)
     unnoticed = 0
     for fault in chosen:
         found = build.try_fault(fault, options.quick)

@@ -215,7 +215,7 @@ TEST_F(RenderOutput, OtherFormats) {
         "@room.gltf --method pt --width 24 --height 16 --iterations 2 --quiet ";
     ASSERT_EQ(run(start + "-o @a.exr").exitCode, 0);
     ASSERT_EQ(run(start + "-o @a.pfm").exitCode, 0);
-    ASSERT_EQ(run(start + "-o @a.png --exposure 1").exitCode, 0);
+    ASSERT_EQ(run(start + "-o @a.png --exposure 1 --tone standard").exitCode, 0);
     const Image exr = readImage(path("a.exr")), pfm = readImage(path("a.pfm"));
     EXPECT_EQ(exr.pixels, pfm.pixels);
     const Image png = readImage(path("a.png"));
