@@ -64,6 +64,7 @@ class Session {
     void measure();
     void logRow();
     void save();
+    int saveUnfinished();
     void warnIfBlack();
     void warnAboutDefects();
     std::string replayCommand(const std::string& replay) const;

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "libcore/base/error.h"
+#include "libcore/tool/early_interrupt.h"
 
 namespace lacuna {
 namespace {
@@ -148,6 +149,7 @@ Failure failureOfCurrentException() {
 
 int runTool(const std::function<int()>& body) {
     std::set_terminate(endWithOneLine);
+    endAtInterrupts();
     ignoreSignalsOfWriting();
     try {
         const int exitCode = body();
