@@ -176,6 +176,7 @@ void checkSceneOptions(SceneOptions& o) {
 
 std::string sceneArguments(const SceneOptions& o) {
     Arguments a;
+    a.add("--cache", o.common.cacheDirectory);
     a.add("--env", o.environment);
     a.add("--env-rotate", o.environmentRotation);
     a.add("--env-scale", o.environmentScale);

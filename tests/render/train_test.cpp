@@ -223,11 +223,11 @@ TEST_F(TrainTool, TheNamedCommandMakesTheCache) {
     std::string command = refused.err.substr(begin + std::string("run lacuna-train").size());
     command.resize(command.find_last_not_of(" \n") + 1);
     for (const char* part :
-         {"--paths 5000", "--max-depth 4", "--width 24", "--height 16"}) {
+         {"--paths 5000", "--max-depth 4", "--width 24", "--height 16", "--cache"}) {
         EXPECT_NE(command.find(part), std::string::npos) << command;
     }
     EXPECT_EQ(command.find("--epochs"), std::string::npos) << command;  // the default
-    ASSERT_EQ(train(command + " --quiet --cache @cache").exitCode, 0);
+    ASSERT_EQ(train(command + " --quiet").exitCode, 0);
     EXPECT_EQ(run(render() + " --max-depth 4 --quiet").exitCode, 0);
     std::string twice = render() + " --max-depth 4 --quiet";
     twice.replace(twice.find("--width 24 --height 16"), 22, "--width 48 --height 32");
