@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "libcore/image/exr.h"
 #include "tests/render/render_tool.h"
@@ -141,6 +142,7 @@ TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
     ASSERT_EQ(run(noise + " -o @b.exr --seed 2").exitCode, 0);
     ASSERT_EQ(mkfifo(path("map.png").c_str(), 0600), 0);
     const int reader = open(path("map.png").c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const Outcome o = runAndSignal("@a.exr @b.exr --error-map @map.png", {signal},
                                        milliseconds(600), LACUNA_COMPARE);
@@ -150,17 +152,26 @@ TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
     close(reader);
 }
 
-/// The picture is finished then, whatever comes.
+/// The picture is finished then, whatever comes. Here it goes into a pipe, which is not read at first.
 TEST_F(RenderInterrupt, WhileSavingChangesNothing) {
-    const std::string tool =
-        std::string("env LD_PRELOAD=") + LACUNA_SLOW_DISK + " " + LACUNA_RENDER;
-    const Outcome o = runAndSignal(
-        "@room.gltf -o @out.exr --method pt --width 700 --height 500 --iterations 1 --json @o.json",
-        {SIGINT}, milliseconds(1000), tool.c_str());
+    ASSERT_EQ(mkfifo(path("out.png").c_str(), 0600), 0);
+    const int reader = open(path("out.png").c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
+    const pid_t child = start(
+        "@room.gltf -o @out.png --method pt --width 400 --height 300 --iterations 1 --json "
+        "@o.json");
+    std::this_thread::sleep_for(milliseconds(1200));
+    kill(child, SIGINT);
+    std::this_thread::sleep_for(milliseconds(500));
+    fcntl(reader, F_SETFL, 0);
+    char bytes[4096];
+    while (::read(reader, bytes, sizeof bytes) > 0) {
+    }
+    const Outcome o = end(child);
+    close(reader);
     EXPECT_EQ(o.exitCode, 0) << o.err;
     EXPECT_NE(o.err.find("the picture is finished"), std::string::npos) << o.err;
     EXPECT_EQ(json("o.json")["stopped"], "iterations");
-    EXPECT_NO_THROW(readExrLayers(path("out.exr")));
 }
 
 TEST_F(RenderInterrupt, TheSecondExitsAtOnce) {
