@@ -16,7 +16,9 @@ bool isSame(const std::string& a, const std::string& b) {
     std::error_code error;
     if (fs::is_character_file(a, error)) return false;
     if (fs::equivalent(a, b, error)) return true;
-    const fs::path one = fs::weakly_canonical(a, error), other = fs::weakly_canonical(b, error);
+    // A relative path of which nothing is there would stay relative.
+    const fs::path one = fs::weakly_canonical(fs::absolute(a, error), error),
+                   other = fs::weakly_canonical(fs::absolute(b, error), error);
     return one == other;
 }
 
