@@ -31,8 +31,8 @@ CurveLog::CurveLog(const std::string& path, std::uint64_t iteration) : path_(pat
     for (std::size_t i = 0; i < kRayKinds; ++i) header += std::string(",rays_") + name(RayKind(i));
     header += ",phases";
     std::error_code ignored;
-    isFile_ = std::filesystem::is_regular_file(path, ignored) ||
-              !std::filesystem::exists(path, ignored);
+    isFile_ =
+        std::filesystem::is_regular_file(path, ignored) || !std::filesystem::exists(path, ignored);
     std::vector<std::string> rows;
     std::ifstream before;
     if (isFile_ && iteration > 0) before.open(path);

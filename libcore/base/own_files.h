@@ -12,8 +12,8 @@ struct NamedFile {
     std::string path;  ///< empty: not asked for
 };
 
-/// Throws UsageError where a result and an input, or two results, are one file, by whatever paths and
-/// links. Devices (/dev/null, /dev/stdout) may well be named twice.
+/// Throws UsageError where a result and an input, or two results, are one file, by whatever paths
+/// and links. Devices (/dev/null, /dev/stdout) may well be named twice.
 void requireOwnFiles(std::span<const NamedFile> results, std::span<const NamedFile> inputs);
 
 }  // namespace lacuna

@@ -4,8 +4,9 @@
 namespace lacuna {
 
 /// From now on SIGINT, SIGTERM and SIGHUP say that nothing is written and end the process with
-/// kInterruptedExit; files are whole or not there (atomic_file.h). What is ignored (nohup) stays so. An
-/// InterruptGuard takes over, and behind it the work is done: the first signal then changes nothing.
+/// kInterruptedExit; files are whole or not there (atomic_file.h). A SIGHUP that is ignored (nohup)
+/// stays so. An InterruptGuard takes over, and behind it the work is done: the first signal then
+/// changes nothing.
 void endAtInterrupts();
 
 }  // namespace lacuna
