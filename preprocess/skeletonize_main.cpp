@@ -5,6 +5,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/base/own_files.h"
 #include "libcore/base/parallel.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
@@ -39,6 +40,11 @@ int skeletonizeTool(int argc, const char* const* argv) {
     const VoxelSettings settings = voxels.read();
     if (!settings.domain.empty()) parseDomain(settings.domain);
     checkBuildOptions(options);
+    const NamedFile results[] = {
+        {"-o", options.output}, {"--json", options.common.json}, {"--graph", graphPath}};
+    const NamedFile sources[] = {
+        {"the scene", options.scene}, {"--env", options.environment}, {"--voxels", voxelPath}};
+    requireOwnFiles(results, sources);
     if (!graphPath.empty()) const AtomicFile probe(graphPath);
 
     const ThreadPool pool(options.common.threads);

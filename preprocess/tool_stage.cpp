@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "libcore/base/atomic_file.h"
-#include "libcore/base/error.h"
+#include "libcore/base/own_files.h"
 
 namespace lacuna {
 
@@ -24,12 +24,9 @@ void addBuildOptions(CLI::App& app, BuildOptions& options) {
 void checkBuildOptions(BuildOptions& options) {
     checkSceneOptions(options);
     const std::string& json = options.common.json;
-    if (!json.empty() && (json == options.output || json == options.scene)) {
-        throw UsageError("--json: expected a file of its own, found " + json);
-    }
-    if (!options.output.empty() && options.output == options.scene) {
-        throw UsageError("-o: expected a file of its own, found the scene, " + options.scene);
-    }
+    const NamedFile results[] = {{"-o", options.output}, {"--json", json}};
+    const NamedFile inputs[] = {{"the scene", options.scene}, {"--env", options.environment}};
+    requireOwnFiles(results, inputs);
     if (!json.empty()) const AtomicFile probe(json);
 }
 

@@ -68,8 +68,7 @@ bool BlockMaker::beginBlock(std::uint64_t iteration, const std::atomic<bool>& ca
 bool BlockMaker::render(std::uint64_t iteration, std::span<Rgb> pixels,
                         const std::atomic<bool>& cancel, Totals& totals) {
     const Stopwatch watch(totals.seconds);
-    if (!integrator_->render(std::uint32_t(iteration), pixels,
-                             techniques_ ? kNeverCancelled : cancel, totals.statistics)) {
+    if (!integrator_->render(std::uint32_t(iteration), pixels, cancel, totals.statistics)) {
         return false;
     }
     if (proposals_) proposals_->countIteration();

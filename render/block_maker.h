@@ -57,8 +57,8 @@ class BlockMaker {
     /// False if cancelled; then the block is not open.
     bool beginBlock(std::uint64_t iteration, const std::atomic<bool>& cancel, Totals& totals);
     /// Renders an iteration of the open block into `pixels`, one per pixel of the crop. Where blocks
-    /// are whole, they must come in order. False if cancelled; then `pixels` are not finished.
-    /// Iterations with layers are never cancelled: a part of one could not be taken out again.
+    /// are whole, they must come in order. False if cancelled; then `pixels` are not finished,
+    /// and layers, if there are some, hold parts of it that cannot be taken out again.
     bool render(std::uint64_t iteration, std::span<Rgb> pixels, const std::atomic<bool>& cancel,
                 Totals& totals);
 

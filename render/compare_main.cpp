@@ -7,6 +7,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/base/own_files.h"
 #include "libcore/image/error_map.h"
 #include "libcore/image/error_metrics.h"
 #include "libcore/image/image_io.h"
@@ -42,6 +43,10 @@ void declare(CLI::App& app, Options& options) {
 }
 
 void requireOutputs(const Options& options) {
+    const NamedFile results[] = {{"--error-map", options.errorMap},
+                                 {"--json", options.common.json}};
+    const NamedFile inputs[] = {{"the image", options.image}, {"the reference", options.reference}};
+    requireOwnFiles(results, inputs);
     if (!options.errorMap.empty()) {
         if (endingOf(options.errorMap) != ".png") {
             throw UsageError(options.errorMap + ": expected an error map ending in .png, found '" +

@@ -1,17 +1,36 @@
 #include "render/crew.h"
 
+#include <algorithm>
+
 #include "libcore/base/stopwatch.h"
+#include "render/grace.h"
 
 namespace lacuna {
+
+namespace {
+constexpr std::chrono::milliseconds kGrace{3000};
+}
 
 Alone::Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPool& pool,
              Progress& progress)
     : maker_(maker), interrupted_(interrupt.requested()), pool_(pool), progress_(progress) {}
 
 bool Alone::advance(Film& film, Totals& totals) {
-    if (stopped_) return false;
-    const bool first = film.iterations() == 0;
-    const std::atomic<bool>& cancel = first ? kNeverCancelled : interrupted_;
+    if (stopped_ || cut_) return false;
+    if (film.iterations() > 0) {
+        // Layers hold parts of an iteration that could not be taken out again.
+        return make(film, totals, maker_.layers().empty() ? interrupted_ : kNeverCancelled);
+    }
+    bool made = false;
+    {
+        const Grace grace(interrupted_, cut_, kGrace);
+        made = make(film, totals, cut_);
+    }
+    if (made) cut_ = false;  // it ended while the time did
+    return made;
+}
+
+bool Alone::make(Film& film, Totals& totals, const std::atomic<bool>& cancel) {
     if (!begun_) {
         if (maker_.warmupIterations() > 0) progress_.phase("warm-up");
         begun_ = maker_.beginBlock(film.nextIteration(), cancel, totals);
@@ -20,7 +39,10 @@ bool Alone::advance(Film& film, Totals& totals) {
     }
     pixels_.resize(std::size_t(film.width()) * std::size_t(film.height()));
     Totals ofIteration;
-    if (!maker_.render(film.nextIteration(), pixels_, cancel, ofIteration)) return false;
+    if (!maker_.render(film.nextIteration(), pixels_, cancel, ofIteration)) {
+        if (cut_) addUnfinished(film);
+        return false;
+    }
     {
         const Stopwatch watch(ofIteration.seconds);
         film.add(pixels_, pool_);
@@ -30,6 +52,12 @@ bool Alone::advance(Film& film, Totals& totals) {
     iterationSeconds_ = iterationSeconds_ > 0.0 ? 0.5 * (iterationSeconds_ + ofIteration.seconds)
                                                 : ofIteration.seconds;
     return true;
+}
+
+/// Layers have parts of an iteration in them that cannot be told apart from what is missing.
+void Alone::addUnfinished(Film& film) {
+    const auto black = [](const Rgb& value) { return isBlack(value); };
+    if (maker_.layers().empty() && !std::ranges::all_of(pixels_, black)) film.add(pixels_, pool_);
 }
 
 }  // namespace lacuna

@@ -23,12 +23,15 @@ class Crew {
     virtual bool busy() const { return false; }
     /// Whether a member was asked to end, who is not asked here.
     virtual bool interrupted() const { return false; }
+    /// Whether the first iteration was not finished in the time that an interrupt leaves it. The
+    /// film then has what there is of it, as an iteration, or is empty where there is nothing.
+    virtual bool cutShort() const { return false; }
     /// What a member takes for an iteration; 0: not known yet.
     virtual double iterationSeconds() const = 0;
 };
 
-/// One process. The film's first iteration is made whatever happens, so that there is something to
-/// save.
+/// One process. The film's first iteration has three seconds to end behind an interrupt, so that
+/// there is something to save.
 class Alone final : public Crew {
   public:
     /// All references must outlive the crew.
@@ -36,11 +39,16 @@ class Alone final : public Crew {
           Progress& progress);
     bool advance(Film& film, Totals& totals) override;
     void stop() override { stopped_ = true; }
+    bool cutShort() const override { return cut_; }
     double iterationSeconds() const override { return iterationSeconds_; }
 
   private:
+    bool make(Film& film, Totals& totals, const std::atomic<bool>& cancel);
+    void addUnfinished(Film& film);
+
     BlockMaker& maker_;
     const std::atomic<bool>& interrupted_;
+    std::atomic<bool> cut_{false};
     const ThreadPool& pool_;
     Progress& progress_;
     bool stopped_ = false;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numeric>
 #include <vector>
 
+#include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/text_list.h"
 
@@ -28,9 +30,13 @@ CurveLog::CurveLog(const std::string& path, std::uint64_t iteration) : path_(pat
     std::string header = "iteration,seconds,setup_seconds,rays,mae,rmse,mape,relmse";
     for (std::size_t i = 0; i < kRayKinds; ++i) header += std::string(",rays_") + name(RayKind(i));
     header += ",phases";
+    std::error_code ignored;
+    isFile_ =
+        std::filesystem::is_regular_file(path, ignored) || !std::filesystem::exists(path, ignored);
     std::vector<std::string> rows;
-    std::ifstream before(path);
-    for (std::string line; iteration > 0 && std::getline(before, line);) {
+    std::ifstream before;
+    if (isFile_ && iteration > 0) before.open(path);
+    for (std::string line; before && std::getline(before, line);) {
         unsigned long long number = 0;
         double seconds = 0.0;
         if (std::sscanf(line.c_str(), "%llu,%lf,", &number, &seconds) != 2) continue;
@@ -39,20 +45,29 @@ CurveLog::CurveLog(const std::string& path, std::uint64_t iteration) : path_(pat
         lastIteration_ = number;
         wants(seconds);
     }
-    before.close();
-    file_.open(path, std::ios::trunc);
-    file_ << header << '\n';
-    for (const std::string& row : rows) file_ << row << '\n';
-    file_.flush();
-    check();
+    if (!isFile_) device_.open(path);
+    append(header);
+    for (const std::string& row : rows) append(row);
+    writeAll();
 }
 
-void CurveLog::check() {
-    if (!file_) {
-        throw RunError(path_ +
-                       ": expected to write the curve, found it not writable or the disk full; "
-                       "choose another --log or make room");
+/// A device takes it at once, a file with the others by writeAll().
+void CurveLog::append(const std::string& line) {
+    if (isFile_) {
+        text_ += line + '\n';
+        return;
     }
+    device_ << line << std::endl;
+    if (!device_) {
+        throw RunError(path_ +
+                       ": expected to write the curve, found it not writable or full; choose "
+                       "another --log");
+    }
+}
+
+/// Ten rows per decade of seconds are never many.
+void CurveLog::writeAll() {
+    if (isFile_) writeFileAtomically(path_, text_);
 }
 
 bool CurveLog::wants(double seconds) {
@@ -64,23 +79,23 @@ bool CurveLog::wants(double seconds) {
 
 void CurveLog::write(const CurveRow& row) {
     std::string text = std::to_string(row.iteration);
-    const auto append = [&](const std::string& column) {
+    const auto add = [&](const std::string& column) {
         text += ',';
         text += column;
     };
-    append(number(row.seconds));
-    append(number(row.setupSeconds));
-    append(std::to_string(std::accumulate(row.rays.begin(), row.rays.end(), std::uint64_t(0))));
+    add(number(row.seconds));
+    add(number(row.setupSeconds));
+    add(std::to_string(std::accumulate(row.rays.begin(), row.rays.end(), std::uint64_t(0))));
     const ErrorMeasures e = row.error.value_or(ErrorMeasures{});
     for (const double measure : {e.mae, e.rmse, e.mape, e.relmse}) {
-        append(row.error ? number(measure) : "");
+        add(row.error ? number(measure) : "");
     }
-    for (const std::uint64_t rays : row.rays) append(std::to_string(rays));
-    append(joined(row.phaseSeconds, ";",
-                  [](const auto& phase) { return phase.first + "=" + number(phase.second); }));
+    for (const std::uint64_t rays : row.rays) add(std::to_string(rays));
+    add(joined(row.phaseSeconds, ";",
+               [](const auto& phase) { return phase.first + "=" + number(phase.second); }));
     lastIteration_ = row.iteration;
-    file_ << text << std::endl;  // flushed: the row survives a crash
-    check();
+    append(text);
+    writeAll();
 }
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Error against time, row by row, so that a crash loses no more than the row being written.
+// Error against time, row by row: the file is whole after each of them, whatever happens.
 #pragma once
 
 #include <cstdint>
@@ -40,10 +40,13 @@ class CurveLog {
     std::uint64_t lastIteration() const { return lastIteration_; }
 
   private:
-    void check();
+    void append(const std::string& line);
+    void writeAll();
 
     std::string path_;
-    std::ofstream file_;
+    bool isFile_ = true;  ///< else a pipe or a device, which takes each line once
+    std::string text_;    ///< of the file
+    std::ofstream device_;
     std::optional<int> lastTenth_;  // floor(10 log10 seconds)
     std::uint64_t lastIteration_ = 0;
 };

@@ -8,6 +8,7 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/base/own_files.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/tool/tool.h"
@@ -47,13 +48,10 @@ void requireOutputs(const Options& options) {
                          ": expected a picture ending in .exr; choose another "
                          "name");
     }
-    for (const std::string& part : options.parts) {
-        if (part == options.output || part == options.common.json) {
-            throw UsageError(part +
-                             ": expected a result of its own, found a part; choose another "
-                             "name");
-        }
-    }
+    const NamedFile results[] = {{"-o", options.output}, {"--json", options.common.json}};
+    std::vector<NamedFile> inputs;
+    for (const std::string& part : options.parts) inputs.push_back({"a part", part});
+    requireOwnFiles(results, inputs);
     requireWritable(options.output);
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
 }

@@ -4,11 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
+#include "libcore/base/own_files.h"
 #include "libcore/base/text_list.h"
 #include "libcore/image/image_io.h"
 #include "render/choose/choice.h"
@@ -370,38 +370,14 @@ const MethodRow& namedRow(const RenderOptions& o) {
 }
 
 void checkOutputs(const RenderOptions& o) {
-    using Named = std::pair<const char*, const std::string*>;
-    const Named results[] = {{"-o", &o.output},
-                             {"--sheet", &o.sheet},
-                             {"--log", &o.log},
-                             {"--json", &o.common.json},
-                             {"--checkpoint", &o.checkpoint}};
-    const Named inputs[] = {
-        {"the scene", &o.scene}, {"--reference", &o.reference}, {"--env", &o.environment}};
-    const auto same = [](const std::string& a, const std::string& b) {
-        if (a.empty() || b.empty()) return false;
-        std::error_code ignored;
-        // Devices (/dev/null, /dev/stdout) may well be named twice.
-        return (a == b && !std::filesystem::is_character_file(a, ignored)) ||
-               (std::filesystem::is_regular_file(a, ignored) &&
-                std::filesystem::equivalent(a, b, ignored));
-    };
-    for (const Named& result : results) {
-        for (const Named& input : inputs) {
-            if (same(*result.second, *input.second)) {
-                throw UsageError(std::string(result.first) +
-                                 ": expected a file of its own, found " + input.first + ", " +
-                                 *input.second);
-            }
-        }
-        for (const Named& other : results) {
-            if (&other != &result && same(*result.second, *other.second)) {
-                throw UsageError(std::string(result.first) +
-                                 ": expected a file of its own, found " + other.first + ", " +
-                                 *other.second);
-            }
-        }
-    }
+    const NamedFile results[] = {{"-o", o.output},
+                                 {"--sheet", o.sheet},
+                                 {"--log", o.log},
+                                 {"--json", o.common.json},
+                                 {"--checkpoint", o.checkpoint}};
+    const NamedFile inputs[] = {
+        {"the scene", o.scene}, {"--reference", o.reference}, {"--env", o.environment}};
+    requireOwnFiles(results, inputs);
     if (!o.output.empty() && !o.estimate) requireWritable(o.output);
     for (const std::string* path : {&o.sheet, &o.log, &o.common.json, &o.checkpoint}) {
         if (!path->empty()) const AtomicFile probe(*path);

@@ -124,8 +124,8 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
     });
     if (!checked) return 0;
 
-    const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
+    const ThreadPool pool(options.common.threads);
     Progress progress(options.common.quiet, interrupt.requested());
     if (!ranks.leads()) progress.mute();
     std::optional<Stage> stage;

@@ -179,12 +179,29 @@ void Session::loadReference() {
 
 int Session::run() {
     render();
+    if (crew_->cutShort()) return saveUnfinished();
     if (options_.estimate) return printCost();
     if (checkpoint_) finishCheckpoint();
     save();
     warnAboutDefects();
     if (!failure_.empty()) throw RunError(failure_);
     return report_.stopped == "interrupt" ? kInterruptedExit : 0;
+}
+
+/// What there is of the first iteration is a picture for people, and no more: no part, no checkpoint
+/// and no figures can be made of it.
+int Session::saveUnfinished() {
+    if (film_.iterations() == 0 || options_.blocks || options_.estimate) {
+        throw Error(kInterruptedExit,
+                    "interrupted: the first iteration was not finished: nothing "
+                    "was written");
+    }
+    report_.warnings.push_back(
+        "the first iteration was not finished: pixels are missing or too dark");
+    progress_.warning("warning: " + options_.output + ": " + report_.warnings.back());
+    log_.reset();
+    save();
+    return kInterruptedExit;
 }
 
 /// The next iteration is taken to last as long as the last ones. It is begun if it ends in time, or
@@ -197,6 +214,7 @@ bool Session::mayBegin() const {
 
 /// Empty: nothing yet.
 std::string Session::whyStop() {
+    if (crew_->cutShort()) return "interrupt";
     const bool some = film_.iterations() > 0;
     if (some && (interrupt_.requested() || crew_->interrupted())) return "interrupt";
     if (isAccurate()) return "error";

@@ -65,6 +65,7 @@ class Session {
     void logRow();
     PngStyle fixedExposure(const LayeredImage& image);
     void save();
+    int saveUnfinished();
     void warnIfBlack();
     void warnAboutDefects();
     std::string replayCommand(const std::string& replay) const;

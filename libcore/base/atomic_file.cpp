@@ -1,12 +1,15 @@
 #include "libcore/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <system_error>
 
 #include "libcore/base/error.h"
@@ -21,11 +24,59 @@ std::string directoryOf(const std::string& path) {
     return parent.empty() ? "." : parent;
 }
 
-/// Where the bytes end up: links followed, unless they point nowhere.
+/// Where the bytes end up: links followed, to where there is nothing yet as well.
 std::string resolved(const std::string& path) {
-    std::error_code ignored;
-    const fs::path real = fs::canonical(path, ignored);
-    return ignored ? path : real.string();
+    constexpr int kMostLinks = 40;  // as the system has it
+    fs::path at = path;
+    std::error_code error;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(at, error)); ++i) {
+        const fs::path to = fs::read_symlink(at, error);
+        if (error) return path;
+        at = at.parent_path() / to;  // an absolute one replaces it
+    }
+    const fs::path real = fs::canonical(at, error);
+    return error ? at.string() : real.string();
+}
+
+constexpr const char* kTemporaryStart = ".lacuna-";
+constexpr const char* kTemporaryEnd = ".tmp";
+
+/// Whoever writes a temporary file holds its lock, which ends with the process: what can be locked
+/// was left by one that was killed. Nothing is known of file systems without locks.
+bool lockOwn(int fd) {
+    return ::flock(fd, LOCK_EX | LOCK_NB) == 0 || errno == EOPNOTSUPP || errno == ENOLCK;
+}
+
+/// What killed processes left in the directory.
+void removeLeftovers(const std::string& directory) {
+    std::error_code error;
+    for (fs::directory_iterator at(directory, error), end; !error && at != end;
+         at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(kTemporaryStart) || !name.ends_with(kTemporaryEnd)) continue;
+        const int fd = ::open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+        if (fd < 0) continue;
+        if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());
+        ::close(fd);
+    }
+}
+
+/// A pipe with a name. Opened once and kept until the process ends: its reader would take a check
+/// whether it can be written for the end of what comes. -1 and errno ENXIO where nobody reads it,
+/// which an ordinary open would wait for.
+int openPipe(const std::string& path) {
+    static std::mutex mutex;
+    static std::map<std::string, int> open;
+    const std::lock_guard lock(mutex);
+    const auto known = open.find(path);
+    int kept = known == open.end() ? -1 : known->second;
+    if (kept < 0) {
+        kept = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        if (kept < 0) return -1;
+        ::fcntl(kept, F_SETFL, 0);  // writing waits for the reader
+        open[path] = kept;
+    }
+    return ::fcntl(kept, F_DUPFD_CLOEXEC, 0);
 }
 
 /// A file without a name, which a killed process cannot leave behind; -1 where the file system has
@@ -40,8 +91,8 @@ int openNameless(const std::string& directory) {
 /// Two at a time take each other's; each file is whole.
 int nameOver(int fd, const std::string& directory, const std::string& target) {
     const std::string link = "/proc/self/fd/" + std::to_string(fd);
-    const std::string name =
-        directory + "/.lacuna-" + std::to_string(std::hash<std::string>{}(target)) + ".tmp";
+    const std::string name = directory + "/" + kTemporaryStart +
+                             std::to_string(std::hash<std::string>{}(target)) + kTemporaryEnd;
     for (int attempt = 0; attempt < 1000; ++attempt) {
         ::unlink(name.c_str());
         if (::linkat(AT_FDCWD, link.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
@@ -62,11 +113,16 @@ int nameOver(int fd, const std::string& directory, const std::string& target) {
 /// Opens a new file beside the target. The name does not grow with the target's (NAME_MAX), and is
 /// created with O_EXCL so that two tools never share one.
 int openNamed(const std::string& directory, std::string& name) {
-    const std::string stem = directory + "/.lacuna-" + std::to_string(::getpid()) + "-";
+    const std::string stem = directory + "/" + kTemporaryStart + std::to_string(::getpid()) + "-";
     for (int attempt = 0;; ++attempt) {
-        name = stem + std::to_string(attempt) + ".tmp";
+        name = stem + std::to_string(attempt) + kTemporaryEnd;
         const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST || attempt == 9999) return fd;
+        if (fd < 0 && errno == EEXIST && attempt < 9999) continue;
+        if (fd < 0) return fd;
+        // Somebody who cleaned up may have taken it for a leftover before it had its lock.
+        struct stat info {};
+        if (lockOwn(fd) && ::fstat(fd, &info) == 0 && info.st_nlink > 0) return fd;
+        ::close(fd);
     }
 }
 
@@ -75,6 +131,7 @@ int openNamed(const std::string& directory, std::string& name) {
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(resolved(path)) {
     struct stat info {};
     const bool exists = ::stat(target_.c_str(), &info) == 0;
+    if (!exists && errno == ELOOP) fail("expected a link that leads somewhere", ELOOP);
     if (path.empty() || path.back() == '/' || (exists && S_ISDIR(info.st_mode))) {
         fail("expected the name of a file", EISDIR);
     }
@@ -82,11 +139,22 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(resolved(
         fail("expected a file that may be overwritten", errno);
     }
     if (exists && !S_ISREG(info.st_mode)) {
-        fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+        if (S_ISFIFO(info.st_mode)) {
+            fd_ = openPipe(target_);
+            if (fd_ < 0 && errno == ENXIO) {
+                throw RunError(path +
+                               ": expected someone to read the pipe, found nobody; start the "
+                               "reader first");
+            }
+        } else {
+            fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+        }
     } else {
         const std::string directory = directoryOf(target_);
+        removeLeftovers(directory);
         fd_ = openNameless(directory);
         nameless_ = fd_ >= 0;
+        if (nameless_) lockOwn(fd_);
         if (!nameless_) {
             std::string name;
             fd_ = openNamed(directory, name);

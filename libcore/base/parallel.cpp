@@ -6,7 +6,13 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <exception>
+#include <future>
+#include <string>
 #include <thread>
+#include <vector>
+
+#include "libcore/base/error.h"
 
 namespace lacuna {
 
@@ -18,8 +24,40 @@ int processors() {
     return std::max(1, int(std::thread::hardware_concurrency()));
 }
 
-int resolved(int threads) {
-    return threads > 0 ? threads : processors();
+/// More only wait for each other: 4096 threads on two processors take 50 times as long as two.
+int sensible(int threads) {
+    constexpr int kAlways = 64, kPerProcessor = 4;
+    const int available = processors();
+    if (threads <= 0) return available;
+    return std::min(threads, std::max(kAlways, kPerProcessor * available));
+}
+
+/// oneTBB starts threads where nobody can catch what it throws if there is no room for another, so
+/// that is found out before.
+void requireRoomForThreads(int count) {
+    std::promise<void> allStarted;
+    const std::shared_future<void> wait = allStarted.get_future().share();
+    std::vector<std::thread> probes;
+    probes.reserve(std::size_t(count));
+    bool room = true;
+    try {
+        for (int i = 1; i < count; ++i) probes.emplace_back([wait] { wait.wait(); });
+    } catch (const std::exception&) {  // no process or no memory left
+        room = false;
+    }
+    const std::size_t started = probes.size() + 1;
+    allStarted.set_value();
+    for (std::thread& probe : probes) probe.join();
+    if (room) return;
+    throw RunError("--threads: expected to start " + std::to_string(count) +
+                   " threads, found room for " + std::to_string(started) +
+                   "; use fewer, or raise the limits of processes or memory (ulimit)");
+}
+
+int checked(int threads) {
+    const int count = sensible(threads);
+    requireRoomForThreads(count);
+    return count;
 }
 }  // namespace
 
@@ -31,7 +69,7 @@ struct ThreadPool::Impl {
     tbb::task_arena arena;
 };
 
-ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>(resolved(threads))) {}
+ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>(checked(threads))) {}
 ThreadPool::~ThreadPool() = default;
 
 int ThreadPool::threads() const {

@@ -9,11 +9,13 @@
 namespace lacuna {
 
 /// The worker threads of one tool run. `threads` = 0 means one for each processor that the process
-/// may run on. Keeps the floating point environment of the constructing thread in every worker
+/// may run on; never more than 64, or four for each of them if that is more.
+/// Keeps the floating point environment of the constructing thread in every worker
 /// (Embree would otherwise leave flush-to-zero set in some of them, so that denormals depended on
 /// the order of calls).
 class ThreadPool {
   public:
+    /// Throws RunError where the system has no room for that many threads.
     explicit ThreadPool(int threads = 0);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;

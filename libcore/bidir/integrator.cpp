@@ -64,7 +64,10 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
         PhaseTimer timer(statistics, "light paths");
         LightPass::Purpose purpose = poolAlone(StreamKind::LightPath);
         if (techniques.splats) purpose.splats = setup_.lightPaths;
-        if (!lightPass_.run(iteration, purpose, pool_)) return false;
+        if (!lightPass_.run(iteration, purpose, pool_)) {
+            std::fill(pixels.begin(), pixels.end(), Rgb{});  // a share of the light, everywhere
+            return false;
+        }
     }
     if (pool_.subpaths() > 0) {
         statistics.hold("light vertices", pool_.vertices().size());

@@ -25,7 +25,8 @@ class BidirIntegrator {
 
     /// Renders one iteration, one eye path per pixel of the crop, into `pixels` (overwritten).
     /// Those of a block must come in order, behind its beginBlock(), where the method learns from
-    /// them. Returns false, leaving `pixels` unfinished, if cancelled.
+    /// them. Returns false if cancelled: `pixels` then hold the eye paths that were made, or
+    /// nothing where light paths were not finished.
     bool render(std::uint32_t iteration, std::span<Rgb> pixels, const std::atomic<bool>& cancel,
                 IterationStatistics& statistics);
 

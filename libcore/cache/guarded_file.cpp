@@ -1,5 +1,11 @@
 #include "libcore/cache/guarded_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -28,15 +34,39 @@ bool readAll(const std::string& path, std::string& bytes) {
     return !file.bad();
 }
 
+/// Holds the folder's lock while a pair is written or read, or there would be the file of one process
+/// beside the checksum of another. Where folders have no locks (some network file systems) such a
+/// pair is refused and made again.
+class PairLock {
+  public:
+    /// `how`: LOCK_EX to write, LOCK_SH to read.
+    PairLock(const std::string& path, int how) {
+        const std::string parent = std::filesystem::path(path).parent_path().string();
+        fd_ = ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        while (fd_ >= 0 && ::flock(fd_, how) != 0 && errno == EINTR) {
+        }
+    }
+    ~PairLock() {
+        if (fd_ >= 0) ::close(fd_);
+    }
+    PairLock(const PairLock&) = delete;
+    PairLock& operator=(const PairLock&) = delete;
+
+  private:
+    int fd_ = -1;
+};
+
 }  // namespace
 
 void writeGuarded(const std::string& path, std::string_view bytes) {
+    const PairLock lock(path, LOCK_EX);
     writeFileAtomically(path, bytes);
     writeFileAtomically(path + ".xxh3", sidecarText(bytes));
 }
 
 std::string readGuarded(const std::string& path, const std::string& remedy) {
     std::string bytes, sidecar;
+    const PairLock lock(path, LOCK_SH);
     if (!readAll(path, bytes)) {
         throw InputError(path + ": expected a cache, found no such file; " + remedy);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "libcore/base/extent.h"
 #include "libcore/gltf/guard.h"
 
 namespace lacuna::gltf {
@@ -87,8 +88,9 @@ void readPicture(const Document& document, const json& extras, SceneDescription&
     scene.width = members.integer("width", 1, 65536);
     scene.height = members.integer("height", 1, 65536);
     scene.maxDepth = members.integer("max_depth", 1, 1000);
-    scene.aperture = members.number("aperture", 0.0, 1e30, "a radius from 0 to 1e30");
-    scene.focus = members.number("focus", 1e-30, 1e30, "a distance from 1e-30 to 1e30");
+    scene.aperture = members.number("aperture", 0.0, kFarthest, "a radius from 0 to 1e17");
+    scene.focus =
+        members.number("focus", kNearestFocus, kFarthest, "a distance from 1e-15 to 1e17");
     members.warnAboutOthers({"width", "height", "max_depth", "aperture", "focus"}, warnings);
 }
 

@@ -48,19 +48,27 @@ void readCoded(Document& document, Picture& picture) {
     picture.coded = picture.owned.span();
 }
 
-bool isPngOrJpeg(std::span<const std::uint8_t> bytes) {
-    constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
-    const auto startsWith = [&](std::span<const std::uint8_t> magic) {
-        return bytes.size() > magic.size() &&
-               std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-    };
-    return startsWith(kPng) || startsWith(kJpeg);
+constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
+
+bool startsWith(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> magic) {
+    return bytes.size() > magic.size() &&
+           std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+/// The fewest bytes that hold so many texels: deflate makes 1032 of one at most, and a JPEG has a bit
+/// for each block of 64 at least. A header that claims more would have them all allocated.
+std::uint64_t fewestBytes(std::span<const std::uint8_t> coded, std::uint64_t texels) {
+    constexpr std::size_t kDepth = 24, kColourType = 25;  // in a PNG's header
+    constexpr std::uint64_t kSamples[] = {1, 1, 3, 1, 2, 1, 4};
+    if (!startsWith(coded, kPng)) return texels / (64 * 8);
+    const std::uint64_t samples = kSamples[std::min<std::size_t>(coded[kColourType], 6)];
+    return texels * coded[kDepth] * samples / (8 * 1032);
 }
 
 /// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
 void readSize(const Document& document, Picture& picture) {
     const auto coded = picture.coded;
-    if (!isPngOrJpeg(coded)) {
+    if (!startsWith(coded, kPng) && !startsWith(coded, kJpeg)) {
         refuse(document.file, picture.place, "a PNG or JPEG image", "something else",
                "convert the image");
     }
@@ -79,6 +87,13 @@ void readSize(const Document& document, Picture& picture) {
                std::to_string(picture.width) + " x " + std::to_string(picture.height),
                "scale the image down");
     }
+    if (coded.size() < fewestBytes(coded, texels)) {
+        refuse(document.file, picture.place,
+               "at least " + std::to_string(fewestBytes(coded, texels)) + " bytes for " +
+                   std::to_string(picture.width) + " x " + std::to_string(picture.height) +
+                   " texels",
+               std::to_string(coded.size()), "save the image again");
+    }
 }
 
 void decodePicture(const Document& document, Picture& picture) {
@@ -90,9 +105,9 @@ void decodePicture(const Document& document, Picture& picture) {
         stbi_load_from_memory(picture.coded.data(), int(picture.coded.size()), &width, &height,
                               &channels, STBI_rgb_alpha));
     if (!texels || width != picture.width || height != picture.height) {
-        const char* reason = texels ? nullptr : stbi_failure_reason();
+        const char* reason = texels ? nullptr : stbi_failure_reason();  // which may be nothing
         refuse(document.file, picture.place, "a PNG or JPEG image",
-               std::string("a damaged one (") + (reason ? reason : "size") + ")",
+               reason && *reason ? std::string("a damaged one (") + reason + ")" : "a damaged one",
                "save the image again");
     }
     const std::size_t size = std::size_t(width) * std::size_t(height) * 4;

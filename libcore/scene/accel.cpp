@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <string>
 
 #include "libcore/base/error.h"
@@ -29,6 +30,7 @@ struct Accel::Impl {
     std::vector<RTCScene> meshScenes;  // per mesh, null where it is not instanced
     std::vector<FilterData> filterData;
     HoleTest holeTest;
+    RTCError errorCode = RTC_ERROR_NONE;  ///< the first one
     std::string error;
 
     ~Impl() {
@@ -39,11 +41,11 @@ struct Accel::Impl {
         if (device) rtcReleaseDevice(device);
     }
 
-    void require(bool ok) const {
-        if (!ok || !error.empty()) {
-            throw RunError("ray acceleration structure: Embree failed: " +
-                           (error.empty() ? std::string("unknown error") : error));
-        }
+    /// Embree knows its own lack of memory, but not always that of the threads that it starts.
+    void require(RTCError code, const std::string& text) const {
+        if (code == RTC_ERROR_NONE) return;
+        if (code == RTC_ERROR_OUT_OF_MEMORY || text.empty()) throw std::bad_alloc();
+        throw RunError("ray acceleration structure: expected Embree to build it, found: " + text);
     }
 
     RTCGeometry makeTriangles(const AccelMesh& mesh) const {
@@ -99,10 +101,16 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
     a.holeTest = std::move(holeTest);
     a.filterData.reserve(objects.size());
     a.device = rtcNewDevice(nullptr);
-    a.require(a.device != nullptr);
+    if (!a.device) throw std::bad_alloc();  // it says "unknown error" then
     rtcSetDeviceErrorFunction(
         a.device,
-        [](void* self, RTCError, const char* text) { static_cast<Impl*>(self)->error = text; }, &a);
+        [](void* self, RTCError code, const char* text) {
+            Impl& impl = *static_cast<Impl*>(self);
+            if (impl.errorCode != RTC_ERROR_NONE) return;
+            impl.errorCode = code;
+            impl.error = text ? text : "";
+        },
+        &a);
 
     a.scene = a.newScene();
     a.meshScenes.resize(meshes.size(), nullptr);
@@ -138,7 +146,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
         }
         rtcCommitScene(a.scene);
     });
-    a.require(true);
+    a.require(a.errorCode, a.error);
 }
 
 Accel::~Accel() = default;

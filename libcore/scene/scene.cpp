@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
+#include "libcore/base/extent.h"
+#include "libcore/base/number_text.h"
 #include "libcore/image/image_io.h"
 #include "libcore/scene/emitters.h"
 
@@ -19,6 +21,14 @@ std::vector<Rgb> absorptions(std::span<const Material> materials) {
         any = any || !isBlack(m.absorption);
     }
     return any ? all : std::vector<Rgb>{};
+}
+
+/// `what`: that is so far from the scene's middle.
+void requireNear(const SceneDescription& scene, const std::string& what, double distance) {
+    if (distance <= kFarthest) return;
+    throw InputError(scene.file + ": " + what + ": expected to be within " + numberText(kFarthest) +
+                     " of the scene's middle, found " + numberText(distance) +
+                     "; scale the scene down, or take out what is far away");
 }
 
 std::unique_ptr<Accel> makeAccel(const BakedScene& baked, const Surfaces& surfaces,
@@ -53,6 +63,11 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
       surfaces_(description_, baked_),
       shading_(description_, baked_.meshes),
       absorption_(absorptions(description_.materials)) {
+    requireNear(description_, "the outermost vertex", double(baked_.radius));
+    for (const PunctualLight& light : description_.lights) {
+        if (light.kind == PunctualLight::Kind::Directional) continue;
+        requireNear(description_, "a lamp", length(light.position - baked_.centre));
+    }
     if (const auto& e = description_.environment) {
         environment_ = std::make_unique<Environment>(readImage(e->file), e->scale,
                                                      e->rotationDegrees, e->file);
@@ -72,7 +87,10 @@ Camera Scene::makeCamera(const std::string& name, Camera::Film film, Camera::Len
     }
     std::string names;
     for (const CameraDescription& c : cameras) {
-        if (name.empty() || c.name == name) return Camera(c, baked_.centre, film, lens);
+        if (name.empty() || c.name == name) {
+            requireNear(description_, "the camera", length(c.toWorld.m[3] - baked_.centre));
+            return Camera(c, baked_.centre, film, lens);
+        }
         names += (names.empty() ? "'" : ", '") + c.name + "'";
     }
     throw UsageError("camera: expected one of " + names + ", found '" + name + "'");

@@ -27,14 +27,16 @@ class Scene {
   public:
     /// Bakes meshes that are used once into world space, keeps the others as Embree instances,
     /// builds lights, tables and hierarchies. Degenerate triangles are dropped. Throws InputError
-    /// for an environment that cannot be read, RunError if memory runs out.
+    /// for an environment that cannot be read and for what is farther out than kFarthest, RunError if
+    /// memory runs out.
     Scene(SceneDescription description, const ThreadPool& pool);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
     /// Replaces nothing, decides nothing: the camera of that name, or the first. Throws InputError
-    /// if the scene has no camera, UsageError if none has that name (both list what there is).
+    /// if the scene has no camera or has it farther out than kFarthest, UsageError if none has that
+    /// name (both list what there is).
     Camera makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const;
 
     const SceneDescription& description() const { return description_; }

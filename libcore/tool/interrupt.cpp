@@ -2,6 +2,10 @@
 
 #include <unistd.h>
 
+#include <string_view>
+
+#include "libcore/tool/early_interrupt.h"
+
 namespace lacuna {
 namespace {
 
@@ -9,20 +13,47 @@ namespace {
 std::atomic<bool> interruptRequested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not take a lock");
 
+std::atomic<bool> workBegun{false};
+
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
 extern "C" void lacunaOnInterrupt(int) {
+    if (!workBegun) {
+        constexpr std::string_view kText = "interrupted: nothing is written\n";
+        const auto ignored = ::write(STDERR_FILENO, kText.data(), kText.size());
+        (void)ignored;
+        _exit(kInterruptedExit);
+    }
     if (interruptRequested.exchange(true)) _exit(kInterruptedExit);
+}
+
+/// Leaves a hang-up alone that is ignored: nohup. An interrupt that is ignored is not: scripts start
+/// what runs in the background so.
+void handle(int number) {
+    struct sigaction action {};
+    if (number == SIGHUP && sigaction(SIGHUP, nullptr, &action) == 0 &&
+        action.sa_handler == SIG_IGN) {
+        return;
+    }
+    action = {};
+    action.sa_handler = lacunaOnInterrupt;
+    action.sa_flags = SA_RESTART;  // no library of ours has to know about EINTR
+    sigemptyset(&action.sa_mask);
+    sigaction(number, &action, nullptr);
 }
 
 }  // namespace
 
+void endAtInterrupts() {
+    for (const int number : kSignals) handle(number);
+}
+
 InterruptGuard::InterruptGuard() {
     interruptRequested = false;
-    struct sigaction action {};
-    action.sa_handler = lacunaOnInterrupt;
-    action.sa_flags = SA_RESTART;  // no library of ours has to know about EINTR
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, &oldInt_);
-    sigaction(SIGTERM, &action, &oldTerm_);
+    workBegun = true;
+    sigaction(SIGINT, nullptr, &oldInt_);
+    sigaction(SIGTERM, nullptr, &oldTerm_);
+    for (const int number : kSignals) handle(number);
 }
 
 InterruptGuard::~InterruptGuard() {

@@ -122,14 +122,24 @@ std::string Progress::line() const {
     return text;
 }
 
+namespace {
+/// What a render does at an interrupt, by what it does now and how many iterations are done.
+const char* interruptOfRender(const std::string& phase, std::uint64_t done) {
+    if (phase.starts_with("preparing") || phase.starts_with("choosing")) return kNothingWritten;
+    if (phase.starts_with("saving") || phase == "looking for light") {
+        return "the picture is finished and is being saved (interrupted again: exit at once)";
+    }
+    if (done > 0) return "interrupted: saving what there is (again: exit at once)";
+    return "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there "
+           "is "
+           "of it is saved (again: exit at once)";
+}
+}  // namespace
+
 void Progress::sayInterrupt() {
     if (quiet_ || interruptSaid_ || !interrupted_) return;
     interruptSaid_ = true;
-    print(onInterrupt_ ? onInterrupt_
-          : iterations_.done > 0
-              ? "interrupted: saving what there is (again: exit at once)"
-              : "interrupted: no iteration is complete yet, the first one will be finished "
-                "and saved (again: exit at once)");
+    print(onInterrupt_ ? onInterrupt_ : interruptOfRender(phase_, iterations_.done));
 }
 
 void Progress::run() {

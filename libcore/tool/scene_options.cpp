@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
+#include "libcore/base/extent.h"
 #include "libcore/base/number_text.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/image/image_io.h"
@@ -165,8 +166,8 @@ void checkSceneOptions(SceneOptions& o) {
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
     requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
     // The bounds of the scene's extras: products of what lies inside are floats still.
-    requireReal("--aperture", o.aperture, 0.0, 1e30, "a radius from 0 to 1e30");
-    requireReal("--focus", o.focus, 1e-30, 1e30, "a distance from 1e-30 to 1e30");
+    requireReal("--aperture", o.aperture, 0.0, kFarthest, "a radius from 0 to 1e17");
+    requireReal("--focus", o.focus, kNearestFocus, kFarthest, "a distance from 1e-15 to 1e17");
     requireReal("--env-rotate", o.environmentRotation, -1e6, 1e6, "an angle in degrees up to 1e6");
     requireReal("--env-scale", o.environmentScale, 0.0, 1e30, "a factor from 0 to 1e30");
     requireReal("--tolerance", o.tolerance, 0.0, kMaxTolerance, "a share from 0 to 0.1");
@@ -175,6 +176,7 @@ void checkSceneOptions(SceneOptions& o) {
 
 std::string sceneArguments(const SceneOptions& o) {
     Arguments a;
+    a.add("--cache", o.common.cacheDirectory);
     a.add("--env", o.environment);
     a.add("--env-rotate", o.environmentRotation);
     a.add("--env-scale", o.environmentScale);

@@ -1,14 +1,21 @@
 #include "libcore/tool/tool.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string_view>
+#include <system_error>
 
 #include "libcore/base/error.h"
+#include "libcore/tool/early_interrupt.h"
 
 namespace lacuna {
 namespace {
@@ -52,12 +59,35 @@ void checkValues(const CLI::Option& option) {
     }
 }
 
+/// What a thread says that the system does not let start: oneTBB's has no type of its own.
+bool isLackOfThreads(const std::exception& e) {
+    const auto* system = dynamic_cast<const std::system_error*>(&e);
+    return (system && system->code() == std::errc::resource_unavailable_try_again) ||
+           std::string_view(e.what()).starts_with("pthread_create");
+}
+
+/// For what is thrown where nobody can catch it: in threads of libraries, in destructors.
+[[noreturn]] void endWithOneLine() {
+    static std::atomic_flag ending = ATOMIC_FLAG_INIT;
+    while (ending.test_and_set()) pause();  // another thread has the word
+    if (!std::current_exception()) std::abort();
+    const Failure failure = failureOfCurrentException();
+    // Threads are still at work: nothing is destroyed. Files without a commit have no name.
+    _exit(report(failure.text, failure.exitCode));
+}
+
+/// Writing to a file that may not grow, or to nobody, fails like any other writing then.
+void ignoreSignalsOfWriting() {
+    for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
+}
+
 }  // namespace
 
 void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.add_option("--cache", options.cacheDirectory, "Directory of caches (default: NAME.cache)")
         ->type_name("DIR");
-    app.add_option("--threads", options.threads, "Number of threads (default: all)")
+    app.add_option("--threads", options.threads,
+                   "Number of threads (default: all; at most 64, or 4 for each processor)")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
     app.add_option("--seed", options.seed, "Seed of all random numbers (default: 1)")
@@ -106,6 +136,11 @@ Failure failureOfCurrentException() {
     } catch (const std::bad_alloc&) {
         return {1, "memory: expected more, found none left; use a smaller image or scene"};
     } catch (const std::exception& e) {
+        if (isLackOfThreads(e)) {
+            return {1,
+                    "threads: expected to start another, found no room for it; use fewer "
+                    "(--threads), or raise the limits of processes or memory (ulimit)"};
+        }
         return {1, "internal error: " + std::string(e.what()) + "; please report it"};
     } catch (...) {
         return {1, "internal error of unknown kind; please report it"};
@@ -113,6 +148,9 @@ Failure failureOfCurrentException() {
 }
 
 int runTool(const std::function<int()>& body) {
+    std::set_terminate(endWithOneLine);
+    endAtInterrupts();
+    ignoreSignalsOfWriting();
     try {
         const int exitCode = body();
         std::cout.flush();

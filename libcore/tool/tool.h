@@ -44,7 +44,8 @@ Failure failureOfCurrentException();
 
 /// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and the
 /// code of its kind: Error its own, everything else 1. Results that could not reach stdout are a
-/// failure (1) as well.
+/// failure (1) as well. What libraries throw in threads of theirs ends the same way. A file that
+/// may not grow (ulimit -f) or a pipe that nobody reads is an error of writing and no signal.
 int runTool(const std::function<int()>& body);
 
 }  // namespace lacuna

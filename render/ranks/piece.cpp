@@ -44,7 +44,8 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
     for (std::uint64_t i = 0; i < work.count; ++i) {
         const bool must = work.first && i == 0;
         if (!must && stop()) break;
-        if (!maker_.render(work.begin + i, pixels_, must ? kNeverCancelled : interrupted_, totals))
+        const bool whole = must || !maker_.layers().empty();
+        if (!maker_.render(work.begin + i, pixels_, whole ? kNeverCancelled : interrupted_, totals))
             break;
         auto one = std::make_shared<FilmSum>(FilmSum::ofIteration(pixels_, width_, pool_));
         tree.add({inBlock + i, 1, std::move(one)}, &pool_);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "libcore/base/error.h"
+#include "libcore/base/own_files.h"
 #include "libcore/tool/interrupt.h"
 #include "render/study/execute.h"
 #include "render/study/page.h"
@@ -56,6 +57,9 @@ int runStudy(int argc, const char* const* argv) {
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
 
+    const NamedFile results[] = {{"--summary", options.summary}, {"--json", options.common.json}};
+    const NamedFile inputs[] = {{"the study", options.study}};
+    requireOwnFiles(results, inputs);
     Study study = readStudy(options.study, options.quick);
     if (options.common.threads > 0) study.threads = options.common.threads;
     const std::string renderer = rendererBesideUs();

@@ -7,10 +7,14 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
+#include "libcore/cache/guarded_file.h"
 #include "libcore/cache/skeleton_file.h"
 #include "libcore/cache/voxel_file.h"
 
@@ -151,6 +155,22 @@ TEST(Cache, damagedFilesAreRefused) {
     expectRefused(read, "a file without a checksum");
     std::filesystem::remove(path);
     expectRefused(read, "no file");
+}
+
+/// Two processes that prepare the same: the file of one never lies beside the checksum of the other.
+TEST(Cache, pairsOfTwoWritersFitTogether) {
+    const Directory d;
+    const std::string path = d.file("pair.vdb");
+    writeGuarded(path, "first");
+    std::vector<std::jthread> writers;
+    for (const char letter : {'a', 'b'}) {
+        writers.emplace_back([&path, letter] {
+            for (std::size_t n = 1; n <= 40; ++n) writeGuarded(path, std::string(n, letter));
+        });
+    }
+    for (int n = 0; n < 40; ++n) EXPECT_NO_THROW(readGuarded(path, "do it again"));
+    writers.clear();
+    EXPECT_NO_THROW(readGuarded(path, "do it again"));
 }
 
 /// Every input is part of the name; a newline in a value is none of the stamp's text.

@@ -448,6 +448,9 @@ TEST(Texture, SizesAreCappedBeforeAnythingIsAllocated) {
     for (const std::size_t at : {16ul, 20ul}) large[at + 2] = 0x4E, large[at + 3] = 0x20;
     large[25] = 0;
     expectRefused(withImage(large), {"images[0]", "at most 268435456 texels", "20000 x 20000"});
+    // 16,384 x 16,384, which would take a gigabyte, in a hundred bytes.
+    for (const std::size_t at : {16ul, 20ul}) large[at + 2] = 0x40, large[at + 3] = 0;
+    expectRefused(withImage(large), {"images[0]", "at least 260111 bytes", "16384 x 16384"});
 }
 
 TEST(Texture, SamplersAndSourcesAreChecked) {

@@ -1,7 +1,10 @@
 #include "libcore/base/atomic_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -139,10 +142,50 @@ TEST_F(AtomicFileTest, LinksAndDevices) {
     EXPECT_TRUE(fs::is_symlink(path("link")));
     EXPECT_EQ(text(path("real")), "new");
 
+    // One that points nowhere yet as well, and through others.
+    fs::create_directory(path("folder"));
+    fs::create_symlink("folder/later", path("dangling"));
+    fs::create_symlink(path("dangling"), path("twice"));
+    writeFileAtomically(path("twice"), "first");
+    EXPECT_TRUE(fs::is_symlink(path("twice")));
+    EXPECT_TRUE(fs::is_symlink(path("dangling")));
+    EXPECT_EQ(text(path("folder/later")), "first");
+    fs::create_symlink("round", path("round"));
+    EXPECT_THROW(writeFileAtomically(path("round"), "x"), RunError);
+
     writeFileAtomically("/dev/null", "into the void");
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
     EXPECT_NE(messageOf<RunError>([] { writeFileAtomically("/dev/full", "x"); }).find("No space"),
               std::string::npos);
+}
+
+/// `kill -9` leaves them where the file system has no files without names.
+TEST_F(AtomicFileTest, LeftoversOfKilledProcessesAreRemoved) {
+    test::spill(path(".lacuna-123-0.tmp"), "left");
+    test::spill(path(".lacuna-456.tmp"), "being written");
+    test::spill(path(".lacuna-456.tmp.txt"), "somebody's");
+    const int writer = ::open(path(".lacuna-456.tmp").c_str(), O_WRONLY);
+    ASSERT_EQ(::flock(writer, LOCK_EX | LOCK_NB), 0);
+    writeFileAtomically(path("a"), "x");
+    EXPECT_EQ(listing(), (Names{".lacuna-456.tmp", ".lacuna-456.tmp.txt", "a"}));
+    ::close(writer);
+    writeFileAtomically(path("a"), "x");
+    EXPECT_EQ(listing(), (Names{".lacuna-456.tmp.txt", "a"}));
+}
+
+TEST_F(AtomicFileTest, PipesWithoutAReaderAreRefusedAtOnce) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    EXPECT_NE(messageOf<RunError>([&] { AtomicFile f(path("pipe")); }).find("start the reader"),
+              std::string::npos);
+    const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    { const AtomicFile probe(path("pipe")); }
+    char text[8] = {};
+    EXPECT_EQ(::read(reader, text, sizeof text), -1);  // not ended, though nobody writes now
+    EXPECT_EQ(errno, EAGAIN);
+    writeFileAtomically(path("pipe"), "whole");
+    EXPECT_EQ(::read(reader, text, sizeof text), 5);
+    EXPECT_STREQ(text, "whole");
+    ::close(reader);
 }
 
 TEST_F(AtomicFileTest, LongNamesAndUsualPermissions) {

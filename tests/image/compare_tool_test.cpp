@@ -111,6 +111,21 @@ TEST_F(CompareTool, UsageErrors) {
     expectFailure("@a.jpg @b.exr", 2, ".jpg");
 }
 
+/// By any path to it.
+TEST_F(CompareTool, ResultsNeverReplaceImages) {
+    std::filesystem::copy(path("a.exr"), path("a.png"));  // the ending of an error map
+    const test::Bytes before = test::slurp(path("a.png"));
+    std::filesystem::create_symlink("a.png", path("link.png"));
+    for (const char* more :
+         {"--error-map @a.png", "--error-map @./a.png", "--error-map @link.png", "--json @a.png"}) {
+        const Outcome o = run(std::string("@a.png @a.png ") + more);
+        EXPECT_EQ(o.exitCode, 2) << more << o.err;
+        EXPECT_NE(o.err.find("file of its own"), std::string::npos) << o.err;
+        EXPECT_EQ(test::slurp(path("a.png")), before);
+    }
+    EXPECT_EQ(run("@a.exr @b.exr --error-map @m.png --json @./m.png").exitCode, 2);
+}
+
 TEST_F(CompareTool, OutputsThatCannotBeWritten) {
     expectFailure("@a.exr @b.exr --error-map @none/m.png", 1, "No such file");
     expectFailure("@a.exr @b.exr --json @none/m.json", 1, "No such file");

@@ -71,6 +71,7 @@ pid_t RenderTool::start(const std::string& arguments, const char* tool) const {
         const int errFile = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
         dup2(outFile, STDOUT_FILENO);
         dup2(errFile, STDERR_FILENO);
+        signal(SIGHUP, SIG_DFL);  // nohup would have it ignored
         execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
         _exit(127);
     }

@@ -1,6 +1,12 @@
 // Limits of time, and interrupts.
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "libcore/image/exr.h"
 #include "tests/render/render_tool.h"
@@ -56,7 +62,7 @@ TEST_F(RenderTimeSlow, AnIterationThatWouldEndFarPastTheLimitIsNotBegun) {
 }
 
 TEST_F(RenderInterrupt, SavesWhatThereIs) {
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const Outcome o = runAndSignal(
             "@room.gltf -o @out.exr --method pt --width 24 --height 16 --time 1h --json @o.json "
             "--log @o.csv",
@@ -80,21 +86,92 @@ TEST_F(RenderInterrupt, SavesWhatThereIs) {
 }
 
 TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
-    // One iteration of a few seconds, interrupted in its middle.
+    // One iteration of a second or so, interrupted in its middle.
     const Outcome o = runAndSignal(
-        "@room.gltf -o @out.exr --method bpt --width 900 --height 600 --time 1h --json @o.json",
-        {SIGINT}, milliseconds(700));
+        "@room.gltf -o @out.exr --method bpt --width 600 --height 400 --time 1h --json @o.json",
+        {SIGINT}, milliseconds(400));
     EXPECT_EQ(o.exitCode, 130) << o.err;
     EXPECT_GE(json("o.json")["iterations"].get<int>(), 1);
     EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
     // The picture is the same as that many undisturbed iterations.
     const auto values = *readExrLayers(path("out.exr")).find("R");
-    ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 900 --height 600 --quiet "
+    ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 600 --height 400 --quiet "
                   "--iterations " +
                   json("o.json")["iterations"].dump())
                   .exitCode,
               0);
     EXPECT_EQ(values, *readExrLayers(path("out.exr")).find("R"));
+}
+
+/// It has three seconds to end. Nothing is known of light paths of which some are missing.
+TEST_F(RenderInterrupt, AFirstIterationOfMinutesIsCut) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome o = runAndSignal(
+        "@room.gltf -o @out.exr --method bpt --set light_paths=1000000000 --width 24 --height 16 "
+        "--checkpoint @ck",
+        {SIGINT}, milliseconds(500));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+    EXPECT_NE(o.err.find("nothing was written"), std::string::npos) << o.err;
+    EXPECT_FALSE(exists("out.exr"));
+    EXPECT_FALSE(exists("ck"));
+    EXPECT_TRUE(temporaries().empty());
+}
+
+/// Eye paths that were made are a picture, but no part of one and no checkpoint.
+TEST_F(RenderInterrupt, WhatIsFinishedOfTheFirstIterationIsSaved) {
+    const Outcome o = runAndSignal(
+        "@room.gltf -o @out.exr --method pt --width 8000 --height 4000 --crop 0,1600,0,4000 "
+        "--max-depth 254 --rr-depth 254 --json @o.json --checkpoint @ck",
+        {SIGINT}, milliseconds(500));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_NE(o.err.find("not finished"), std::string::npos) << o.err;
+    EXPECT_EQ(json("o.json")["stopped"], "interrupt");
+    EXPECT_NE(json("o.json")["warnings"].dump().find("not finished"), std::string::npos);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    const std::vector<float>& green = *image.find("G");
+    EXPECT_TRUE(std::any_of(green.begin(), green.end(), [](float v) { return v > 0.0f; }));
+    EXPECT_FALSE(exists("ck"));
+}
+
+/// Tools that are done in no time: here one waits for a pipe, whose reader does not read.
+TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
+    const std::string noise =
+        "@room.gltf --method pt --width 400 --height 300 --iterations 1 --quiet";
+    ASSERT_EQ(run(noise + " -o @a.exr").exitCode, 0);
+    ASSERT_EQ(run(noise + " -o @b.exr --seed 2").exitCode, 0);
+    ASSERT_EQ(mkfifo(path("map.png").c_str(), 0600), 0);
+    const int reader = open(path("map.png").c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const Outcome o = runAndSignal("@a.exr @b.exr --error-map @map.png", {signal},
+                                       milliseconds(600), LACUNA_COMPARE);
+        EXPECT_EQ(o.exitCode, 130) << o.err;
+        EXPECT_EQ(o.err, "interrupted: nothing is written\n");
+    }
+    close(reader);
+}
+
+/// The picture is finished then, whatever comes. Here it goes into a pipe, which is not read at first.
+TEST_F(RenderInterrupt, WhileSavingChangesNothing) {
+    ASSERT_EQ(mkfifo(path("out.png").c_str(), 0600), 0);
+    const int reader = open(path("out.png").c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
+    const pid_t child = start(
+        "@room.gltf -o @out.png --method pt --width 400 --height 300 --iterations 1 --json "
+        "@o.json");
+    std::this_thread::sleep_for(milliseconds(1200));
+    kill(child, SIGINT);
+    std::this_thread::sleep_for(milliseconds(500));
+    fcntl(reader, F_SETFL, 0);
+    char bytes[4096];
+    while (::read(reader, bytes, sizeof bytes) > 0) {
+    }
+    const Outcome o = end(child);
+    close(reader);
+    EXPECT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_NE(o.err.find("the picture is finished"), std::string::npos) << o.err;
+    EXPECT_EQ(json("o.json")["stopped"], "iterations");
 }
 
 TEST_F(RenderInterrupt, TheSecondExitsAtOnce) {

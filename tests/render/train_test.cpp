@@ -222,11 +222,12 @@ TEST_F(TrainTool, TheNamedCommandMakesTheCache) {
     ASSERT_NE(begin, std::string::npos) << refused.err;
     std::string command = refused.err.substr(begin + std::string("run lacuna-train").size());
     command.resize(command.find_last_not_of(" \n") + 1);
-    for (const char* part : {"--paths 5000", "--max-depth 4", "--width 24", "--height 16"}) {
+    for (const char* part :
+         {"--paths 5000", "--max-depth 4", "--width 24", "--height 16", "--cache"}) {
         EXPECT_NE(command.find(part), std::string::npos) << command;
     }
     EXPECT_EQ(command.find("--epochs"), std::string::npos) << command;  // the default
-    ASSERT_EQ(train(command + " --quiet --cache @cache").exitCode, 0);
+    ASSERT_EQ(train(command + " --quiet").exitCode, 0);
     EXPECT_EQ(run(render() + " --max-depth 4 --quiet").exitCode, 0);
     std::string twice = render() + " --max-depth 4 --quiet";
     twice.replace(twice.find("--width 24 --height 16"), 22, "--width 48 --height 32");
@@ -258,6 +259,18 @@ TEST_F(TrainTool, TrainingLooksThroughTheChosenCamera) {
         hashes.insert(json("out.json").at("cache_hashes").at("subspaces"));
     }
     EXPECT_EQ(hashes.size(), 2u);  // the first is the default
+}
+
+/// What --prepare makes is not kept half made, and no picture is made without it.
+TEST_F(TrainTool, InterruptWhilePreparingPromisesNothing) {
+    const Outcome o = runAndSignal(
+        "@room.gltf -o @out.exr --method spcbpt --prepare --cache @cache "
+        "--set train.light_paths=1000000000 --set train.paths=1000 --set train.subspaces=10",
+        {SIGINT}, std::chrono::milliseconds(700));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_NE(o.err.find("nothing will be written"), std::string::npos) << o.err;
+    EXPECT_EQ(o.err.find("saved"), std::string::npos) << o.err;
+    EXPECT_FALSE(exists("out.exr"));
 }
 
 TEST_F(TrainTool, InterruptWritesNothing) {

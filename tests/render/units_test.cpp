@@ -79,6 +79,20 @@ TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
               "rays_light,rays_connection,rays_splat,rays_cache,phases\n"
               "3,0.5,0.25,7,,,,,1,2,0,4,0,0,\n"
               "4,1,0.25,9,0.1,0,0,inf,2,7,0,0,0,0,eye paths=0.5;light paths=0.25\n");
+    {
+        // Whoever has the file open sees the one from before, whole: it is replaced, not changed.
+        std::ifstream before(file);
+        CurveLog goesOn(file, 4);
+        EXPECT_EQ(goesOn.lastIteration(), 4u);
+        goesOn.write({5, 2.0, 0.25, {}, std::nullopt, {}});
+        const std::string old{std::istreambuf_iterator<char>(before),
+                              std::istreambuf_iterator<char>()};
+        EXPECT_EQ(old, text);
+        std::ifstream after(file);
+        const std::string now{std::istreambuf_iterator<char>(after),
+                              std::istreambuf_iterator<char>()};
+        EXPECT_TRUE(now.starts_with(text + "5,2,")) << now;
+    }
     std::filesystem::remove(file);
     EXPECT_THROW(CurveLog("/nonexistent/curve.csv"), RunError);
     CurveLog full("/dev/null");

@@ -287,6 +287,13 @@ TEST_F(RenderUsage, ResultsNeverReplaceInputs) {
     expectFailure("@room.gltf -o @out.exr --reference @out.exr --method pt", 2, "file of its own");
     const std::string before = read("room.gltf");
     expectFailure("@room.gltf -o @o.exr --json @room.gltf --method pt", 2, "file of its own");
+    expectFailure("@room.gltf -o @o.exr --json @./room.gltf --method pt", 2, "file of its own");
+    // Two results of one name, none of which is there yet.
+    expectFailure("@room.gltf -o @o.exr --json @c --log @./c --method pt", 2, "file of its own");
+    expectFailure("@room.gltf --voxels @v.vdb -o @./v.vdb", 2, "file of its own",
+                  LACUNA_SKELETONIZE);
+    expectFailure("@room.gltf --json @room.gltf", 2, "file of its own", LACUNA_VOXELIZE);
+    expectFailure("@out.exr -o @./out.exr", 2, "file of its own", LACUNA_MERGE);
     EXPECT_EQ(read("room.gltf"), before);
 }
 
