@@ -7,6 +7,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/image/image_io.h"
+#include "libcore/tool/early_interrupt.h"
 #include "libcore/tool/scene_stage.h"
 #include "render/checkpoint.h"
 #include "render/choose/choose.h"
@@ -187,7 +188,10 @@ int renderPicture(RenderOptions& options, const Ranks& ranks) {
 int render(int argc, char** argv) {
     const Ranks ranks;
     // One voice is enough.
-    if (!ranks.leads() && !std::freopen("/dev/null", "w", stdout)) return 1;
+    if (!ranks.leads()) {
+        endSilentlyAtInterrupts();
+        if (!std::freopen("/dev/null", "w", stdout)) return 1;
+    }
     RenderOptions options;
     std::optional<int> done;
     const bool parsed = ranks.agree([&] {

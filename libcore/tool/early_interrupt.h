@@ -8,5 +8,7 @@ namespace lacuna {
 /// stays so. An InterruptGuard takes over, and behind it the work is done: the first signal then
 /// changes nothing.
 void endAtInterrupts();
+/// The same, but says nothing: for a process that another one speaks for.
+void endSilentlyAtInterrupts();
 
 }  // namespace lacuna

@@ -13,15 +13,17 @@ namespace {
 std::atomic<bool> interruptRequested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not take a lock");
 
-std::atomic<bool> workBegun{false};
+std::atomic<bool> workBegun{false}, silent{false};
 
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
 extern "C" void lacunaOnInterrupt(int) {
     if (!workBegun) {
         constexpr std::string_view kText = "interrupted: nothing is written\n";
-        const auto ignored = ::write(STDERR_FILENO, kText.data(), kText.size());
-        (void)ignored;
+        if (!silent) {
+            const auto ignored = ::write(STDERR_FILENO, kText.data(), kText.size());
+            (void)ignored;
+        }
         _exit(kInterruptedExit);
     }
     if (interruptRequested.exchange(true)) _exit(kInterruptedExit);
@@ -46,6 +48,10 @@ void handle(int number) {
 
 void endAtInterrupts() {
     for (const int number : kSignals) handle(number);
+}
+
+void endSilentlyAtInterrupts() {
+    silent = true;
 }
 
 InterruptGuard::InterruptGuard() {

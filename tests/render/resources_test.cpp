@@ -60,8 +60,10 @@ TEST_F(RenderResources, filesThatMayNotGrowAreAnErrorOfWriting) {
     expectOneLine(quick("pt", "--quiet"), tool, "out.exr: expected to write");
     EXPECT_FALSE(exists("out.exr"));
     // The picture is too small for the limit, the log and the JSON are not.
-    expectOneLine(quick("pt", "--quiet --width 2 --height 2 --json @o.json -o @out.png"), tool,
-                  "o.json: expected to write");
+    expectOneLine(
+        "@room.gltf -o @out.png --method pt --width 2 --height 2 --iterations 1 --quiet "
+        "--json @o.json",
+        tool, "o.json: expected to write");
     EXPECT_TRUE(exists("out.png"));
     EXPECT_FALSE(exists("o.json"));
 }

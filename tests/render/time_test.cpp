@@ -121,8 +121,9 @@ TEST_F(RenderInterrupt, AFirstIterationOfMinutesIsCut) {
 /// Eye paths that were made are a picture, but no part of one and no checkpoint.
 TEST_F(RenderInterrupt, WhatIsFinishedOfTheFirstIterationIsSaved) {
     const Outcome o = runAndSignal(
-        "@room.gltf -o @out.exr --method pt --width 8000 --height 4000 --crop 0,1600,0,4000 "
-        "--max-depth 254 --rr-depth 254 --json @o.json --checkpoint @ck",
+        "@room.gltf -o @out.exr --method lvcbpt --width 1600 --height 1600 --max-depth 254 "
+        "--rr-depth 254 --set connections=64 --set candidates=1000 --set light_paths=1000 "
+        "--json @o.json --checkpoint @ck",
         {SIGINT}, milliseconds(500));
     EXPECT_EQ(o.exitCode, 130) << o.err;
     EXPECT_NE(o.err.find("not finished"), std::string::npos) << o.err;

@@ -161,13 +161,13 @@ TEST(Scene, MeshesWithoutTriangles) {
     EXPECT_EQ(hit->light, 0u);
 }
 
-TEST(Scene, VerticesThatOverflowAreDropped) {
+TEST(Scene, VerticesThatOverflowAreRefused) {
     SceneBuilder b;
     b.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
     const float huge = std::numeric_limits<float>::max();
     Mesh m = triangle({0, 0, 0}, {huge, 0, 0}, {0, huge, 0});
     b.add(m, scaling({10, 10, 10}));
-    EXPECT_NO_THROW(b.build());
+    EXPECT_THROW(b.build(), InputError);
 }
 
 TEST(Scene, LightsKeepTheirOrder) {
