@@ -131,8 +131,7 @@ const char* interruptOfRender(const std::string& phase, std::uint64_t done) {
     }
     if (done > 0) return "interrupted: saving what there is (again: exit at once)";
     return "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there "
-           "is "
-           "of it is saved (again: exit at once)";
+           "is of it is saved (again: exit at once)";
 }
 }  // namespace
 

@@ -125,9 +125,7 @@ class Pilot {
         return options_.until ? kIterationsToAnError : kDefaultIterations;
     }
 
-    double smallFilmPixels() const {
-        return double(small_->film.width) * double(small_->film.height);
-    }
+    double smallFilmPixels() const { return pixelsOf(small_->film); }
 
     std::vector<std::string> assignments(const Row& candidate, std::uint64_t subpaths) const {
         const MethodRow& row = findMethod(candidate.method);
@@ -186,10 +184,7 @@ class Pilot {
         tried_.push_back(std::move(tried));
     }
 
-    double filmPixels() const {
-        const Camera::Film film = stage_.camera->film();
-        return double(film.width) * double(film.height);
-    }
+    double filmPixels() const { return pixelsOf(stage_.camera->film()); }
 
     void run(const Row& candidate, const std::vector<std::string>& assignments, double rays,
              Trial& trial) {

@@ -74,7 +74,6 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     RenderSettings render = stage.settings;
     render.seed = seed;
     render.crop = small.crop;
-    const auto pixelsOf = [](Camera::Film f) { return double(f.width) * double(f.height); };
     const double filmPixels = pixelsOf(stage.camera->film()), smallPixels = pixelsOf(small.film);
     const auto splats = double(lightPathsOf(settings));  // 0: as many as pixels
     render.lightPaths = std::uint64_t(std::ceil(splats * smallPixels / filmPixels));

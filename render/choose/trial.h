@@ -19,6 +19,10 @@ struct Trial {
     double seconds = 0.0;          ///< likewise, on this machine
 };
 
+inline double pixelsOf(const Camera::Film& film) {
+    return double(film.width) * double(film.height);
+}
+
 /// What is rendered in place of the picture: all of it, in fewer pixels.
 struct SmallFilm {
     /// Of about `pixels` pixels, no more than the crop of `stage` has.

@@ -40,12 +40,20 @@ std::string chosenText(const Runs& runs) {
     return joined(parts, "; ");
 }
 
-Spread errorsAt(const Runs& runs, Measure measure, double seconds) {
-    std::vector<std::optional<double>> values;
-    for (const RunResult* r : runs) {
-        values.push_back(errorAt(r->curve.points, measure, seconds, kAxis));
+/// Of the methods that did not choose, the one with the least median error at `end`, if any.
+std::optional<std::size_t> bestOther(const Results& results, std::size_t scene, Measure measure,
+                                     double end) {
+    std::optional<std::size_t> best;
+    double least = INFINITY;
+    for (std::size_t m = 0; m < results.study.methods.size(); ++m) {
+        const Runs runs = results.of(scene, m);
+        if (choseForItself(runs)) continue;
+        const auto error = spread(errorsAt(runs, measure, end, kAxis)).median;
+        if (!error || !(*error < least)) continue;
+        least = *error;
+        best = m;
     }
-    return spread(values);
+    return best;
 }
 
 std::optional<double> regret(const RunResult& own, const RunResult& other, Measure measure,
@@ -59,7 +67,7 @@ std::optional<double> regret(const RunResult& own, const RunResult& other, Measu
     return &better == &own ? *time / end : end / *time;
 }
 
-std::string summary(std::vector<double> regrets) {
+std::string summary(const std::vector<double>& regrets) {
     double logs = 0.0;
     for (const double r : regrets) logs += std::log(r);
     const auto good = std::ranges::count_if(regrets, [](double r) { return r <= kAsGood; });
@@ -88,26 +96,18 @@ Table choiceTable(const Results& results) {
             for (const RunResult* r : own) setups.push_back(r->report.at("setup_seconds"));
             for (const std::string& name : study.measures) {
                 const Measure measure = measureOf(name);
-                std::size_t best = m;
-                std::optional<double> least;
-                for (std::size_t other = 0; other < study.methods.size(); ++other) {
-                    const Runs runs = results.of(s, other);
-                    if (choseForItself(runs)) continue;
-                    const auto error = errorsAt(runs, measure, end).median;
-                    if (!error || (least && *least <= *error)) continue;
-                    least = error;
-                    best = other;
-                }
-                if (best == m) continue;
+                const auto best = bestOther(results, s, measure, end);
+                if (!best) continue;
+                const Runs others = results.of(s, *best);
                 std::vector<std::optional<double>> values;
                 for (std::size_t i = 0; i < own.size(); ++i) {
-                    values.push_back(regret(*own[i], *results.of(s, best)[i], measure, end));
+                    values.push_back(regret(*own[i], *others[i], measure, end));
                 }
                 const Spread all = spread(values);
                 if (all.median) regrets.push_back(*all.median);
                 table.rows.push_back({study.scenes[s].name, name, study.methods[m].name,
                                       chosenText(own), spread(setups), shortNumber(end) + " s",
-                                      study.methods[best].name, all});
+                                      study.methods[*best].name, all});
             }
         }
     }

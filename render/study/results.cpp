@@ -40,6 +40,13 @@ std::vector<const Curve*> Results::curvesOf(std::size_t scene) const {
     return curves;
 }
 
+std::vector<std::optional<double>> errorsAt(std::span<const RunResult* const> runs, Measure measure,
+                                            double x, Axis axis) {
+    std::vector<std::optional<double>> values;
+    for (const RunResult* r : runs) values.push_back(errorAt(r->curve.points, measure, x, axis));
+    return values;
+}
+
 std::string rawCsv(const Results& results) {
     std::string text = "scene,name,method,seed,run," + results.runs.at(0).curve.header + "\n";
     for (const RunResult& r : results.runs) {

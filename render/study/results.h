@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,9 @@ struct Results {
     std::vector<const Curve*> curvesOf(std::size_t scene) const;
 };
 
+/// errorAt() of each run.
+std::vector<std::optional<double>> errorsAt(std::span<const RunResult* const> runs, Measure measure,
+                                            double x, Axis axis);
 /// One row per run and checkpoint: scene, name, method, seed, run, then the curve's columns.
 std::string rawCsv(const Results& results);
 /// One row per run: what it was, and totals.

@@ -40,15 +40,6 @@ Values timesTo(const Results& results, std::size_t scene, std::size_t method, Me
     return values;
 }
 
-Values errorsAt(const Results& results, std::size_t scene, std::size_t method, Measure measure,
-                double x, Axis axis) {
-    Values values;
-    for (const RunResult* r : results.of(scene, method)) {
-        values.push_back(errorAt(r->curve.points, measure, x, axis));
-    }
-    return values;
-}
-
 std::size_t baselineOf(const Study& study) {
     std::size_t m = 0;
     while (study.methods[m].name != study.baseline) ++m;
@@ -135,8 +126,8 @@ Table errorTable(const Results& results, Axis axis) {
             asked.empty() ? std::vector<double>{commonEnd(results.curvesOf(s), axis)} : asked;
         for (const double x : at) {
             for (std::size_t m = 0; m < study.methods.size(); ++m) {
-                const Values own = errorsAt(results, s, m, measure, x, axis);
-                const Values base = errorsAt(results, s, baseline, measure, x, axis);
+                const Values own = errorsAt(results.of(s, m), measure, x, axis);
+                const Values base = errorsAt(results.of(s, baseline), measure, x, axis);
                 const Spread errors = spread(own);
                 table.rows.push_back({study.scenes[s].name, name, shortNumber(x),
                                       study.methods[m].name, errors, spread(ratios(own, base)),
