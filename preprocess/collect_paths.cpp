@@ -78,7 +78,7 @@ CollectedPaths collectPaths(const Scene& scene, const TrainingView& view, const 
     double share = 1.0;  // of an iteration's paths that is kept, so that there are about `paths`
     for (std::uint64_t n = 0; n < iterations; ++n) {
         if (!integrator.render(kTrainingIteration + std::uint32_t(n), pixels, cancel, statistics)) {
-            throw Error(130, "interrupted: nothing was written");
+            throw InterruptedError("interrupted: nothing was written");
         }
         for (std::size_t p = 0; p < pixels.size(); ++p) sum[p] += inLightUnit(pixels[p]);
 

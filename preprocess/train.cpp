@@ -186,7 +186,7 @@ void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces
                 }
             }
         });
-        if (cancel) throw Error(130, "interrupted: nothing was written");
+        if (cancel) throw InterruptedError("interrupted: nothing was written");
         for (const Sums& sum : sums) {
             for (std::size_t i = 0; i < sum.q.size(); ++i) {
                 subspaces.q[i] += sum.q[i] / double(settings.lightPaths);
@@ -218,7 +218,7 @@ Trained train(const Scene& scene, const TrainingView& view, const TrainSettings&
     Trained result;
     Subspaces& s = result.file.subspaces;
     const auto run = [&](const char* name, const auto& work) {
-        if (cancel) throw Error(130, "interrupted: nothing was written");
+        if (cancel) throw InterruptedError("interrupted: nothing was written");
         phases.run(name, work);
         result.peakBytes[name] = peakBytes();
     };

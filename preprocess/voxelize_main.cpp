@@ -31,7 +31,7 @@ int voxelizeTool(int argc, const char* const* argv) {
 
     const ThreadPool pool(options.common.threads);
     const InterruptGuard interrupt;
-    Progress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
+    TerminalProgress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
     SceneStage stage;

@@ -18,8 +18,8 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
         }
         return caches;
     }
-    // An interrupt leaves nothing behind there: Progress knows it by the word.
-    Phases phases([&](const std::string& name) { progress.phase("preparing: " + name); });
+    Phases phases(
+        [&](const std::string& name) { progress.phase("preparing: " + name, kNothingWritten); });
     Phases total;
     const auto built = [&](const std::string& path) {
         if (options.common.verbose) progress.remark("built " + path);

@@ -11,9 +11,9 @@ namespace {
 constexpr std::chrono::milliseconds kGrace{3000};
 }
 
-Alone::Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPool& pool,
+Alone::Alone(BlockMaker& maker, const std::atomic<bool>& interrupted, const ThreadPool& pool,
              Progress& progress)
-    : maker_(maker), interrupted_(interrupt.requested()), pool_(pool), progress_(progress) {}
+    : maker_(maker), interrupted_(interrupted), pool_(pool), progress_(progress) {}
 
 bool Alone::advance(Film& film, Totals& totals) {
     if (stopped_ || cut_) return false;

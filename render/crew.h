@@ -1,10 +1,10 @@
 // Who makes the iterations of a picture: this process alone, or several together (render/ranks).
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "libcore/bidir/film.h"
-#include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
 #include "render/block_maker.h"
 
@@ -35,7 +35,7 @@ class Crew {
 class Alone final : public Crew {
   public:
     /// All references must outlive the crew.
-    Alone(BlockMaker& maker, const InterruptGuard& interrupt, const ThreadPool& pool,
+    Alone(BlockMaker& maker, const std::atomic<bool>& interrupted, const ThreadPool& pool,
           Progress& progress);
     bool advance(Film& film, Totals& totals) override;
     void stop() override { stopped_ = true; }

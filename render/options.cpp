@@ -1,6 +1,7 @@
 #include "render/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -254,6 +255,9 @@ void parseLive(RenderOptions& o) {
         }
     }
     if (!o.writeEveryText.empty()) {
+        if (o.inMemory && o.output.empty()) {
+            throw UsageError("--write-every: expected an output to write, found none; name one");
+        }
         o.writeEverySeconds = parseDuration("--write-every", o.writeEveryText);
     }
 }
@@ -358,15 +362,18 @@ void checkOptions(RenderOptions& o) {
     }
     if (o.effects) return;
     checkMethod(o);
-    if (o.output.empty() && !o.replay && !o.estimate) nameOutput(o);
-    if (o.techniques && !o.replay && o.sheet.empty() && endingOf(o.output) != ".exr") {
+    if (o.output.empty() && !o.replay && !o.estimate && !o.inMemory) nameOutput(o);
+    if (o.techniques && !o.replay && o.sheet.empty() && !o.output.empty() &&
+        endingOf(o.output) != ".exr") {
         throw UsageError("--techniques: expected an .exr or a --sheet to hold the layers, found '" +
                          o.output + "'");
     }
 }
 
 const MethodRow& namedRow(const RenderOptions& o) {
-    return o.method == kAuto ? findMethod("bpt") : findMethod(o.method, "--method");
+    if (o.method == kAuto) return findMethod("bpt");
+    const auto own = std::ranges::find(o.ownMethods, o.method, &MethodRow::name);
+    return own != o.ownMethods.end() ? *own : findMethod(o.method, "--method");
 }
 
 void checkOutputs(const RenderOptions& o) {

@@ -33,6 +33,8 @@ struct RenderOptions : SceneOptions {
     std::string commandLine;  ///< as a shell would take it again
 
     std::string output, method;
+    bool inMemory = false;                 ///< who has no output gets the picture itself
+    std::vector<MethodRow> ownMethods;     ///< beside those of the registry
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
     std::string timeText, cropText, replayText, samplerText;
@@ -70,7 +72,7 @@ void declareOptions(CLI::App& app, RenderOptions& options);
 void checkOptions(RenderOptions& options);
 
 /// The row of --method, or what stands for it until `auto` has chosen: a row with all techniques.
-/// Throws UsageError for a name that no row has.
+/// Throws UsageError for a name that no row has, those of options.ownMethods included.
 const MethodRow& namedRow(const RenderOptions& options);
 
 /// Throws UsageError where the result and an input, or two results, would be the same file;

@@ -136,6 +136,10 @@ json effectsJson(const std::vector<Effect>& effects) {
     return {{"simulated", simulated}, {"left_out", leftOut}, {"reasons", reasons}};
 }
 
+std::string reportText(const RenderReport& report) {
+    return utf8Text(reportJson(report), 2) + "\n";
+}
+
 void writeJson(const std::string& path, const json& object) {
     writeFileAtomically(path, utf8Text(object, 2) + "\n");
 }

@@ -84,6 +84,9 @@ nlohmann::json effectsJson(const std::vector<Effect>& effects);
 /// The keys that README.md, "--json" lists.
 nlohmann::json reportJson(const RenderReport& report);
 
+/// The same as text that people can read.
+std::string reportText(const RenderReport& report);
+
 /// Atomically, as text that people can read. Throws RunError.
 void writeJson(const std::string& path, const nlohmann::json& json);
 

@@ -5,18 +5,13 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
-#include "libcore/base/stopwatch.h"
-#include "libcore/image/image_io.h"
 #include "libcore/tool/early_interrupt.h"
+#include "libcore/tool/interrupt.h"
 #include "libcore/tool/scene_stage.h"
-#include "render/checkpoint.h"
-#include "render/choose/choose.h"
 #include "render/method_help.h"
 #include "render/options.h"
-#include "render/ranks/together.h"
-#include "render/render_inputs.h"
+#include "render/picture.h"
 #include "render/replay.h"
-#include "render/session.h"
 
 namespace lacuna {
 namespace {
@@ -66,125 +61,6 @@ int print(const RenderOptions& options) {
     return replay(options, row, settings, ThreadPool(options.common.threads));
 }
 
-/// The ranks' parts of a picture are of one program, scene and command, or are none.
-void compareInputs(const Ranks& ranks, const CacheStamp& own) {
-    if (!ranks.leads()) {
-        ranks.send(0, Ranks::Tag::Inputs, own.text());
-        return;
-    }
-    for (int i = 1; i < ranks.size(); ++i) {
-        const Ranks::Letter letter = ranks.wait();
-        const std::string different =
-            differencesText(CacheStamp::parse(own.text()), CacheStamp::parse(textOf(letter)));
-        if (different.empty()) continue;
-        throw InputError(ranks.name(letter.from) + ": expected what " + ranks.name(0) +
-                         " renders, found another " + different +
-                         "; give all ranks the same program and the same files");
-    }
-}
-
-/// Whoever looks at the file while it renders need not wait for training.
-void showFirst(const RenderOptions& options, const Image& small) {
-    if (!options.writeEverySeconds) return;
-    LayeredImage image(small.width, small.height);
-    image.setRgb("", small);
-    image.attributes["stopped"] = std::string("no: choosing a method");
-    writeImage(options.output, image, options.png);
-}
-
-/// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
-Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
-              const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress) {
-    if (!ranks.leads()) return Choice::ofText(textOf(ranks.wait()));
-    const auto found = [&]() -> Choice {
-        if (!options.checkpoint.empty()) {
-            const auto inputs = checkpointInputs(options.checkpoint);
-            if (inputs) return Choice::ofInputs(*inputs);
-        }
-        const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["choose"]);
-        return chooseMethod(options, stage, pool, interrupt.requested(), progress,
-                            [&](const Image& small) { showFirst(options, small); });
-    };
-    const Choice choice = found();
-    progress.remark("auto: " + choice.method + ", " + choice.why +
-                    "; the same by name: " + choice.byName());
-    return choice;
-}
-
-int renderPicture(RenderOptions& options, const Ranks& ranks) {
-    const MethodRow* row = nullptr;
-    Settings settings;
-    const bool checked = ranks.agree([&] {
-        row = &namedRow(options);
-        settings = resolve(*row, options.assignments, "--set ");
-        if (options.verify && ranks.many()) {
-            throw UsageError("--verify: expected one process, found " +
-                             std::to_string(ranks.size()) + " ranks; leave it or mpirun out");
-        }
-        if (ranks.leads()) checkOutputs(options);
-    });
-    if (!checked) return 0;
-
-    const InterruptGuard interrupt;
-    const ThreadPool pool(options.common.threads);
-    Progress progress(options.common.quiet, interrupt.requested());
-    if (!ranks.leads()) progress.mute();
-    std::optional<Stage> stage;
-    std::optional<FirstLook> look;
-    const bool loaded = ranks.agree([&] {
-        stage = loadStage(options, *row, settings, pool, progress);
-        progress.phase("features");
-        look.emplace(*stage, pool);
-    });
-    if (!loaded) return 0;
-    std::optional<Choice> choice;
-    if (options.method == kAuto) {
-        for (const bool leaders : {true, false}) {
-            const bool chosen = ranks.agree([&] {
-                if (ranks.leads() != leaders) return;
-                choice = choose(options, *stage, ranks, pool, interrupt, progress);
-                row = &findMethod(choice->method);
-                settings = resolve(*row, choice->assignments);
-                options.sampling = choice->sampling;
-                useMethod(*stage, options, *row, settings);
-                for (int i = 1; leaders && i < ranks.size(); ++i) {
-                    ranks.send(i, Ranks::Tag::Inputs, choice->text());
-                }
-            });
-            if (!chosen) return 0;
-        }
-        options.prepare = !row->needs.empty();
-    }
-    // Rank 0 makes the caches that are missing, the others read them.
-    Caches caches;
-    if (!ranks.leads()) options.prepare = false;
-    for (const bool leaders : {true, false}) {
-        const bool there = ranks.agree([&] {
-            if (ranks.leads() != leaders) return;
-            caches =
-                loadCaches(options, *row, settings, *stage, pool, interrupt.requested(), progress);
-        });
-        if (!there) return 0;
-    }
-
-    BlockMaker maker(options, *row, settings, *stage, caches, pool);
-    if (ranks.many()) {
-        const CacheStamp inputs =
-            renderInputs(options, *row, settings, *stage, caches, maker.plan());
-        if (!ranks.agree([&] { compareInputs(ranks, inputs); })) return 0;
-    }
-    std::optional<Session> session;
-    const bool ready = ranks.agree([&] {
-        if (!ranks.leads()) return;
-        session.emplace(options, *row, settings, choice, *stage, caches, *look, maker, ranks, pool,
-                        interrupt, progress);
-    });
-    if (!ready) return 0;
-    if (session) return session->run();
-    serve(ranks, maker, look->meter, stage->settings.crop, interrupt, pool);
-    return 0;
-}
-
 int render(int argc, char** argv) {
     const Ranks ranks;
     // One voice is enough.
@@ -204,7 +80,15 @@ int render(int argc, char** argv) {
         if (onlyPrints(options)) done = ranks.leads() ? print(options) : 0;
     });
     if (!parsed) return 0;
-    return done ? *done : renderPicture(options, ranks);
+    if (done) return *done;
+    const InterruptGuard interrupt;
+    TerminalProgress progress(options.common.quiet, interrupt.requested());
+    if (!ranks.leads()) progress.mute();
+    const auto rendered = renderPicture(options, ranks, interrupt.requested(), progress);
+    if (!rendered) return 0;
+    std::fputs(rendered->text.c_str(), stdout);
+    if (!rendered->failure.empty()) throw RunError(rendered->failure);
+    return rendered->exitCode();
 }
 
 }  // namespace

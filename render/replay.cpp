@@ -127,7 +127,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
            const ThreadPool& pool) {
     const ReplayRequest sample = *options.replay;
     const InterruptGuard interrupt;
-    Progress progress(options.common.quiet, interrupt.requested());
+    TerminalProgress progress(options.common.quiet, interrupt.requested());
     const Stage stage = loadStage(options, row, settings, pool, progress);
     const Camera::Film film = stage.camera->film();
     RenderSettings whole = stage.settings;

@@ -62,10 +62,10 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                  const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
                  const FirstLook& look, BlockMaker& maker, const Ranks& ranks,
-                 const ThreadPool& pool, const InterruptGuard& interrupt, Progress& progress)
+                 const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress)
     : options_(options),
       pool_(pool),
-      interrupt_(interrupt),
+      interrupted_(interrupted),
       progress_(progress),
       stage_(stage),
       caches_(caches),
@@ -119,13 +119,13 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
             options.timeSeconds.value_or(0.0) - (options.countSetup ? r.setupSeconds : 0.0);
         auto together = std::make_unique<Together>(ranks, maker_, look.meter, stage_.settings.crop,
                                                    Together::Limits{end_, std::max(0.0, limit)},
-                                                   interrupt, pool);
+                                                   interrupted, pool);
         together_ = together.get();
         crew_ = std::move(together);
         return;
     }
     for (BlockLayers* layers : maker_.layers()) film_.addLayers(*layers);
-    crew_ = std::make_unique<Alone>(maker_, interrupt, pool, progress);
+    crew_ = std::make_unique<Alone>(maker_, interrupted, pool, progress);
 }
 
 Session::~Session() = default;
@@ -177,31 +177,36 @@ void Session::loadReference() {
     if (!options_.log.empty()) log_.emplace(options_.log, film_.iterations());
 }
 
-int Session::run() {
+Rendered Session::run() {
     render();
-    if (crew_->cutShort()) return saveUnfinished();
-    if (options_.estimate) return printCost();
+    if (crew_->cutShort()) {
+        saveUnfinished();
+        return finished(savedText());
+    }
+    if (options_.estimate) return costs();
     if (checkpoint_) finishCheckpoint();
     save();
     warnAboutDefects();
-    if (!failure_.empty()) throw RunError(failure_);
-    return report_.stopped == "interrupt" ? kInterruptedExit : 0;
+    return finished(savedText());
+}
+
+Rendered Session::finished(std::string text) {
+    return {std::move(report_), std::move(image_), std::move(text), std::move(failure_)};
 }
 
 /// What there is of the first iteration is a picture for people, and no more: no part, no checkpoint
 /// and no figures can be made of it.
-int Session::saveUnfinished() {
+void Session::saveUnfinished() {
     if (film_.iterations() == 0 || options_.blocks || options_.estimate) {
-        throw Error(kInterruptedExit,
-                    "interrupted: the first iteration was not finished: nothing "
-                    "was written");
+        throw InterruptedError(
+            "interrupted: the first iteration was not finished: nothing "
+            "was written");
     }
     report_.warnings.push_back(
         "the first iteration was not finished: pixels are missing or too dark");
     progress_.warning("warning: " + options_.output + ": " + report_.warnings.back());
     log_.reset();
     save();
-    return kInterruptedExit;
 }
 
 /// The next iteration is taken to last as long as the last ones. It is begun if it ends in time, or
@@ -216,7 +221,7 @@ bool Session::mayBegin() const {
 std::string Session::whyStop() {
     if (crew_->cutShort()) return "interrupt";
     const bool some = film_.iterations() > 0;
-    if (some && (interrupt_.requested() || crew_->interrupted())) return "interrupt";
+    if (some && (interrupted_ || crew_->interrupted())) return "interrupt";
     if (isAccurate()) return "error";
     if (isEstimated()) return "estimate";
     if (end_ > 0 && film_.nextIteration() >= end_) return "iterations";
@@ -245,6 +250,8 @@ void Session::keep() {
     if (checkpoint_) saveCheckpoint();
     if (refresh_) refreshOutput();
     if (live_ && live_->wants()) showLive();
+    progress_.picture(
+        [this] { return film_.sum(idlePool()).image(film_.width(), film_.height()); });
 }
 
 void Session::render() {
@@ -313,13 +320,12 @@ bool Session::isEstimated() const {
     return seconds >= (report_.estimate.mape.doubt.empty() ? atLeast : 4.0 * atLeast);
 }
 
-int Session::printCost() {
+Rendered Session::costs() {
     const Measured& mape = report_.estimate.mape;
     const AccuracyCost cost{options_.scene,     report_.method->name, film_.width(), film_.height(),
                             report_.iterations, report_.setupSeconds, errorNow(),    mape.doubt};
     if (!options_.common.json.empty()) writeJson(options_.common.json, costJson(cost));
-    std::fputs(costTable(cost).c_str(), stdout);
-    return report_.stopped == "interrupt" ? kInterruptedExit : 0;
+    return finished(costTable(cost));
 }
 
 /// Layers that no iteration changes: what the lens sees first, and what belongs to it.
@@ -395,7 +401,8 @@ void Session::refreshOutput() {
 
 /// What is written.
 LayeredImage Session::output(const RenderReport& report, const FilmSum& sum) {
-    const bool layers = endingOf(options_.output) == ".exr" || !options_.sheet.empty();
+    const bool layers =
+        options_.output.empty() || endingOf(options_.output) == ".exr" || !options_.sheet.empty();
     LayeredImage image = composeImage(report, sum, layers ? &still() : nullptr);
     if (options_.blocks) {
         addPart(image, {inputs_, film_.width(), film_.height(), plan_, report_.firstBlock,
@@ -432,7 +439,7 @@ void Session::saveCheckpoint() {
 void Session::finishCheckpoint() {
     Part now = part();
     if (now.iterations() == 0) return;
-    progress_.phase("saving the checkpoint");
+    progress_.phase("saving the checkpoint", kBeingSaved);
     try {
         checkpoint_->finish(std::move(now));
     } catch (const std::exception& e) {
@@ -498,18 +505,18 @@ void Session::save() {
             techniqueCosts(sum, look_.meter, report_.statistics, double(report_.threads), &pool_);
     }
 
-    progress_.phase("saving");
+    progress_.phase("saving", kBeingSaved);
     if (live_) live_->showLast(shown(sum));
-    const LayeredImage image = output(report_, sum);
-    const PngStyle png = fixedExposure(image);
+    image_ = output(report_, sum);
+    const PngStyle png = fixedExposure(image_);
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
         if (refresh_) refresh_->wait();  // or the older image would come last
-        writeImage(options_.output, image, png);
+        if (!options_.output.empty()) writeImage(options_.output, image_, png);
         if (!options_.sheet.empty()) {
             // A part's sums are no layers.
             const Canvas sheet =
-                layerSheet(options_.blocks ? composeImage(report_, sum, &still()) : image, png);
+                layerSheet(options_.blocks ? composeImage(report_, sum, &still()) : image_, png);
             writePngBytes(options_.sheet, sheet.width(), sheet.height(), sheet.bytes());
         }
     }
@@ -517,22 +524,33 @@ void Session::save() {
         writeJson(options_.common.json, reportJson(report_));
     }
     if (live_) live_->leave();
-    const double rays = double(report_.statistics.totalRays());
-    std::printf("%s: %d x %d pixels, %s, %llu iteration%s in %.3g s (setup %.3g s), %.4g rays%s\n",
-                options_.output.c_str(), film_.width(), film_.height(),
-                report_.method->name.c_str(), static_cast<unsigned long long>(report_.iterations),
-                report_.iterations == 1 ? "" : "s", report_.seconds, report_.setupSeconds, rays,
-                report_.stopped == "interrupt" ? " (interrupted)" : "");
+}
+
+/// What was saved, in a line, and what was measured.
+std::string Session::savedText() const {
+    char line[256];
+    std::snprintf(line, sizeof line,
+                  "%d x %d pixels, %s, %llu iteration%s in %.3g s (setup %.3g s), %.4g rays%s\n",
+                  film_.width(), film_.height(), report_.method->name.c_str(),
+                  static_cast<unsigned long long>(report_.iterations),
+                  report_.iterations == 1 ? "" : "s", report_.seconds, report_.setupSeconds,
+                  double(report_.statistics.totalRays()),
+                  report_.stopped == "interrupt" ? " (interrupted)" : "");
+    std::string text = options_.output + ": " + line;
     if (report_.error) {
-        std::printf("mae %.6g rmse %.6g mape %.6g relmse %.6g\n", report_.error->mae,
-                    report_.error->rmse, report_.error->mape, report_.error->relmse);
+        std::snprintf(line, sizeof line, "mae %.6g rmse %.6g mape %.6g relmse %.6g\n",
+                      report_.error->mae, report_.error->rmse, report_.error->mape,
+                      report_.error->relmse);
+        text += line;
     }
-    if (report_.techniques) std::fputs(techniqueTable(report_.techniqueCosts).c_str(), stdout);
+    if (report_.techniques) text += techniqueTable(report_.techniqueCosts);
     if (report_.verify) {
-        std::printf("verify: largest difference of a weight %.3g over %llu paths\n",
-                    report_.verify->maxDifference,
-                    static_cast<unsigned long long>(report_.verify->paths));
+        std::snprintf(
+            line, sizeof line, "verify: largest difference of a weight %.3g over %llu paths\n",
+            report_.verify->maxDifference, static_cast<unsigned long long>(report_.verify->paths));
+        text += line;
     }
+    return text;
 }
 
 /// A scene without light was told so before. Nobody who interrupts wants to wait for causes.
@@ -540,7 +558,7 @@ void Session::warnIfBlack() {
     const auto& mean = report_.mean.mean;
     const bool black = mean[0] == 0.0 && mean[1] == 0.0 && mean[2] == 0.0;
     if (!black || stage_.scene->lights().empty() || report_.stopped == "interrupt") return;
-    progress_.phase("looking for light");
+    progress_.phase("looking for light", kBeingSaved);
     report_.warnings.push_back(whyBlack(stage_, *report_.method, pool_));
     progress_.warning("warning: " + options_.scene + ": " + report_.warnings.back());
 }

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "libcore/image/error_metrics.h"
-#include "libcore/tool/interrupt.h"
 #include "libcore/tool/progress.h"
 #include "render/background_job.h"
 #include "render/block_maker.h"
@@ -18,6 +17,7 @@
 #include "render/options.h"
 #include "render/output.h"
 #include "render/ranks/ranks.h"
+#include "render/rendered.h"
 
 namespace lacuna {
 
@@ -30,11 +30,11 @@ class Session {
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
             const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
             const FirstLook& look, BlockMaker& maker, const Ranks& ranks, const ThreadPool& pool,
-            const InterruptGuard& interrupt, Progress& progress);
+            const std::atomic<bool>& interrupted, Progress& progress);
     ~Session();
 
-    /// Renders and saves; what was written goes to stdout. Returns the exit code.
-    int run();
+    /// Renders and saves. Once.
+    Rendered run();
 
   private:
     void loadReference();
@@ -46,7 +46,8 @@ class Session {
     bool isAccurate();
     bool isEstimated() const;
     ErrorNow errorNow() const;
-    int printCost();
+    Rendered costs();
+    Rendered finished(std::string text);
     bool mayBegin() const;
     void tell();
     void keep();
@@ -65,14 +66,15 @@ class Session {
     void logRow();
     PngStyle fixedExposure(const LayeredImage& image);
     void save();
-    int saveUnfinished();
+    std::string savedText() const;
+    void saveUnfinished();
     void warnIfBlack();
     void warnAboutDefects();
     std::string replayCommand(const std::string& replay) const;
 
     const RenderOptions& options_;
     const ThreadPool& pool_;
-    const InterruptGuard& interrupt_;
+    const std::atomic<bool>& interrupted_;
     Progress& progress_;
 
     const Stage& stage_;
@@ -90,6 +92,7 @@ class Session {
     std::optional<LayeredImage> still_;     ///< layers that no iteration changes, once needed
     std::optional<BackgroundJob> refresh_;  ///< of the output
     std::optional<LiveView> live_;
+    LayeredImage image_;            ///< as saved
     std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
     std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
     Totals totals_;                 ///< of iterations that are in the film

@@ -1,38 +1,4 @@
-// Errors that end a tool: each carries the exit code of its kind.
+// The errors are part of the library's public headers.
 #pragma once
 
-#include <stdexcept>
-#include <string>
-
-namespace lacuna {
-
-/// Base: one line for stderr, `place: what was expected, what was found, what to do`.
-class Error : public std::runtime_error {
-  public:
-    Error(int exitCode, const std::string& message)
-        : std::runtime_error(message), exitCode_(exitCode) {}
-    int exitCode() const { return exitCode_; }
-
-  private:
-    int exitCode_;
-};
-
-/// Something failed while running (disk full, output not writable): exit code 1.
-class RunError : public Error {
-  public:
-    explicit RunError(const std::string& message) : Error(1, message) {}
-};
-
-/// The command line is wrong (unknown method, absurd size): exit code 2.
-class UsageError : public Error {
-  public:
-    explicit UsageError(const std::string& message) : Error(2, message) {}
-};
-
-/// The input (scene, image, cache) cannot be used: exit code 3.
-class InputError : public Error {
-  public:
-    explicit InputError(const std::string& message) : Error(3, message) {}
-};
-
-}  // namespace lacuna
+#include "lacuna/error.h"

@@ -129,9 +129,9 @@ Bytes Document::readExternal(const std::filesystem::path& path, const std::strin
     return read;
 }
 
-void loadDocument(const std::string& file, Document& document, Warnings& warnings) {
+void loadDocument(const std::string& file, Bytes bytes, Document& document, Warnings& warnings) {
     document.file = file;
-    document.bytes = readFile(file, Limits::kFileBytes);
+    document.bytes = std::move(bytes);
     document.bytesRead = document.bytes.size;
     document.hash.addValues(document.bytes.span());
 

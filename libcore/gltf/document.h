@@ -39,8 +39,8 @@ struct Document {
     Bytes readExternal(const std::filesystem::path& path, const std::string& place);
 };
 
-/// Reads `file`, its external buffers (not its images) and parses it into `document`. Throws
-/// InputError.
-void loadDocument(const std::string& file, Document& document, Warnings& warnings);
+/// Parses `bytes`, the content of `file`, into `document`, and reads its external buffers (not its
+/// images). Throws InputError.
+void loadDocument(const std::string& file, Bytes bytes, Document& document, Warnings& warnings);
 
 }  // namespace lacuna::gltf

@@ -1,7 +1,9 @@
 #include "libcore/gltf/gltf.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <new>
 
 #include "libcore/gltf/blender.h"
@@ -74,10 +76,18 @@ void addDefaultMaterial(SceneDescription& scene) {
     scene.materials.back().name = "default";
 }
 
-void load(const std::string& path, SceneDescription& scene, Warnings& warnings) {
+Bytes copyOf(std::span<const std::uint8_t> bytes) {
+    Bytes copy{std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size()), bytes.size()};
+    std::copy(bytes.begin(), bytes.end(), copy.data.get());
+    return copy;
+}
+
+/// `bytes`: asked for once, for the file itself.
+void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDescription& scene,
+          Warnings& warnings) {
     Stopwatch watch;
     Document document;
-    loadDocument(path, document, warnings);
+    loadDocument(path, bytes(), document, warnings);
     warnings.add("animations are ignored: the scene is rendered at rest",
                  document.json.contains("animations"));
     const std::vector<Placement> placements = flattenScene(document, warnings);
@@ -109,19 +119,27 @@ void load(const std::string& path, SceneDescription& scene, Warnings& warnings) 
     scene.contentHash = document.hash.hex();
 }
 
-}  // namespace
-
-SceneDescription loadGltf(const std::string& path) {
+SceneDescription loadBytes(const std::string& path, const std::function<Bytes()>& bytes) {
     SceneDescription scene;
     scene.file = path;
     Warnings warnings;
     try {
-        load(path, scene, warnings);
+        load(path, bytes, scene, warnings);
     } catch (const std::bad_alloc&) {
         refuse(path, "", "a scene that fits into memory", "a larger one", "simplify the scene");
     }
     scene.warnings = warnings.lines();
     return scene;
+}
+
+}  // namespace
+
+SceneDescription loadGltf(const std::string& path) {
+    return loadBytes(path, [&] { return readFile(path, Limits::kFileBytes); });
+}
+
+SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb) {
+    return loadBytes(name, [&] { return copyOf(glb); });
 }
 
 void requireCamera(const SceneDescription& scene) {

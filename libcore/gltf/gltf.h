@@ -6,6 +6,8 @@
 // (document.h).
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "libcore/scene/description.h"
@@ -22,6 +24,8 @@ namespace lacuna {
 ///
 /// Throws InputError: `path: expected ..., found ...; what to do`, one line.
 SceneDescription loadGltf(const std::string& path);
+/// The same of a .glb in memory, which messages call `name`.
+SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb);
 
 /// Throws InputError if the scene has no perspective camera to render from.
 void requireCamera(const SceneDescription& scene);

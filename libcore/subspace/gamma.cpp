@@ -230,7 +230,7 @@ GammaResult optimiseGamma(const GammaData& train, const GammaData& heldOut, cons
     double loss = result.trainLoss[0] + penalty.addTo(derivative, result.gamma);
 
     for (int epoch = 1; epoch <= settings.epochs; ++epoch) {
-        if (cancel) throw Error(130, "interrupted: nothing was written");
+        if (cancel) throw InterruptedError("interrupted: nothing was written");
         next.resize(q.size());
         for (std::size_t n = 0; n < q.size(); ++n) {
             next[n] = q[n] * std::sqrt(std::max(-derivative[n], 0.0));

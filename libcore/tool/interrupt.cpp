@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "libcore/base/error.h"
 #include "libcore/tool/early_interrupt.h"
 
 namespace lacuna {

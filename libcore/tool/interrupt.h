@@ -7,9 +7,6 @@
 
 namespace lacuna {
 
-/// Exit code of an interrupted tool: 128 + SIGINT, as shells have it.
-inline constexpr int kInterruptedExit = 130;
-
 /// Installs the handlers for its lifetime; one at a time.
 class InterruptGuard {
   public:

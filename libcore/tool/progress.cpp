@@ -34,7 +34,8 @@ std::string durationText(double seconds) {
     return text;
 }
 
-Progress::Progress(bool quiet, const std::atomic<bool>& interrupted, const char* onInterrupt)
+TerminalProgress::TerminalProgress(bool quiet, const std::atomic<bool>& interrupted,
+                                   const char* onInterrupt)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       interrupted_(interrupted),
@@ -44,7 +45,7 @@ Progress::Progress(bool quiet, const std::atomic<bool>& interrupted, const char*
     if (!quiet_) thread_ = std::thread([this] { run(); });
 }
 
-Progress::~Progress() {
+TerminalProgress::~TerminalProgress() {
     if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(mutex_);
@@ -55,31 +56,32 @@ Progress::~Progress() {
     clearLine();
 }
 
-void Progress::mute() {
+void TerminalProgress::mute() {
     const std::lock_guard lock(mutex_);
     quiet_ = mute_ = true;
 }
 
-void Progress::phase(const std::string& name) {
+void TerminalProgress::phase(const std::string& name, const char* atInterrupt) {
     const std::lock_guard lock(mutex_);
     sayInterrupt();
     phase_ = name;
+    phaseAtInterrupt_ = atInterrupt;
     phaseStart_ = Clock::now();
 }
 
-void Progress::iterations(const Iterations& iterations) {
+void TerminalProgress::iterations(const Iterations& iterations) {
     const std::lock_guard lock(mutex_);
     iterations_ = iterations;
     iterationEnd_ = Clock::now();
 }
 
-void Progress::remark(const std::string& text) {
+void TerminalProgress::remark(const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (quiet_) return;
     print(text);
 }
 
-void Progress::warning(const std::string& text) {
+void TerminalProgress::warning(const std::string& text) {
     const std::lock_guard lock(mutex_);
     std::string coloured = terminal_ ? "\x1b[33m" : "";
     coloured += text;
@@ -87,18 +89,18 @@ void Progress::warning(const std::string& text) {
     print(coloured);
 }
 
-void Progress::print(const std::string& text) {
+void TerminalProgress::print(const std::string& text) {
     if (mute_) return;
     clearLine();
     std::fprintf(stderr, "%s\n", text.c_str());
 }
 
-void Progress::clearLine() {
+void TerminalProgress::clearLine() {
     if (lineShown_) std::fputs("\r\x1b[K", stderr);
     lineShown_ = false;
 }
 
-std::string Progress::line() const {
+std::string TerminalProgress::line() const {
     const auto since = [](Clock::time_point t) {
         return std::chrono::duration<double>(Clock::now() - t).count();
     };
@@ -122,26 +124,15 @@ std::string Progress::line() const {
     return text;
 }
 
-namespace {
-/// What a render does at an interrupt, by what it does now and how many iterations are done.
-const char* interruptOfRender(const std::string& phase, std::uint64_t done) {
-    if (phase.starts_with("preparing") || phase.starts_with("choosing")) return kNothingWritten;
-    if (phase.starts_with("saving") || phase == "looking for light") {
-        return "the picture is finished and is being saved (interrupted again: exit at once)";
-    }
-    if (done > 0) return "interrupted: saving what there is (again: exit at once)";
-    return "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there "
-           "is of it is saved (again: exit at once)";
-}
-}  // namespace
-
-void Progress::sayInterrupt() {
+void TerminalProgress::sayInterrupt() {
     if (quiet_ || interruptSaid_ || !interrupted_) return;
     interruptSaid_ = true;
-    print(onInterrupt_ ? onInterrupt_ : interruptOfRender(phase_, iterations_.done));
+    print(phaseAtInterrupt_      ? phaseAtInterrupt_
+          : iterations_.done > 0 ? "interrupted: saving what there is (again: exit at once)"
+                                 : onInterrupt_);
 }
 
-void Progress::run() {
+void TerminalProgress::run() {
     std::unique_lock lock(mutex_);
     Clock::time_point nextPlain = Clock::now() + kPlainEvery;
     while (!wake_.wait_for(lock, kTick, [this] { return stop_; })) {

@@ -1,35 +1,37 @@
-// What happens right now, on stderr: one refreshed line on a terminal, else a line every 10
-// seconds.
+// What a tool does right now, told to whoever wants to know: a person at a terminal, or a program
+// that uses the library.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "libcore/image/image.h"
+
 namespace lacuna {
 
-/// What tools say at an interrupt that leave nothing behind then.
+// What is said at an interrupt.
 inline constexpr const char* kNothingWritten =
     "interrupted: ending, nothing will be written (again: exit at once)";
+inline constexpr const char* kBeingSaved =
+    "the picture is finished and is being saved (interrupted again: exit at once)";
+inline constexpr const char* kFirstIteration =
+    "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there is of "
+    "it "
+    "is saved (again: exit at once)";
 
 class Progress {
   public:
-    /// `quiet`: prints nothing but warnings. A thread of its own watches the clock and
-    /// `interrupted`, which must outlive the object. `onInterrupt` is said then; null: what a
-    /// render does.
-    Progress(bool quiet, const std::atomic<bool>& interrupted, const char* onInterrupt = nullptr);
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    virtual ~Progress() = default;
 
-    /// Nothing at all is printed from now on: another process speaks.
-    void mute();
-    /// What is being done: "loading", "rendering", ...
-    void phase(const std::string& name);
+    /// What is being done: "loading", "rendering", ... `atInterrupt` is said if one comes meanwhile;
+    /// null: what the listener says by itself.
+    virtual void phase(const std::string& name, const char* atInterrupt = nullptr) = 0;
 
     struct Iterations {
         std::uint64_t done = 0;
@@ -39,13 +41,36 @@ class Progress {
         double timeLimit = 0.0;   ///< seconds; 0: none
         std::string accuracy;     ///< the error now and when it will be less; empty: not known
     };
-    void iterations(const Iterations& iterations);
+    virtual void iterations(const Iterations& iterations) = 0;
+    /// Called between iterations: `picture` makes the picture as it is now, for whoever asks it.
+    virtual void picture(const std::function<Image()>& picture) { (void)picture; }
 
+    /// Good to know.
+    virtual void remark(const std::string& text) = 0;
+    /// The picture may not be what was meant.
+    virtual void warning(const std::string& text) = 0;
+};
+
+/// On stderr: one refreshed line on a terminal, else a line every 10 seconds.
+class TerminalProgress final : public Progress {
+  public:
+    /// `quiet`: prints nothing but warnings. A thread of its own watches the clock and
+    /// `interrupted`, which must outlive the object. `onInterrupt` is said then, where no iteration
+    /// is done.
+    TerminalProgress(bool quiet, const std::atomic<bool>& interrupted,
+                     const char* onInterrupt = kFirstIteration);
+    ~TerminalProgress() override;
+    TerminalProgress(const TerminalProgress&) = delete;
+    TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+    /// Nothing at all is printed from now on: another process speaks.
+    void mute();
+    void phase(const std::string& name, const char* atInterrupt = nullptr) override;
+    void iterations(const Iterations& iterations) override;
     /// A line of its own; nothing if quiet.
-    void remark(const std::string& text);
-    /// A line of its own, quiet or not, in yellow on a terminal: the picture may not be what was
-    /// meant.
-    void warning(const std::string& text);
+    void remark(const std::string& text) override;
+    /// A line of its own, quiet or not, in yellow on a terminal.
+    void warning(const std::string& text) override;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -61,6 +86,7 @@ class Progress {
     const bool terminal_;
     const std::atomic<bool>& interrupted_;
     const char* const onInterrupt_;
+    const char* phaseAtInterrupt_ = nullptr;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     bool stop_ = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ namespace lacuna {
 struct SceneOptions {
     CommonOptions common;
     std::string scene;
+    /// The content of the .glb `scene`, where it lies in memory alone; null: it is a file.
+    std::shared_ptr<const std::vector<std::uint8_t>> sceneBytes;
 
     std::string environment;
     std::optional<double> environmentRotation, environmentScale;

@@ -124,7 +124,8 @@ Settings sceneInputs(const SceneStage& stage) {
 }
 
 SceneDescription describeScene(const SceneOptions& options) {
-    SceneDescription scene = loadGltf(options.scene);
+    SceneDescription scene =
+        options.sceneBytes ? loadGltf(options.scene, *options.sceneBytes) : loadGltf(options.scene);
     if (!options.environment.empty()) {
         scene.environment = EnvironmentDescription{options.environment, 1.0, 0.0};
     }

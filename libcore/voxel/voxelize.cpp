@@ -10,7 +10,8 @@ namespace lacuna {
 
 void throwIfCancelled(const std::atomic<bool>& cancel) {
     if (cancel)
-        throw Error(130, "interrupted: expected to finish, found a signal; nothing was written");
+        throw InterruptedError(
+            "interrupted: expected to finish, found a signal; nothing was written");
 }
 
 VoxelShape latticeOver(const VoxelBox& domain, int resolution) {

@@ -195,7 +195,7 @@ class Pilot {
         Caches caches;
         if (!row.needs.empty()) {
             caches = loadCaches(options, row, settings, stage_, pool_, cancel_, progress_);
-            progress_.phase(kPhase);
+            progress_.phase(kPhase, kNothingWritten);
         }
         // A seed of its own for each: they would share eye subpaths, and so noise.
         const std::uint64_t seed = stage_.settings.seed * 0x9e3779b97f4a7c15u + ++runs_;
@@ -204,7 +204,7 @@ class Pilot {
                                      : double(poolSubpaths()) / double(trialSubpaths());
         if (!runTrial(stage_, *small_, row, settings, caches, poolScale, seed, rays, pool_, cancel_,
                       trial)) {
-            throw Error(130, "interrupted: nothing was written");
+            throw InterruptedError("interrupted: nothing was written");
         }
     }
 
@@ -277,7 +277,7 @@ std::string triedMethods() {
 Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
                     const std::atomic<bool>& cancel, Progress& progress,
                     const std::function<void(const Image&)>& show) {
-    progress.phase(kPhase);
+    progress.phase(kPhase, kNothingWritten);
     if (stage.scene->lights().empty()) return {"pt", {}, options.sampling, "there is no light", {}};
     return Pilot(options, stage, pool, cancel, progress).choose(show);
 }

@@ -16,6 +16,9 @@ class Ranks {
     /// Joins the other processes where a launcher started this one; one object at a time, and one
     /// thread that uses it.
     Ranks();
+    /// This process alone, whoever started it.
+    struct Alone {};
+    explicit Ranks(Alone) {}
     ~Ranks();
     Ranks(const Ranks&) = delete;
     Ranks& operator=(const Ranks&) = delete;
@@ -48,6 +51,7 @@ class Ranks {
     Letter wait() const;
 
   private:
+    bool joined_ = false;
     int rank_ = 0;
     std::vector<std::string> machines_{""};  ///< names, by rank
 };

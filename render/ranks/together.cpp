@@ -114,15 +114,14 @@ class LocalMember {
 };
 
 Together::Together(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter,
-                   const PixelRect& crop, Limits limits, const InterruptGuard& interrupt,
+                   const PixelRect& crop, Limits limits, const std::atomic<bool>& interrupted,
                    const ThreadPool& pool)
     : ranks_(ranks),
       limits_(limits),
-      interruptedHere_(interrupt.requested()),
+      interruptedHere_(interrupted),
       plan_(maker.plan()),
       wholeBlocks_(maker.blocksAreWhole()),
-      local_(std::make_unique<LocalMember>(
-          PieceMaker(maker, meter, crop, interrupt.requested(), pool))),
+      local_(std::make_unique<LocalMember>(PieceMaker(maker, meter, crop, interrupted, pool))),
       work_(std::size_t(ranks.size())) {}
 
 Together::~Together() {
@@ -239,8 +238,8 @@ bool Together::advance(Film& film, Totals& totals) {
 }
 
 void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
-           const InterruptGuard& interrupt, const ThreadPool& pool) {
-    PieceMaker pieces(maker, meter, crop, interrupt.requested(), pool);
+           const std::atomic<bool>& interrupted, const ThreadPool& pool) {
+    PieceMaker pieces(maker, meter, crop, interrupted, pool);
     bool ended = false;
     const auto stop = [&] {
         const std::optional<Ranks::Letter> letter = ranks.poll();

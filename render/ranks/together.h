@@ -33,7 +33,7 @@ class Together final : public Crew {
     };
     /// Of rank 0. All references must outlive the crew.
     Together(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
-             Limits limits, const InterruptGuard& interrupt, const ThreadPool& pool);
+             Limits limits, const std::atomic<bool>& interrupted, const ThreadPool& pool);
     /// Waits for all ranks and lets them end.
     ~Together() override;
 
@@ -73,6 +73,6 @@ class Together final : public Crew {
 
 /// What ranks other than 0 do until rank 0 lets them end.
 void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
-           const InterruptGuard& interrupt, const ThreadPool& pool);
+           const std::atomic<bool>& interrupted, const ThreadPool& pool);
 
 }  // namespace lacuna

@@ -53,6 +53,7 @@ Ranks::Ranks() {
     if (!launched()) return;
     int provided = 0, size = 1;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    joined_ = true;
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     using Name = std::array<char, MPI_MAX_PROCESSOR_NAME + 1>;
@@ -67,9 +68,7 @@ Ranks::Ranks() {
 }
 
 Ranks::~Ranks() {
-    int begun = 0;
-    MPI_Initialized(&begun);
-    if (begun) MPI_Finalize();
+    if (joined_) MPI_Finalize();
 }
 
 bool Ranks::agree(const std::function<void()>& stage) const {

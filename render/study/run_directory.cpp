@@ -54,8 +54,8 @@ void RunDirectory::render(const std::string& renderer, const std::string& scene,
     fs::remove_all(cache(), error);
     if (cancel) {
         fs::remove(json(), error);
-        throw Error(kInterruptedExit,
-                    "interrupted: what was finished is kept; the same command goes on from there");
+        throw InterruptedError(
+            "interrupted: what was finished is kept; the same command goes on from there");
     }
     if (exitCode != 0) {
         throw Error(exitCode < 4 ? exitCode : 1, path_ + ": lacuna-render failed with " +

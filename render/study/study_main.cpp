@@ -66,8 +66,8 @@ int runStudy(int argc, const char* const* argv) {
     const std::string chartLibrary =
         readChartLibrary();  // missing: better known now than at the end
     const InterruptGuard interrupt;
-    Progress progress(options.common.quiet, interrupt.requested(),
-                      "interrupted: ending the running render (again: exit at once)");
+    TerminalProgress progress(options.common.quiet, interrupt.requested(),
+                              "interrupted: ending the running render (again: exit at once)");
 
     const Execution execution =
         execute(study, options.output, renderer, interrupt.requested(), progress);

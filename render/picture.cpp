@@ -1,0 +1,139 @@
+#include "render/picture.h"
+
+#include <string>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/base/stopwatch.h"
+#include "libcore/image/image_io.h"
+#include "render/block_maker.h"
+#include "render/checkpoint.h"
+#include "render/choose/choose.h"
+#include "render/first_look.h"
+#include "render/ranks/together.h"
+#include "render/render_inputs.h"
+#include "render/session.h"
+#include "render/stage.h"
+
+namespace lacuna {
+namespace {
+
+/// The ranks' parts of a picture are of one program, scene and command, or are none.
+void compareInputs(const Ranks& ranks, const CacheStamp& own) {
+    if (!ranks.leads()) {
+        ranks.send(0, Ranks::Tag::Inputs, own.text());
+        return;
+    }
+    for (int i = 1; i < ranks.size(); ++i) {
+        const Ranks::Letter letter = ranks.wait();
+        const std::string different =
+            differencesText(CacheStamp::parse(own.text()), CacheStamp::parse(textOf(letter)));
+        if (different.empty()) continue;
+        throw InputError(ranks.name(letter.from) + ": expected what " + ranks.name(0) +
+                         " renders, found another " + different +
+                         "; give all ranks the same program and the same files");
+    }
+}
+
+/// Whoever looks at the file while it renders need not wait for training.
+void showFirst(const RenderOptions& options, const Image& small) {
+    if (!options.writeEverySeconds) return;
+    LayeredImage image(small.width, small.height);
+    image.setRgb("", small);
+    image.attributes["stopped"] = std::string("no: choosing a method");
+    writeImage(options.output, image, options.png);
+}
+
+/// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
+Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
+              const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress) {
+    if (!ranks.leads()) return Choice::ofText(textOf(ranks.wait()));
+    const auto found = [&]() -> Choice {
+        if (!options.checkpoint.empty()) {
+            const auto inputs = checkpointInputs(options.checkpoint);
+            if (inputs) return Choice::ofInputs(*inputs);
+        }
+        const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["choose"]);
+        return chooseMethod(options, stage, pool, interrupted, progress,
+                            [&](const Image& small) { showFirst(options, small); });
+    };
+    const Choice choice = found();
+    progress.remark("auto: " + choice.method + ", " + choice.why +
+                    "; the same by name: " + choice.byName());
+    return choice;
+}
+
+}  // namespace
+
+std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks,
+                                      const std::atomic<bool>& interrupted, Progress& progress) {
+    const MethodRow* row = nullptr;
+    Settings settings;
+    const bool checked = ranks.agree([&] {
+        row = &namedRow(options);
+        settings = resolve(*row, options.assignments, "--set ");
+        if (options.verify && ranks.many()) {
+            throw UsageError("--verify: expected one process, found " +
+                             std::to_string(ranks.size()) + " ranks; leave it or mpirun out");
+        }
+        if (ranks.leads()) checkOutputs(options);
+    });
+    if (!checked) return std::nullopt;
+
+    const ThreadPool pool(options.common.threads);
+    std::optional<Stage> stage;
+    std::optional<FirstLook> look;
+    const bool loaded = ranks.agree([&] {
+        stage = loadStage(options, *row, settings, pool, progress);
+        progress.phase("features");
+        look.emplace(*stage, pool);
+    });
+    if (!loaded) return std::nullopt;
+    std::optional<Choice> choice;
+    if (options.method == kAuto) {
+        for (const bool leaders : {true, false}) {
+            const bool chosen = ranks.agree([&] {
+                if (ranks.leads() != leaders) return;
+                choice = choose(options, *stage, ranks, pool, interrupted, progress);
+                row = &findMethod(choice->method);
+                settings = resolve(*row, choice->assignments);
+                options.sampling = choice->sampling;
+                useMethod(*stage, options, *row, settings);
+                for (int i = 1; leaders && i < ranks.size(); ++i) {
+                    ranks.send(i, Ranks::Tag::Inputs, choice->text());
+                }
+            });
+            if (!chosen) return std::nullopt;
+        }
+        options.prepare = !row->needs.empty();
+    }
+    // Rank 0 makes the caches that are missing, the others read them.
+    Caches caches;
+    if (!ranks.leads()) options.prepare = false;
+    for (const bool leaders : {true, false}) {
+        const bool there = ranks.agree([&] {
+            if (ranks.leads() != leaders) return;
+            caches = loadCaches(options, *row, settings, *stage, pool, interrupted, progress);
+        });
+        if (!there) return std::nullopt;
+    }
+
+    BlockMaker maker(options, *row, settings, *stage, caches, pool);
+    if (ranks.many()) {
+        const CacheStamp inputs =
+            renderInputs(options, *row, settings, *stage, caches, maker.plan());
+        if (!ranks.agree([&] { compareInputs(ranks, inputs); })) return std::nullopt;
+    }
+    std::optional<Session> session;
+    const bool ready = ranks.agree([&] {
+        if (!ranks.leads()) return;
+        session.emplace(options, *row, settings, choice, *stage, caches, *look, maker, ranks, pool,
+                        interrupted, progress);
+    });
+    if (!ready) return std::nullopt;
+    if (session) return session->run();
+    serve(ranks, maker, look->meter, stage->settings.crop, interrupted, pool);
+    return std::nullopt;
+}
+
+}  // namespace lacuna
