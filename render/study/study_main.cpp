@@ -40,7 +40,7 @@ void declare(CLI::App& app, Options& options) {
         "anew for every run, and seeds are the study's.\n"
         "Examples:\n"
         "  lacuna-study door.json -o out/door\n"
-        "  lacuna-study door.json -o out/door --quick --summary door.md\n"
+        "  lacuna-study door.json -o out/door --quick --summary FILE.md\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the study, a scene or an image\n"
         "cannot be used, 130 interrupted.");
 }
