@@ -141,7 +141,7 @@ SceneDescription describeScene(const SceneOptions& options) {
         for (CameraDescription& camera : scene.cameras) camera.shift = *options.shift;
     }
     if (options.environmentColour) {
-        scene.environment = EnvironmentDescription{.colour = options.environmentColour};
+        scene.environment = EnvironmentDescription{.file = {}, .colour = options.environmentColour};
     }
     if (!options.environment.empty()) {
         scene.environment = EnvironmentDescription{options.environment, 1.0, 0.0};

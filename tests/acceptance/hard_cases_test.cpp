@@ -262,6 +262,18 @@ TEST_P(HardCases, shiftedFilmIsThatPartOfAWiderOne) {
     }
 }
 
+TEST_P(HardCases, lampsHiddenFromTheCamera) {
+    lacuna::Material lamp = emitter(Rgb(8.0f));
+    lamp.hiddenFromCamera = true;
+    SceneBuilder alone = stage();
+    alone.d.instances.clear();
+    alone.add(quad({-1, 0, 0}, {2, 0, 0}, {0, 2, 0}, alone.add(lamp)));
+    expectBlack(alone, row(), "nothing but a hidden lamp");
+    SceneBuilder b = stage();
+    b.add(quad({-0.3f, 1.2f, 0.2f}, {0.6f, 0, 0}, {0, 0, 0.6f}, b.add(lamp)));
+    expectReference(b, quickShot(150), "hidden lamp in view");
+}
+
 // Paths
 // --------------------------------------------------------------------------------------------
 
