@@ -59,7 +59,7 @@ class LacunaEngine(bpy.types.RenderEngine):
 
     def _follow(self, child, scene, layer, image):
         """Until the child ends; whether it made a whole picture."""
-        start, seen, iterations = time.monotonic(), None, 0
+        start, seen, iterations, said = time.monotonic(), None, 0, 0
         while (code := child.wait(_LOOK)) is None:
             if self.test_break():
                 self.update_stats("", "Lacuna: stopping")
@@ -72,7 +72,9 @@ class LacunaEngine(bpy.types.RenderEngine):
                 iterations = picture.header.get("iterations", iterations)
                 self._show(picture, scene, layer)
             self.update_progress(command.share_done(scene.lacuna, time.monotonic() - start, iterations))
-            self.update_stats("", "Lacuna: " + (child.lines[-1] if child.lines else "starting"))
+            if len(child.lines) != said:
+                said = len(child.lines)
+                self.update_stats("", "Lacuna: " + child.lines[-1])
         if code != 0:
             self._fail(child.error())
             return False
@@ -82,11 +84,13 @@ class LacunaEngine(bpy.types.RenderEngine):
 
     def _show(self, picture, scene, layer):
         result = self.begin_result(0, 0, picture.width, picture.height, layer=layer)
-        for made in result.layers[0].passes:
-            values = passes.pixels(made.name, picture)
-            if values is not None and len(values) == len(made.rect) * made.channels:
-                made.rect.foreach_set(values)
-        self.end_result(result)
+        try:
+            for made in result.layers[0].passes:
+                values = passes.pixels(made.name, picture)
+                if values is not None and len(values) == len(made.rect):
+                    made.rect = values
+        finally:  # Blender crashes over a result that is left open
+            self.end_result(result)
 
     def _say(self, notes):
         last_notes[:] = notes.lines()

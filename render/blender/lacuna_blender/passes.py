@@ -9,9 +9,9 @@ _FAR = 1e10  # what Blender's depth is where nothing is hit
 
 
 def pixels(name, picture):
-    """Values of a pass (rows from the bottom, flat float32), or None where the picture does not have them."""
+    """Values of a pass (pixels x channels, rows from the bottom), or None where the picture does not have them."""
     values = _values(name, picture)
-    return None if values is None else numpy.ascontiguousarray(values[::-1], numpy.float32).ravel()
+    return None if values is None else values[::-1].reshape(picture.width * picture.height, -1)
 
 
 def _values(name, picture):
