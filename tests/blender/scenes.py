@@ -138,7 +138,7 @@ def area_lamps():
     stage()
     ball(diffuse("red", 0.7, 0.2, 0.1), location=(-0.8, 0, 0.5))
     lamp("AREA", (1.5, 0.5, 2.5), (0, 0, 0.5), 120, size=0.8, color=(1, 0.9, 0.7))  # in the picture, seen by nobody
-    lamp("AREA", (0, -3, 1.6), (0, 3, 1.6), 40, shape="ELLIPSE", size=1.0, size_y=0.5).scale = (1.5, 0.5, 1)  # before it
+    lamp("AREA", (0, -3, 0.7), (0, 3, 0.5), 40, shape="ELLIPSE", size=1.0, size_y=0.5).scale = (1.5, 0.5, 1)  # before it
     camera()
 
 
@@ -257,7 +257,7 @@ def copies_and_modifiers():
     for collection in list(tower.users_collection):
         collection.objects.unlink(tower)
     source.objects.link(tower)
-    source.hide_render = True
+    bpy.context.view_layer.layer_collection.children["Source"].exclude = True
     for i in range(3):
         copy = bpy.data.objects.new(f"copy {i}", None)
         copy.instance_type, copy.instance_collection = "COLLECTION", source
