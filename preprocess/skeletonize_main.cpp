@@ -33,9 +33,12 @@ int skeletonizeTool(int argc, const char* const* argv) {
         ->type_name("FILE.glb");
     app.footer(
         "Reads KEY.voxels.vdb of lacuna-voxelize, which must have been run with the same\n"
-        "--resolution and --domain, and writes KEY.skeleton.vdb beside it. Exit codes: 0 done,\n"
-        "1 failed while running, 2 usage, 3 scene or voxels cannot be used, 130 interrupted\n"
-        "(nothing is written then).");
+        "--resolution and --domain, and writes KEY.skeleton.vdb beside it.\n"
+        "Examples:\n"
+        "  lacuna-skeletonize door.glb\n"
+        "  lacuna-skeletonize door.glb --graph door-skeleton.glb\n"
+        "Exit codes: 0 done, 1 failed while running, 2 usage, 3 scene or voxels cannot be used,\n"
+        "130 interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const VoxelSettings settings = voxels.read();
     if (!settings.domain.empty()) parseDomain(settings.domain);

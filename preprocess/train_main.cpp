@@ -68,8 +68,11 @@ int trainTool(int argc, const char* const* argv) {
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
         "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt with the\n"
-        "same options of scene, picture and camera: what is learned is of what they show. Exit\n"
-        "codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
+        "same options of scene, picture and camera: what is learned is of what they show.\n"
+        "Examples:\n"
+        "  lacuna-train door.glb --paths 200000\n"
+        "  lacuna-render door.glb -o door.exr --method spcbpt --set train.paths=200000\n"
+        "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
         "interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const TrainSettings settings{training.read(), options.common.seed};

@@ -20,10 +20,13 @@ int voxelizeTool(int argc, const char* const* argv) {
     addBuildOptions(app, options);
     const TableOptions<VoxelSettings> voxels(app, voxelOptions());
     app.footer(
-        "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the "
-        "scene's\n"
-        "coordinates. Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be\n"
-        "used, 130 interrupted (nothing is written then).");
+        "Writes KEY.voxels.vdb into the scene's cache: grids `solid` and `distance` in the\n"
+        "scene's coordinates.\n"
+        "Examples:\n"
+        "  lacuna-voxelize door.glb\n"
+        "  lacuna-voxelize door.glb --resolution 256 -o door.vdb\n"
+        "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
+        "interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const VoxelSettings settings = voxels.read();
     if (!settings.domain.empty()) parseDomain(settings.domain);

@@ -39,6 +39,8 @@ void declare(CLI::App& app, Options& options) {
         "Black reference: mape and relmse are 0 where I = R everywhere, else inf. JSON has no\n"
         "infinity: in --json they are then the string \"inf\". --cache, --threads and --seed are\n"
         "accepted as by every tool and change nothing here.\n"
+        "Examples:\n"
+        "  lacuna-compare door.exr reference.exr --error-map door-errors.png\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 an image cannot be used.");
 }
 

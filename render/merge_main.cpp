@@ -39,6 +39,10 @@ void declare(CLI::App& app, Options& options) {
         "times are sums. Refused: parts of other commands (another scene, method, setting, seed,\n"
         "size, version), blocks that come twice, and, without --gaps, blocks that are missing.\n"
         "--cache and --seed are accepted as by every tool and change nothing here.\n"
+        "Examples:\n"
+        "  lacuna-render hall.glb -o part-0.exr --method bpt --iterations 128 --blocks 0,1\n"
+        "  lacuna-render hall.glb -o part-1.exr --method bpt --iterations 128 --blocks 1,2\n"
+        "  lacuna-merge part-0.exr part-1.exr -o hall.exr\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 a part cannot be used.");
 }
 

@@ -144,6 +144,11 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         "technique layers, and in the header how it was made; with --crop it has the size of the\n"
         "crop, `crop` in the header says where.\n"
         "mpirun -n P lacuna-render ... makes the same picture with P processes.\n"
+        "Examples:\n"
+        "  lacuna-render door.glb -o door.png --time 10s\n"
+        "  lacuna-render door.glb -o door.exr --method spcbpt --prepare --time 1m\n"
+        "  lacuna-render door.glb -o door.exr --until mape=0.05 --checkpoint door.checkpoint\n"
+        "  lacuna-render door.glb --effects\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene or an image cannot be\n"
         "used, 130 interrupted.");
 }

@@ -12,6 +12,7 @@
 #include "render/options.h"
 #include "render/picture.h"
 #include "render/replay.h"
+#include "render/value_words.h"
 
 namespace lacuna {
 namespace {
@@ -73,7 +74,7 @@ int render(int argc, char** argv) {
     const bool parsed = ranks.agree([&] {
         CLI::App app("Renders a glTF scene by bidirectional methods", "lacuna-render");
         declareOptions(app, options);
-        done = parseCommandLine(app, argc, argv);
+        done = parseCommandLine(app, argc, argv, renderWords());
         if (done) return;
         options.commandLine = commandLineText(argc, argv);
         if (!options.listMethods && options.helpMethod.empty()) checkOptions(options);

@@ -73,6 +73,12 @@ void setSource(FullPath& path, const Scene& scene, const PathVertex& y0) {
     setSource(path, scene, y0.throughput, scene.lights().opacity(y0.light, y0.lightUv));
 }
 
+/// Eye walks pass such a surface at their first step, and no other strategy may find it there.
+bool isHiddenFromCamera(const Scene& scene, const PathVertex& y) {
+    if (y.index == 0) return scene.lights().hiddenFromCamera(y.light);
+    return scene.description().materials[y.material].hiddenFromCamera;
+}
+
 }  // namespace
 
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
@@ -100,6 +106,7 @@ std::optional<LensEdge> lensEdge(const Walker& walker, const PathVertex& y, cons
     // A punctual light in the picture itself has no size: no strategy makes that path, so that all
     // methods agree (and no pixel holds a spike that grows with the resolution).
     if (y.index == 0 && !isHittable(lights.kind(y.light))) return std::nullopt;
+    if (isHiddenFromCamera(walker.scene(), y)) return std::nullopt;
     const Edge edge = edgeBetween(z0, y);
     if (!(edge.geometry > 0.0f)) return std::nullopt;
     const auto projection = walker.camera().project(z0.position, edge.direction);

@@ -34,6 +34,7 @@ class Reader {
         readAlpha();
         readTransmission();
         readClearcoat();
+        readExtras();
         return std::move(material_);
     }
 
@@ -159,6 +160,19 @@ class Reader {
             "a clearcoat has the normals of what is under it: no normal map, or lack of one, of "
             "its own",
             coat->contains("clearcoatNormalTexture") || material_.normalTexture);
+    }
+
+    void readExtras() {
+        const json* extras = member(*json_, "extras");
+        const json* lacuna = extras && extras->is_object() ? member(*extras, "lacuna") : nullptr;
+        if (!lacuna || !lacuna->is_object()) return;
+        const json* hidden = member(*lacuna, "hidden_from_camera");
+        if (!hidden) return;
+        if (!hidden->is_boolean()) {
+            refuse(document_.file, place_ + ".extras.lacuna.hidden_from_camera", "true or false",
+                   printable(hidden->dump(), 60));
+        }
+        material_.hiddenFromCamera = hidden->get<bool>();
     }
 
     static const json* member(const json& object, const char* name) {

@@ -18,11 +18,16 @@ const char* name(RayKind kind) {
     return kNames[std::size_t(kind)];
 }
 
+namespace {
+constexpr unsigned kAtLens = 1;  // an Embree ray's id, for the filter
+}
+
 struct Accel::Impl {
     /// What a filter callback needs to find the object behind one Embree geometry.
     struct FilterData {
         const Impl* impl;
         std::uint32_t object;
+        bool hasHoles, hiddenFromCamera;
     };
 
     RTCDevice device = nullptr;
@@ -64,6 +69,11 @@ struct Accel::Impl {
         const auto& data = *static_cast<const FilterData*>(args->geometryUserPtr);
         for (unsigned i = 0; i < args->N; ++i) {
             if (args->valid[i] != -1) continue;
+            if (data.hiddenFromCamera && RTCRayN_id(args->ray, args->N, i) == kAtLens) {
+                args->valid[i] = 0;
+                continue;
+            }
+            if (!data.hasHoles) continue;
             const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0);
             const Hit hit{instance != RTC_INVALID_GEOMETRY_ID ? instance : data.object,
                           RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
@@ -78,8 +88,10 @@ struct Accel::Impl {
         }
     }
 
-    void attachFilter(RTCGeometry g, std::uint32_t object) {
-        filterData.push_back({this, object});
+    /// Only where there is something to ask: it slows rays down.
+    void attachFilter(RTCGeometry g, const AccelObject& object, std::uint32_t index) {
+        if (!object.hasHoles && !object.hiddenFromCamera) return;
+        filterData.push_back({this, index, object.hasHoles, object.hiddenFromCamera});
         rtcSetGeometryUserData(g, &filterData.back());
         rtcSetGeometryIntersectFilterFunction(g, &Impl::filter);
         rtcSetGeometryOccludedFilterFunction(g, &Impl::filter);
@@ -123,7 +135,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
                 if (!shared) {
                     shared = a.newScene();
                     RTCGeometry triangles = a.makeTriangles(meshes[object.mesh]);
-                    if (object.hasHoles) a.attachFilter(triangles, i);
+                    a.attachFilter(triangles, object, i);
                     rtcCommitGeometry(triangles);
                     rtcAttachGeometry(shared, triangles);
                     rtcReleaseGeometry(triangles);
@@ -138,7 +150,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
                 rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
             } else {
                 g = a.makeTriangles(meshes[object.mesh]);
-                if (object.hasHoles) a.attachFilter(g, i);
+                a.attachFilter(g, object, i);
             }
             rtcCommitGeometry(g);
             rtcAttachGeometryByID(a.scene, g, i);
@@ -165,7 +177,7 @@ void fill(RTCRay& r, const Ray& ray) {
     r.tfar = ray.tFar;
     r.time = 0.0f;
     r.mask = unsigned(-1);
-    r.id = 0;
+    r.id = ray.atLens ? kAtLens : 0;
     r.flags = 0;
 }
 }  // namespace

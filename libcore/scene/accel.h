@@ -21,8 +21,9 @@ class ThreadPool;
 struct AccelObject {
     std::uint32_t mesh = 0;
     bool instanced = false;
-    Affine toWorld;         ///< used where instanced
-    bool hasHoles = false;  ///< some of its points may not be there
+    Affine toWorld;                 ///< used where instanced
+    bool hasHoles = false;          ///< some of its points may not be there
+    bool hiddenFromCamera = false;  ///< rays at the lens pass it
 };
 
 /// Triangles as Embree reads them. `positions` must have one more element than vertices: Embree

@@ -1,5 +1,6 @@
 #include "libcore/scene/camera.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libcore/base/sampling.h"
@@ -7,7 +8,7 @@
 namespace lacuna {
 
 Camera::Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens)
-    : lens_(lens), tangent_(std::tan(0.5 * description.yfov)) {
+    : lens_(lens), tangent_(std::tan(0.5 * description.yfov)), shift_(description.shift) {
     const Affine& m = description.toWorld;
     const Vec3d forward = normalize(-m.m[2]);
     const Vec3d right = normalize(cross(forward, m.m[1]));
@@ -25,6 +26,9 @@ void Camera::setFilm(Film film) {
     const double tanX = tanY * film.width / film.height;
     tanX_ = float(tanX);
     tanY_ = float(tanY);
+    const double largerSide = 2.0 * std::max(tanX, tanY);
+    centreX_ = float(shift_[0] * largerSide);
+    centreY_ = float(shift_[1] * largerSide);
     pixelArea_ = float((2.0 * tanX / film.width) * (2.0 * tanY / film.height));
 }
 
@@ -41,8 +45,8 @@ Vec3 Camera::sampleLens(Vec2 u) const {
 }
 
 Camera::Direction Camera::directionAt(const Vec3& lensPoint, Vec2 raster) const {
-    const float x = (2.0f * raster.x / float(film_.width) - 1.0f) * tanX_;
-    const float y = (1.0f - 2.0f * raster.y / float(film_.height)) * tanY_;
+    const float x = (2.0f * raster.x / float(film_.width) - 1.0f) * tanX_ + centreX_;
+    const float y = (1.0f - 2.0f * raster.y / float(film_.height)) * tanY_ + centreY_;
     Vec3 direction = forward_ + right_ * x + up_ * y;
     if (lens_.radius > 0.0f) {
         // Every ray through this raster position meets the pinhole's ray on the plane in focus.
@@ -60,8 +64,8 @@ std::optional<Camera::Projection> Camera::project(const Vec3& lensPoint,
     Vec3 q =
         direction * (1.0f / cosine);  // on the image plane at distance 1, seen from the pinhole
     if (lens_.radius > 0.0f) q += (lensPoint - position_) * (1.0f / lens_.focus);
-    const Vec2 raster{(dot(q, right_) / tanX_ + 1.0f) * 0.5f * float(film_.width),
-                      (1.0f - dot(q, up_) / tanY_) * 0.5f * float(film_.height)};
+    const Vec2 raster{((dot(q, right_) - centreX_) / tanX_ + 1.0f) * 0.5f * float(film_.width),
+                      (1.0f - (dot(q, up_) - centreY_) / tanY_) * 0.5f * float(film_.height)};
     if (!(raster.x >= 0.0f && raster.x < float(film_.width) && raster.y >= 0.0f &&
           raster.y < float(film_.height))) {
         return std::nullopt;

@@ -3,6 +3,7 @@
 // "Camera"; numerics.md, "Camera").
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "libcore/base/vec.h"
@@ -21,7 +22,8 @@ class Camera {
     };
 
     /// `offset` is subtracted from the camera's position (the scene's centre). Pixels are square:
-    /// the vertical angle is the file's, the horizontal one follows from the film.
+    /// the vertical angle is the file's, the horizontal one follows from the film. A shifted film
+    /// lies beside the viewing axis, in the same plane.
     Camera(const CameraDescription& description, Vec3d offset, Film film, Lens lens);
 
     Film film() const { return film_; }
@@ -56,9 +58,11 @@ class Camera {
     Film film_;
     Lens lens_;
     Vec3 position_, right_, up_, forward_;
-    double tangent_;  ///< of half the vertical angle
+    double tangent_;               ///< of half the vertical angle
+    std::array<double, 2> shift_;  ///< CameraDescription::shift
     float tanX_, tanY_;
-    float pixelArea_;  ///< on the image plane at distance 1
+    float centreX_, centreY_;  ///< of the film, on the image plane at distance 1, right and up
+    float pixelArea_;          ///< on the image plane at distance 1
 };
 
 }  // namespace lacuna

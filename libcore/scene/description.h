@@ -41,6 +41,9 @@ struct CameraDescription {
     Affine toWorld;
     double yfov = 0.8;         ///< radians, full vertical angle
     double aspectRatio = 0.0;  ///< width / height; 0: not given
+    /// Of the picture against the viewing axis, to the right and up, as a fraction of the picture's
+    /// larger side.
+    std::array<double, 2> shift{};
 };
 
 /// KHR_lights_punctual, in world coordinates. Units 1:1: W/sr per channel (point, spot), irradiance
@@ -59,6 +62,7 @@ struct EnvironmentDescription {
     std::string file;  ///< path that can be opened, latitude-longitude .exr or .hdr
     double scale = 1.0;
     double rotationDegrees = 0.0;  ///< about +Y
+    std::optional<Rgb> colour{};   ///< radiance from everywhere, in place of the file
 };
 
 struct SceneDescription {

@@ -30,6 +30,7 @@ EmissiveTriangle emissiveTriangle(const SceneDescription& description, const Bak
         e.texture = &description.textures[std::size_t(use.value)];
     }
     e.twoSided = material.doubleSided;
+    e.hiddenFromCamera = material.hiddenFromCamera;
     e.material = mesh.material;
     return e;
 }

@@ -43,6 +43,7 @@ struct EmissiveTriangle {
     const Texture* texture = nullptr;
     std::optional<TriangleAlpha> alpha;  ///< where some of its points may not be there
     bool twoSided = false;
+    bool hiddenFromCamera = false;
     std::uint32_t material = kNone;
 };
 
@@ -132,6 +133,10 @@ class Lights {
     /// Whether it shines to both sides of its surface.
     bool twoSided(std::uint32_t light) const {
         return light < area_.size() && area_[light].twoSided;
+    }
+    /// Whether the lens does not see it.
+    bool hiddenFromCamera(std::uint32_t light) const {
+        return light < triangles_.size() && triangles_[light].hiddenFromCamera;
     }
     /// LightPoint::opacity of a light's point alone.
     float opacity(std::uint32_t light, Vec2 uv) const {

@@ -69,6 +69,8 @@ struct Material {
     bool doubleSided = false;        ///< emission from both sides (geometry is never culled)
     Alpha alphaMode = Alpha::Opaque;
     float alphaCutoff = 0.5f;
+    bool hiddenFromCamera =
+        false;        ///< only the edge at the lens passes it, as if it were not there
     LobeSet without;  ///< lobes to leave out, whatever the rest says
 };
 

@@ -20,6 +20,7 @@ struct Ray {
     Vec3 origin;
     Vec3 direction;  ///< any length: tFar is in its units
     float tFar = std::numeric_limits<float>::infinity();
+    bool atLens = false;  ///< one of its ends is the lens: it passes what the camera does not see
 };
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;

@@ -31,8 +31,8 @@ void requireNear(const SceneDescription& scene, const std::string& what, double 
                      "; scale the scene down, or take out what is far away");
 }
 
-std::unique_ptr<Accel> makeAccel(const BakedScene& baked, const Surfaces& surfaces,
-                                 const ThreadPool& pool) {
+std::unique_ptr<Accel> makeAccel(const SceneDescription& scene, const BakedScene& baked,
+                                 const Surfaces& surfaces, const ThreadPool& pool) {
     std::vector<AccelMesh> meshes;
     for (const BakedMesh& m : baked.meshes) meshes.push_back({m.positions, m.triangles});
     std::vector<AccelObject> objects;
@@ -42,6 +42,7 @@ std::unique_ptr<Accel> makeAccel(const BakedScene& baked, const Surfaces& surfac
         a.instanced = o.instanced;
         for (std::size_t c = 0; c < 4; ++c) a.toWorld.m[c] = Vec3d(o.toWorld[c]);
         a.hasHoles = surfaces.hasHoles(o);
+        a.hiddenFromCamera = scene.materials[baked.meshes[o.mesh].material].hiddenFromCamera;
         objects.push_back(a);
     }
     return std::make_unique<Accel>(
@@ -69,12 +70,13 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         requireNear(description_, "a lamp", length(light.position - baked_.centre));
     }
     if (const auto& e = description_.environment) {
-        environment_ = std::make_unique<Environment>(readImage(e->file), e->scale,
-                                                     e->rotationDegrees, e->file);
+        const Image map = e->colour ? Image(1, 1, *e->colour) : readImage(e->file);
+        environment_ = std::make_unique<Environment>(
+            map, e->scale, e->rotationDegrees, e->colour ? "the environment's colour" : e->file);
     }
     lights_ = std::make_unique<Lights>(emissiveTriangles(description_, baked_), description_.lights,
                                        baked_.centre, environment_.get(), baked_.radius);
-    accel_ = makeAccel(baked_, surfaces_, pool);
+    accel_ = makeAccel(description_, baked_, surfaces_, pool);
 }
 
 Scene::~Scene() = default;
@@ -100,6 +102,7 @@ std::optional<Hit> Scene::trace(const Vec3& origin, const Vec3& ng, const Vec3& 
                                 RayKind kind, RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
     Ray ray{offsetOrigin(origin, ng, direction, offsetFloor_), direction};
+    ray.atLens = kind == RayKind::Camera;
     const std::optional<Hit> hit = accel_->intersect(ray);
     if (tally.recording) {
         if (hit) ray.tFar = hit->distance;
@@ -124,7 +127,7 @@ bool Scene::visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& n
     const Vec3 direction = b - a;
     const Vec3 from = offsetOrigin(a, ngA, direction, offsetFloor_);
     const Vec3 to = offsetOrigin(b, ngB, -direction, offsetFloor_);
-    const Ray ray{from, to - from, 1.0f - 1e-6f};
+    const Ray ray{from, to - from, 1.0f - 1e-6f, kind == RayKind::Splat};
     if (tally.recording) tally.recording->push_back({ray, kind});
     return !accel_->occluded(ray);
 }

@@ -74,10 +74,11 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("point_lights", have.points, "point light", "", "no point light");
     t.add("spot_lights", have.spots, "spot light", "", "no spot light");
     t.add("directional_lights", have.directionals, "directional light", "", "no directional light");
-    t.add("environment", scene.environment.has_value(),
-          scene.environment
-              ? scene.environment->file
-              : "no environment map: paths that leave the scene end, no disk sampling");
+    t.add(
+        "environment", scene.environment.has_value(),
+        scene.environment
+            ? scene.environment->colour ? "the same light from everywhere" : scene.environment->file
+            : "no environment map: paths that leave the scene end, no disk sampling");
     t.add("emissive_textures", have.emissiveTextures,
           have.emissiveTextures ? "emission varies over triangles" : "no emissive texture");
     t.add("textures", have.count([](const Material& m) {

@@ -6,6 +6,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/extent.h"
 #include "libcore/base/number_text.h"
+#include "libcore/base/text_list.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/image/image_io.h"
 #include "libcore/tool/tolerance.h"
@@ -17,6 +18,10 @@ void addSceneOptions(CLI::App& app, SceneOptions& o) {
     app.add_option("--env", o.environment,
                    "Latitude-longitude map, .exr or .hdr, instead of the scene's")
         ->type_name("FILE")
+        ->group(scene);
+    app.add_option("--env-colour", o.environmentColourText,
+                   "The same radiance from everywhere, instead of the scene's environment")
+        ->type_name("R,G,B")
         ->group(scene);
     app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
         ->type_name("DEG")
@@ -51,6 +56,11 @@ void addViewOptions(CLI::App& app, SceneOptions& o) {
         ->group(view);
     app.add_option("--camera", o.camera, "Camera of the scene (default: the first)")
         ->type_name("NAME")
+        ->group(view);
+    app.add_option("--shift", o.shiftText,
+                   "Move the picture to the right and up beside the viewing axis, by this part of "
+                   "its larger side")
+        ->type_name("X,Y")
         ->group(view);
     app.add_option("--aperture", o.aperture, "Radius of the thin lens, scene units; 0: pinhole")
         ->type_name("R")
@@ -157,10 +167,41 @@ void parseScale(SceneOptions& o) {
     o.scale = numberIn(text.substr(0, text.size() - 1)) / 100.0;
 }
 
+/// "0.1,-0.25": so many numbers from `low` to `high`.
+template <std::size_t count>
+std::array<double, count> parseNumbers(const char* option, const std::string& text, double low,
+                                       double high, const char* expected) {
+    const std::vector<std::string_view> parts = splitAtCommas(text);
+    std::array<double, count> values{};
+    bool right = parts.size() == count;
+    for (std::size_t i = 0; right && i < count; ++i) {
+        const std::optional<double> value = parseNumber(parts[i]);
+        right = value && *value >= low && *value <= high;
+        values[i] = value.value_or(0.0);
+    }
+    if (right) return values;
+    throw UsageError(std::string(option) + ": expected " + expected + ", found '" + text + "'");
+}
+
+void parseEnvironmentColour(SceneOptions& o) {
+    if (!o.environment.empty()) {
+        throw UsageError("--env-colour: expected one environment, found --env, " + o.environment +
+                         "; leave one of them out");
+    }
+    const auto c = parseNumbers<3>("--env-colour", o.environmentColourText, 0.0, 1e30,
+                                   "three numbers R,G,B from 0 to 1e30");
+    o.environmentColour = Rgb(float(c[0]), float(c[1]), float(c[2]));
+}
+
 }  // namespace
 
 void checkSceneOptions(SceneOptions& o) {
     if (!o.scaleText.empty()) parseScale(o);
+    if (!o.shiftText.empty()) {
+        o.shift = parseNumbers<2>("--shift", o.shiftText, -100.0, 100.0,
+                                  "two numbers X,Y from -100 to 100");
+    }
+    if (!o.environmentColourText.empty()) parseEnvironmentColour(o);
     o.effectSwitches = parseEffectSwitches(o.effectTexts);
     requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
@@ -178,6 +219,7 @@ std::string sceneArguments(const SceneOptions& o) {
     Arguments a;
     a.add("--cache", o.common.cacheDirectory);
     a.add("--env", o.environment);
+    a.add("--env-colour", o.environmentColourText);
     a.add("--env-rotate", o.environmentRotation);
     a.add("--env-scale", o.environmentScale);
     for (const EffectSwitch& s : o.effectSwitches) {
@@ -192,6 +234,7 @@ std::string viewArguments(const SceneOptions& o) {
     a.add("--width", o.width);
     a.add("--height", o.height);
     a.add("--camera", o.camera);
+    a.add("--shift", o.shiftText);
     a.add("--aperture", o.aperture);
     a.add("--focus", o.focus);
     a.add("--max-depth", o.maxDepth);

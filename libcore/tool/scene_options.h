@@ -2,12 +2,14 @@
 // that loads one, so that what is learned of a scene beforehand is learned of what is rendered.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "libcore/base/vec.h"
 #include "libcore/tool/effect_switches.h"
 #include "libcore/tool/tool.h"
 
@@ -19,7 +21,7 @@ struct SceneOptions {
     /// The content of the .glb `scene`, where it lies in memory alone; null: it is a file.
     std::shared_ptr<const std::vector<std::uint8_t>> sceneBytes;
 
-    std::string environment;
+    std::string environment, environmentColourText;
     std::optional<double> environmentRotation, environmentScale;
     std::vector<std::string> effectTexts;  ///< --effect
     double tolerance = 0.0;
@@ -27,18 +29,20 @@ struct SceneOptions {
     std::string camera;
     std::optional<double> aperture, focus;
     std::optional<std::int64_t> width, height;
-    std::string scaleText;
+    std::string scaleText, shiftText;
     std::optional<std::int64_t> maxDepth, rouletteDepth;
 
     // By checkSceneOptions.
     std::vector<EffectSwitch> effectSwitches;  ///< of effectTexts
     double scale = 1.0;                        ///< of the picture's sides, of scaleText
+    std::optional<std::array<double, 2>> shift;
+    std::optional<Rgb> environmentColour;
 };
 
-/// Declares --env, --env-rotate, --env-scale, --effect and --tolerance. Both must outlive the
+/// Declares --env, --env-colour, --env-rotate, --env-scale, --effect and --tolerance. Both must outlive the
 /// parsing.
 void addSceneOptions(CLI::App& app, SceneOptions& options);
-/// Declares --width, --height, --scale, --camera, --aperture, --focus, --max-depth and --rr-depth.
+/// Declares --width, --height, --scale, --camera, --shift, --aperture, --focus, --max-depth and --rr-depth.
 void addViewOptions(CLI::App& app, SceneOptions& options);
 
 /// Parses the switches and checks every range that the scene has no say in. Throws UsageError, and

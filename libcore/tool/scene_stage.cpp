@@ -6,6 +6,7 @@
 
 #include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
+#include "libcore/base/number_text.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/gltf/gltf.h"
 #include "libcore/tool/tolerance.h"
@@ -98,6 +99,10 @@ Settings viewInputsOf(const SceneDescription& scene, const CameraDescription& ca
     inputs["lens"] = lens.radius > 0.0f ? "radius " + numberText(double(lens.radius)) + " focus " +
                                               numberText(double(lens.focus))
                                         : "pinhole";
+    if (camera.shift != std::array<double, 2>{}) {
+        inputs["lens"] +=
+            " shift " + numberText(camera.shift[0]) + " " + numberText(camera.shift[1]);
+    }
     inputs["max depth"] = std::to_string(limits.maxDepth);
     inputs["roulette depth"] = std::to_string(limits.rouletteDepth);
     return inputs;
@@ -110,7 +115,7 @@ Settings sceneInputs(const SceneStage& stage) {
     Settings inputs{{"scene", scene.contentHash}, {"tolerance", numberText(stage.tolerance)}};
     inputs["environment"] = "none";
     if (scene.environment) {
-        inputs["environment"] = hashOfFile(scene.environment->file);
+        inputs["environment"] = contentOf(*scene.environment);
         inputs["environment scale"] = numberText(scene.environment->scale);
         inputs["environment angle"] = numberText(scene.environment->rotationDegrees);
     }
@@ -123,16 +128,29 @@ Settings sceneInputs(const SceneStage& stage) {
     return inputs;
 }
 
+std::string contentOf(const EnvironmentDescription& environment) {
+    if (!environment.colour) return hashOfFile(environment.file);
+    const Rgb& c = *environment.colour;
+    return "colour " + numberText(double(c.r)) + " " + numberText(double(c.g)) + " " +
+           numberText(double(c.b));
+}
+
 SceneDescription describeScene(const SceneOptions& options) {
     SceneDescription scene =
         options.sceneBytes ? loadGltf(options.scene, *options.sceneBytes) : loadGltf(options.scene);
+    if (options.shift) {
+        for (CameraDescription& camera : scene.cameras) camera.shift = *options.shift;
+    }
+    if (options.environmentColour) {
+        scene.environment = EnvironmentDescription{.file = {}, .colour = options.environmentColour};
+    }
     if (!options.environment.empty()) {
         scene.environment = EnvironmentDescription{options.environment, 1.0, 0.0};
     }
     if (!scene.environment && (options.environmentRotation || options.environmentScale)) {
         throw UsageError(
             "--env-rotate, --env-scale: expected an environment, found none in the scene; add "
-            "--env FILE");
+            "--env FILE or --env-colour R,G,B");
     }
     if (options.environmentRotation) {
         scene.environment->rotationDegrees = *options.environmentRotation;

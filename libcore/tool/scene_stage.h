@@ -43,7 +43,10 @@ struct SceneStage {
 /// environment's file; throws InputError if it cannot.
 Settings sceneInputs(const SceneStage& stage);
 
-/// The file with the options' environment put into it. Throws InputError, UsageError.
+/// What its map is: the hash of the file, or "colour R G B". Throws InputError if it cannot be read.
+std::string contentOf(const EnvironmentDescription& environment);
+
+/// The file with the options' environment and shift put into it. Throws InputError, UsageError.
 SceneDescription describeScene(const SceneOptions& options);
 
 /// The size of the whole picture: options, else extras, else by the camera. Throws InputError

@@ -99,11 +99,13 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.add_flag("-v,--verbose", options.verbose, "More on stderr");
 }
 
-std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
+std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,
+                                    const ValueWords& words) {
+    addHelpForms(app, words);
     app.set_version_flag("--version", app.get_name() + " " + LACUNA_VERSION);
     try {
         app.parse(argc, argv);
-    } catch (const CLI::Success& done) {  // --help, --version
+    } catch (const CLI::Success& done) {  // --help, --help-as, --version
         return app.exit(done);
     } catch (const CLI::ParseError& e) {
         throw UsageError("command line: " + std::string(e.what()) + "; see " + app.get_name() +

@@ -6,9 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace CLI {
-class App;
-}
+#include "libcore/tool/help_forms.h"
 
 namespace lacuna {
 
@@ -25,9 +23,10 @@ struct CommonOptions {
 /// --cache --threads --seed --json --quiet -v. `app` and `options` must outlive the parsing.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-/// Parses, after adding --version. nullopt: go on. A value: help or version was printed, exit with
-/// it. Throws UsageError for a wrong command line.
-std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv);
+/// Parses, after adding --version and --help-as; `words` complete values in shells. nullopt: go on.
+/// A value: help or version was printed, exit with it. Throws UsageError for a wrong command line.
+std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,
+                                    const ValueWords& words = {});
 
 /// A text as a shell takes it, in quotes where it needs them.
 std::string shellQuoted(const std::string& text);

@@ -17,7 +17,7 @@ SceneFacts inspectScene(const StudyScene& scene, const ThreadPool& pool) {
     SceneFacts facts;
     facts.contentHash = description.contentHash;
     facts.hash = description.contentHash;
-    if (description.environment) facts.hash += hashOfFile(description.environment->file);
+    if (description.environment) facts.hash += contentOf(*description.environment);
     const Camera::Film film = filmOf(options, description);
     facts.width = film.width;
     facts.height = film.height;

@@ -38,6 +38,9 @@ void declare(CLI::App& app, Options& options) {
         "changed: study, scene, reference or renderer.\n"
         "--cache and --seed are accepted as by every tool and change nothing: caches are built\n"
         "anew for every run, and seeds are the study's.\n"
+        "Examples:\n"
+        "  lacuna-study door.json -o out/door\n"
+        "  lacuna-study door.json -o out/door --quick --summary FILE.md\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the study, a scene or an image\n"
         "cannot be used, 130 interrupted.");
 }

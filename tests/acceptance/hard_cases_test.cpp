@@ -241,6 +241,39 @@ TEST_P(HardCases, thinLensAndItsLimit) {
     stabilityCase("thin-lens", worstDeviation(), kOfAllowed);
 }
 
+/// Middle 4 pixels to the right and 2 up: a quarter and an eighth of its side.
+TEST_P(HardCases, shiftedFilmIsThatPartOfAWiderOne) {
+    SceneBuilder b = stage();
+    addLight(b, LightChoice::Quad);
+    SceneBuilder wide = b;
+    b.d.cameras[0].shift = {0.25, 0.125};
+    double& yfov = wide.d.cameras[0].yfov;
+    yfov = 2.0 * std::atan(3.0 * std::tan(0.5 * yfov));
+    for (const Camera::Lens lens : {Camera::Lens{}, Camera::Lens{0.15f, 2.5f}}) {
+        Shot shot = quickShot(150);
+        shot.width = shot.height = 16;
+        shot.lens = lens;
+        const Picture shifted = render(*b.build(), row(), shot);
+        shot.width = shot.height = 48;
+        shot.crop = {20, 36, 14, 30};
+        shot.seed = 101;
+        expectSame(shifted, render(*wide.build(), pathTracer(), shot),
+                   row().name + (lens.radius > 0.0f ? ", lens" : ", pinhole"));
+    }
+}
+
+TEST_P(HardCases, lampsHiddenFromTheCamera) {
+    lacuna::Material lamp = emitter(Rgb(8.0f));
+    lamp.hiddenFromCamera = true;
+    SceneBuilder alone = stage();
+    alone.d.instances.clear();
+    alone.add(quad({-1, 0, 0}, {2, 0, 0}, {0, 2, 0}, alone.add(lamp)));
+    expectBlack(alone, row(), "nothing but a hidden lamp");
+    SceneBuilder b = stage();
+    b.add(quad({-0.3f, 1.2f, 0.2f}, {0.6f, 0, 0}, {0, 0, 0.6f}, b.add(lamp)));
+    expectReference(b, quickShot(150), "hidden lamp in view");
+}
+
 // Paths
 // --------------------------------------------------------------------------------------------
 

@@ -72,6 +72,12 @@ TEST(Material, EmissiveStrengthMultiplies) {
     EXPECT_EQ(m.emission, Rgb(20.0f, 10.0f, 40.0f));
 }
 
+TEST(Material, MayBeHiddenFromTheCamera) {
+    EXPECT_FALSE(loadMaterial(nlohmann::json::object()).hiddenFromCamera);
+    EXPECT_TRUE(
+        loadMaterial({{"extras", {{"lacuna", {{"hidden_from_camera", true}}}}}}).hiddenFromCamera);
+}
+
 TEST(Material, TransmissionIorVolumeSpecular) {
     const Material m = loadMaterial({{"extensions",
                                       {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},

@@ -430,5 +430,16 @@ TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
     EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).g, 0.5f, 1e-5f);
 }
 
+TEST_F(RenderOutput, AnEnvironmentOfOneColour) {
+    LayeredImage sky(1, 1);
+    sky.setRgb("", Image(1, 1, Rgb(0.5f, 1.0f, 2.0f)));
+    writeExr(path("sky.exr"), sky);
+    ASSERT_EQ(run(quick("bpt", "--quiet --env @sky.exr")).exitCode, 0);
+    const Image ofMap = readImage(path("out.exr"));
+    ASSERT_EQ(run(quick("bpt", "--quiet --env-colour 0.5,1,2")).exitCode, 0);
+    EXPECT_EQ(readImage(path("out.exr")).pixels, ofMap.pixels);
+    EXPECT_NEAR(ofMap.at(0, 0).b, 2.0f, 1e-5f);  // past the room
+}
+
 }  // namespace
 }  // namespace lacuna::test

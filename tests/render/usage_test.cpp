@@ -41,6 +41,8 @@ TEST_F(RenderUsage, HelpNamesEveryOption) {
                                "--tone",
                                "--png-bits",
                                "--sheet",
+                               "--shift",
+                               "--env-colour",
                                "--list-methods",
                                "--help-method",
                                "--threads",
@@ -130,6 +132,13 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
         expectFailure(start + "--scale " + scale, 2, "--scale");
     }
     expectFailure(start + "--size 64x48 --width 64", 2, "--width");
+    for (const char* shift : {"0.1", "0.1,0.2,0.3", "x,y", "nan,0", "0,101", "0,"}) {
+        expectFailure(start + "--shift " + shift, 2, "--shift");
+    }
+    for (const char* colour : {"1", "1,2", "-1,0,0", "red", "1,1,inf", "1,1,1,1", "1,,1"}) {
+        expectFailure(start + "--env-colour " + colour, 2, "--env-colour");
+    }
+    expectFailure(start + "--env-colour 1,1,1 --env sky.exr", 2, "one environment");
     expectFailure(start + "--denoise", 2, "albedo");
     expectFailure("@none.glb -o @out.exr --set candidates=3", 2, "--method auto");
     expectFailure("@none.glb -o @out.exr --replay 1,2,3", 2, "--method auto");

@@ -38,6 +38,15 @@ TEST_F(RenderVerify, WeightsEqualTheirFullProducts) {
     }
 }
 
+TEST_F(RenderVerify, OfAShiftedCameraWithALens) {
+    const Outcome o =
+        run(quick("bpt",
+                  "--quiet --verify --shift 0.2,-0.35 --aperture 0.05 --focus 3 --crop "
+                  "2,20,1,13 --json @o.json"));
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    EXPECT_LT(json("o.json").at("verify").at("max_difference").get<double>(), 1e-5);
+}
+
 TEST_F(RenderVerifySlow, OnOurScenes) {
     // One depth of roulette per scene and method, in turn: over three scenes a method has had all.
     const std::array<const char*, 3> depths = {"1", "3", "100"};

@@ -20,6 +20,11 @@ struct View {
     Camera::Film film;
 };
 
+CameraDescription shifted(CameraDescription camera, std::array<double, 2> shift) {
+    camera.shift = shift;
+    return camera;
+}
+
 std::vector<View> views() {
     const CameraDescription plain = lookAt({0, 0, 0}, {0, 0, -1}, 45);
     const Vec3d far{1e5, 1e5, -1e5};
@@ -34,13 +39,16 @@ std::vector<View> views() {
             {"scaled node, far away", scaled, far, {3840, 2160}},
             {"uneven scale", uneven, {1, 1, 1}, {333, 222}},
             {"one pixel", plain, {}, {1, 1}},
-            {"strip", plain, {}, {200, 3}}};
+            {"strip", plain, {}, {200, 3}},
+            {"shifted", shifted(plain, {0.3, -0.7}), {}, {640, 480}},
+            {"shifted, upright", shifted(plain, {-1.5, 0.2}), {}, {101, 499}}};
 }
 
 /// The camera in double, from the definition.
 struct Exact {
     Vec3d position, right, up, forward;
     double tanX, tanY;
+    double left, low;  // of the picture's middle on the image plane
     Camera::Film film;
 
     explicit Exact(const View& v) : film(v.film) {
@@ -51,16 +59,19 @@ struct Exact {
         up = normalize(m.m[1]);
         tanY = std::tan(v.description.yfov / 2);
         tanX = tanY * film.width / film.height;
+        const double side = 2 * tanY * std::max(film.width, film.height) / film.height;
+        left = v.description.shift[0] * side;
+        low = v.description.shift[1] * side;
     }
     Vec3d onImagePlane(double x, double y) const {
-        return forward + right * ((2 * x / film.width - 1) * tanX) +
-               up * ((1 - 2 * y / film.height) * tanY);
+        return forward + right * ((2 * x / film.width - 1) * tanX + left) +
+               up * ((1 - 2 * y / film.height) * tanY + low);
     }
     /// Raster position of a point (relative to the pinhole).
     Vec3d rasterOf(Vec3d p) const {
         const double z = dot(p, forward);
-        return {(dot(p, right) / (z * tanX) + 1) / 2 * film.width,
-                (1 - dot(p, up) / (z * tanY)) / 2 * film.height, z};
+        return {((dot(p, right) / z - left) / tanX + 1) / 2 * film.width,
+                (1 - (dot(p, up) / z - low) / tanY) / 2 * film.height, z};
     }
 };
 
@@ -121,8 +132,8 @@ TEST(Camera, PinholeDirectionsAgainstTheDefinition) {
         // Up is towards row 0, right towards the last column.
         const Vec3 top =
             camera.directionAt(camera.position(), {float(v.film.width) / 2, 0}).direction;
-        EXPECT_NEAR(dot(Vec3d(top), exact.up) / dot(Vec3d(top), exact.forward), exact.tanY,
-                    1e-5 * exact.tanY);
+        EXPECT_NEAR(dot(Vec3d(top), exact.up) / dot(Vec3d(top), exact.forward),
+                    exact.tanY + exact.low, 1e-5 * exact.tanY);
     }
 }
 

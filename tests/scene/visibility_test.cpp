@@ -42,6 +42,26 @@ std::vector<Room> rooms() {
             {"mirrored, sheared, instanced", transforms()[5].toWorld, Placement::Instanced}};
 }
 
+TEST(Visibility, OnlyTheLensPassesWhatIsHiddenFromTheCamera) {
+    for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
+        SceneBuilder b;
+        lacuna::Material hidden = matte(Rgb(0.5f));
+        hidden.hiddenFromCamera = true;
+        Mesh pane = quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+        pane.material = b.add(hidden);
+        place(b, pane, {}, placement);
+        const auto scene = b.build();
+        const Vec3 front(Vec3d{0.1, 0.1, 1} - scene->centre());
+        const Vec3 back(Vec3d{0.1, 0.1, -1} - scene->centre());
+        RayTally tally;
+        EXPECT_FALSE(scene->trace(front, {}, back - front, RayKind::Camera, tally));
+        EXPECT_TRUE(scene->trace(front, {}, back - front, RayKind::EyeWalk, tally));
+        EXPECT_TRUE(scene->trace(front, {}, back - front, RayKind::LightWalk, tally));
+        EXPECT_TRUE(scene->visible(front, {}, back, {}, RayKind::Splat, tally));
+        EXPECT_FALSE(scene->visible(front, {}, back, {}, RayKind::Connection, tally));
+    }
+}
+
 TEST(Visibility, ClosedBox) {
     for (const Room& room : rooms()) {
         SCOPED_TRACE(room.name);

@@ -1,0 +1,34 @@
+"""The command line of lacuna-render, from the settings of a scene. Knows nothing of Blender."""
+
+
+def limits(samples, seconds, error_percent):
+    """Whichever comes first; without any, lacuna-render's own."""
+    options = []
+    if samples > 0:
+        options += ["--iterations", str(samples)]
+    if seconds > 0:
+        options += ["--time", "%.9gs" % seconds]
+    if error_percent > 0:
+        options += ["--until", "mape=%.9g" % (error_percent / 100)]
+    return options
+
+
+def options(settings, frame, threads):
+    """`settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0: all."""
+    found = ["--method", settings.method, *limits(settings.samples, settings.seconds, settings.error),
+             "--max-depth", str(settings.depth), "--seed", str(settings.seed + (frame if settings.animate_seed else 0))]
+    if settings.method != "auto":
+        found.append("--prepare")
+    if threads:
+        found += ["--threads", str(threads)]
+    return found
+
+
+def share_done(settings, seconds, iterations):
+    """Of the limits the nearest one, from 0 to 1."""
+    shares = [0.0]
+    if settings.seconds > 0:
+        shares.append(seconds / settings.seconds)
+    if settings.samples > 0:
+        shares.append(iterations / settings.samples)
+    return min(max(shares), 1.0)

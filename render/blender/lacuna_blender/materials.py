@@ -1,0 +1,119 @@
+"""Materials of the .glb."""
+
+from dataclasses import dataclass
+
+from .surface import Surface, SurfaceReader
+from .sockets import Value
+
+
+@dataclass
+class Written:
+    """A material of the .glb, and what it asks of its meshes."""
+
+    index: int
+    uv_maps: list  # names in the order of TEXCOORD_n
+    vertex_colors: str = None
+
+
+class Materials:
+    def __init__(self, glb, textures, notes):
+        self._glb, self._textures, self._notes, self._made = glb, textures, notes, {}
+
+    def of(self, material, hidden):
+        """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera."""
+        key = (material and material.name_full, hidden)
+        if key not in self._made:
+            name = material.name if material else "without a material"
+            self._made[key] = self._write(name, self._surface(material, name), hidden)
+        return self._made[key]
+
+    def lamp(self, name, radiance):
+        """Black, shines to the front, and the camera does not see it: as Blender's lamps are."""
+        surface = Surface(emission=Value(tuple(radiance)), strength=1.0)
+        return self._write(name, surface, True, two_sided=False)
+
+    def _surface(self, material, name):
+        if material is None:
+            return Surface(base=Value((0.8, 0.8, 0.8)))
+        if not material.use_nodes:
+            return Surface(base=Value(tuple(material.diffuse_color[:3])))
+        output = material.node_tree.get_output_node("CYCLES")
+        if output is None:
+            return Surface()
+        if output.inputs["Volume"].is_linked:
+            self._notes.add(name, "the volume is left out")
+        if output.inputs["Displacement"].is_linked:
+            self._notes.add(name, "the displacement is left out")
+        return SurfaceReader(name, self._notes).read(output.inputs["Surface"])
+
+    def _write(self, name, s, hidden, two_sided=True):
+        uv_maps = []
+
+        def info(texture, use):
+            if use.uv_map not in uv_maps:
+                if len(uv_maps) == 2:
+                    self._notes.add(name, f"the UV map {use.uv_map} is left out: two can be used")
+                    return self._textures.info(texture, use, 0)
+                uv_maps.append(use.uv_map)
+            return self._textures.info(texture, use, uv_maps.index(use.uv_map))
+
+        entry = {"name": name, "doubleSided": two_sided}
+        entry["pbrMetallicRoughness"] = pbr = {
+            "baseColorFactor": [*_shares(s.base.factor), _share(s.alpha.factor)],
+            "metallicFactor": _share(s.metallic.factor), "roughnessFactor": _share(s.roughness.factor)}
+        alpha = s.alpha.texture
+        if alpha and not s.base.texture:
+            self._notes.add(name, "alpha by a texture is left out where the colour has none: half is let through")
+            pbr["baseColorFactor"][3] *= 0.5
+            alpha = None
+        if s.base.texture:
+            pbr["baseColorTexture"] = info(self._textures.color(s.base.texture, alpha), s.base.texture)
+        if s.alpha.texture or s.alpha.factor < 1:
+            entry["alphaMode"] = "BLEND"
+        rough, metal = s.roughness.texture, s.metallic.texture
+        if rough and metal and (rough.place, rough.uv_map) != (metal.place, metal.uv_map):
+            self._notes.add(name, "the metallic texture lies as that of the roughness does")
+        if rough or metal:
+            pbr["metallicRoughnessTexture"] = info(self._textures.scalars(G=rough, B=metal), rough or metal)
+        if s.normal:
+            use, strength = s.normal
+            entry["normalTexture"] = {**info(self._textures.normals(use), use), "scale": strength}
+        self._extend(entry, s, info)
+        if hidden:
+            entry["extras"] = {"lacuna": {"hidden_from_camera": True}}
+        return Written(self._glb.append("materials", entry), uv_maps or [""], s.base.vertex_colors)
+
+    def _extend(self, entry, s, info):
+        transmits = s.transmission.texture or s.transmission.factor > 0
+        # Its own index where light passes; else the one that reflects as much as Blender's layer.
+        root = min(max(s.reflectance, 0.0), 0.9) ** 0.5
+        ior = s.ior if transmits else (1 + root) / (1 - root)
+        own = ((ior - 1) / (ior + 1)) ** 2
+        self._glb.extension(entry, "KHR_materials_ior", {"ior": ior})
+        whole = transmits or s.reflectance >= own > 0  # what transmits reflects by its index alone
+        self._glb.extension(entry, "KHR_materials_specular",
+                            {"specularFactor": 1.0 if whole else s.reflectance / own if own > 0 else 0.0})
+        if transmits:
+            values = {"transmissionFactor": _share(s.transmission.factor)}
+            if s.transmission.texture:
+                values["transmissionTexture"] = info(self._textures.scalars(R=s.transmission.texture), s.transmission.texture)
+            self._glb.extension(entry, "KHR_materials_transmission", values)
+            self._glb.extension(entry, "KHR_materials_volume", {"thicknessFactor": 1.0})  # a body, not a sheet
+        if s.coat > 0:
+            self._glb.extension(entry, "KHR_materials_clearcoat",
+                                {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)})
+        light = [max(c * s.strength, 0.0) for c in s.emission.factor]
+        most = max(light)
+        if most > 0:
+            entry["emissiveFactor"] = [c / most for c in light]
+            self._glb.extension(entry, "KHR_materials_emissive_strength", {"emissiveStrength": most})
+            if s.emission.texture:
+                entry["emissiveTexture"] = info(self._textures.color(s.emission.texture), s.emission.texture)
+
+
+def _share(value):
+    return min(max(value, 0.0), 1.0)
+
+
+def _shares(values):
+    return [_share(v) for v in values]

@@ -1,0 +1,101 @@
+"""Meshes of the .glb, from what modifiers made of Blender's objects."""
+
+import numpy
+
+GEOMETRY = ("MESH", "CURVE", "SURFACE", "META", "FONT")
+
+
+def _read(collection, attribute, width, kind=numpy.float32):
+    values = numpy.empty(len(collection) * width, kind)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+class Meshes:
+    """Objects that share a mesh and materials share one here as well."""
+
+    def __init__(self, glb, materials, notes):
+        self._glb, self._materials, self._notes, self._made = glb, materials, notes, {}
+
+    def of(self, thing, hidden):
+        """The mesh of an evaluated object, or None where it has no faces."""
+        slots = [slot.material for slot in thing.material_slots] or [None]
+        source = thing.data if thing.type == "MESH" else thing.original
+        key = (source.as_pointer(), tuple(m and m.name_full for m in slots), hidden)
+        if key not in self._made:
+            try:
+                mesh = thing.to_mesh()
+            except RuntimeError:  # of a curve without a body, say
+                mesh = None
+            self._made[key] = self._write(thing.name, mesh, slots, hidden) if mesh else None
+            thing.to_mesh_clear()
+        return self._made[key]
+
+    def _write(self, name, mesh, slots, hidden):
+        mesh.calc_loop_triangles()
+        if not mesh.loop_triangles:
+            return None
+        corners = _read(mesh.loop_triangles, "loops", 3, numpy.int32)
+        slot_of = numpy.minimum(_read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
+        points = _read(mesh.vertices, "co", 3)[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
+        normals = _corner_normals(mesh)
+        primitives = []
+        for slot in numpy.unique(slot_of):
+            material = self._materials.of(slots[slot], hidden)
+            attributes = {"POSITION": points}
+            if normals is not None:
+                attributes["NORMAL"] = normals
+            for i, uv_map in enumerate(material.uv_maps):
+                uvs = self._uvs(name, mesh, uv_map)
+                if uvs is not None:
+                    attributes[f"TEXCOORD_{i}"] = uvs
+            if material.vertex_colors is not None:
+                colors = self._colors(name, mesh, material.vertex_colors)
+                if colors is not None:
+                    attributes["COLOR_0"] = colors
+            primitives.append((*_compact(attributes, corners[slot_of == slot].ravel()), material.index))
+        return self._glb.mesh(name, primitives)
+
+    def _uvs(self, name, mesh, uv_map):
+        layers = mesh.uv_layers
+        layer = layers.get(uv_map) if uv_map else next((l for l in layers if l.active_render), None)
+        if layer is None:
+            if uv_map:
+                self._notes.add(name, f"there is no UV map {uv_map}: its texture has one colour")
+            return None
+        uvs = _read(layer.data, "uv", 2)
+        uvs[:, 1] = 1 - uvs[:, 1]
+        return uvs
+
+    def _colors(self, name, mesh, wanted):
+        attributes = mesh.color_attributes
+        colors = attributes.get(wanted) if wanted else (
+            attributes[attributes.render_color_index] if len(attributes) else None)
+        if colors is None:
+            self._notes.add(name, f"there are no vertex colours {wanted}: white is used")
+            return None
+        values = _read(colors.data, "color", 4)  # linear, whatever their kind
+        values[:, 3] = 1
+        if colors.domain == "POINT":
+            values = values[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
+        return values
+
+
+def _corner_normals(mesh):
+    """By corner; None where all faces are flat, which glTF says by leaving normals out."""
+    if not mesh.has_custom_normals and not _read(mesh.polygons, "use_smooth", 1, bool).any():
+        return None
+    if hasattr(mesh, "corner_normals"):  # Blender 4.1
+        return _read(mesh.corner_normals, "vector", 3)
+    mesh.calc_normals_split()
+    return _read(mesh.loops, "normal", 3)
+
+
+def _compact(attributes, corners):
+    """The corners' values, equal ones once, and the indices of those."""
+    rows = numpy.ascontiguousarray(numpy.concatenate([a[corners] for a in attributes.values()], axis=1), numpy.float32)
+    keys = rows.view(numpy.dtype((numpy.void, rows.shape[1] * 4))).ravel()
+    _, first, indices = numpy.unique(keys, return_index=True, return_inverse=True)
+    kept = corners[first]
+    return ({name: numpy.ascontiguousarray(a[kept], numpy.float32) for name, a in attributes.items()},
+            indices.astype(numpy.uint32))

@@ -1,0 +1,195 @@
+"""A shader tree as one surface of glTF's kind: what each BSDF is there, and what mixtures become."""
+
+from dataclasses import dataclass, replace
+
+from .sockets import Sockets, Value, source_of
+
+BLACK = Value((0.0, 0.0, 0.0))
+
+
+@dataclass
+class Surface:
+    base: Value = BLACK
+    metallic: Value = Value(0.0)
+    roughness: Value = Value(1.0)
+    reflectance: float = 0.0  # of the dielectric layer, seen straight on; 0 is Lambert's
+    ior: float = 1.5  # of what transmits
+    transmission: Value = Value(0.0)
+    coat: float = 0.0
+    coat_roughness: float = 0.0
+    alpha: Value = Value(1.0)
+    emission: Value = BLACK
+    strength: float = 0.0
+    normal: object = None
+
+
+class SurfaceReader:
+    """Of one material."""
+
+    def __init__(self, name, notes):
+        self._name, self._notes = name, notes
+        self._sockets = Sockets(name, notes)
+        self._readers = {
+            "BSDF_PRINCIPLED": self._principled, "EMISSION": self._emission, "BSDF_DIFFUSE": self._diffuse,
+            "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_GLASS": self._glass,
+            "BSDF_REFRACTION": self._refraction, "BSDF_TRANSPARENT": self._transparent, "MIX_SHADER": self._mix,
+            "ADD_SHADER": self._add, "BACKGROUND": self._emission}
+
+    def read(self, socket, groups=()):
+        """The surface of a shader input; black where nothing is linked."""
+        found = source_of(socket, groups)
+        if found is None or found.node is None:
+            return Surface()
+        reader = self._readers.get(found.node.type, self._other)
+        return reader(found.node, found.groups)
+
+    def _note(self, text):
+        self._notes.add(self._name, text)
+
+    def _color(self, node, groups, *names):
+        return self._sockets.color(_input(node, *names), groups)
+
+    def _scalar(self, node, groups, *names, otherwise=0.0):
+        socket = _input(node, *names)
+        return self._sockets.scalar(socket, groups) if socket else Value(otherwise)
+
+    def _number(self, node, groups, *names, otherwise=0.0):
+        """One that has no texture in glTF, or none here."""
+        value = self._scalar(node, groups, *names, otherwise=otherwise)
+        if value.texture:
+            self._note(f"the texture of {names[0]} is left out: 0.5 is used")
+            return 0.5
+        return value.factor
+
+    def _normal(self, node, groups):
+        return self._sockets.normal(_input(node, "Normal"), groups)
+
+    def _principled(self, node, groups):
+        for names in (("Subsurface", "Subsurface Weight"), ("Sheen", "Sheen Weight"), ("Anisotropic",),
+                      ("Transmission Roughness",), ("Specular Tint",), ("Thin Film Thickness",)):
+            socket = _input(node, *names)
+            value = socket and socket.default_value
+            plain = 1.0 if names[0] == "Specular Tint" and hasattr(value, "__len__") else 0.0
+            if socket and (socket.is_linked or _differs(value, plain)):
+                self._note(f"{socket.name} is left out")
+        s = Surface(base=self._color(node, groups, "Base Color"), metallic=self._scalar(node, groups, "Metallic"),
+                    roughness=self._scalar(node, groups, "Roughness"),
+                    transmission=self._scalar(node, groups, "Transmission", "Transmission Weight"),
+                    alpha=self._scalar(node, groups, "Alpha", otherwise=1.0), normal=self._normal(node, groups))
+        s.ior = max(self._number(node, groups, "IOR", otherwise=1.45), 1.0)
+        if _input(node, "Specular IOR Level"):  # Blender 4
+            s.reflectance = 2 * self._number(node, groups, "Specular IOR Level") * ((s.ior - 1) / (s.ior + 1)) ** 2
+        else:
+            s.reflectance = 0.08 * self._number(node, groups, "Specular")
+        s.coat = self._number(node, groups, "Clearcoat", "Coat Weight")
+        s.coat_roughness = self._number(node, groups, "Clearcoat Roughness", "Coat Roughness")
+        s.emission = self._color(node, groups, "Emission", "Emission Color")
+        s.strength = self._number(node, groups, "Emission Strength")
+        return s
+
+    def _emission(self, node, groups):
+        return Surface(emission=self._color(node, groups, "Color"), strength=self._number(node, groups, "Strength"))
+
+    def _diffuse(self, node, groups):
+        if _input(node, "Roughness").is_linked or _input(node, "Roughness").default_value > 0:
+            self._note("Roughness of Diffuse BSDF is left out: Lambert's is rendered")
+        return Surface(base=self._color(node, groups, "Color"), normal=self._normal(node, groups))
+
+    def _glossy(self, node, groups):
+        sharp = getattr(node, "distribution", "") == "SHARP"
+        return Surface(base=self._color(node, groups, "Color"), metallic=Value(1.0), normal=self._normal(node, groups),
+                       roughness=Value(0.0) if sharp else self._scalar(node, groups, "Roughness"))
+
+    def _glass(self, node, groups):
+        s = self._glossy(node, groups)
+        s.metallic, s.transmission = Value(0.0), Value(1.0)
+        s.ior = max(self._number(node, groups, "IOR"), 1.0)
+        s.reflectance = ((s.ior - 1) / (s.ior + 1)) ** 2
+        return s
+
+    def _refraction(self, node, groups):
+        self._note("Refraction BSDF is rendered as Glass BSDF: it reflects as well")
+        return self._glass(node, groups)
+
+    def _transparent(self, node, groups):
+        color = self._color(node, groups, "Color")
+        if color.texture or min(color.factor) < 1:
+            self._note("the colour of Transparent BSDF is left out: it lets everything through")
+        return Surface(alpha=Value(0.0))
+
+    def _other(self, node, groups):
+        color = _input(node, "Color", "Base Color")
+        s = Surface(base=self._sockets.color(color, groups) if color else Value((0.5, 0.5, 0.5)))
+        self._note(f"{node.bl_label} is rendered as " + ("Diffuse BSDF of its colour" if color else "grey"))
+        return s
+
+    def _mix(self, node, groups):
+        a, b = self.read(node.inputs[1], groups), self.read(node.inputs[2], groups)
+        for first, second, flip in ((a, b, False), (b, a, True)):
+            if _is_clear(first) and not _is_clear(second):
+                return self._thinned(second, node, groups, flip)
+        found = source_of(node.inputs[0], groups)
+        if found and found.node and found.node.type in ("FRESNEL", "LAYER_WEIGHT"):
+            return self._layered(a, b)
+        share = self._scalar(node, groups, "Fac", "Factor")
+        if share.texture:
+            self._note("a Mix Shader by a texture is rendered as half of each")
+        f = min(max(0.5 if share.texture else share.factor, 0.0), 1.0)
+        if 0 < f < 1:
+            self._note("a Mix Shader is rendered as one surface with the mean of both")
+        return self._mean(a, b, f)
+
+    def _thinned(self, solid, node, groups, flip):
+        """A mixture with Transparent BSDF; its factor says how much of the second shader there is."""
+        share = self._scalar(node, groups, "Fac", "Factor")
+        if share.texture and flip:
+            self._note("a Mix Shader that has Transparent BSDF second, by a texture: half is let through")
+            share = Value(0.5)
+        factor = share.factor if share.texture or not flip else 1 - share.factor
+        return replace(solid, alpha=Value(solid.alpha.factor * factor, share.texture or solid.alpha.texture))
+
+    def _layered(self, under, over):
+        self._note("a mixture by Fresnel or Layer Weight is rendered as a glossy layer over the first shader")
+        return replace(under, roughness=over.roughness, reflectance=0.04)
+
+    def _mean(self, a, b, f):
+        def mean(p, q):
+            if isinstance(p, Value):
+                factor = mean(p.factor, q.factor)
+                texture = (q.texture or p.texture) if f > 0.5 else (p.texture or q.texture)
+                colors = p.vertex_colors if p.vertex_colors is not None else q.vertex_colors
+                return Value(factor, texture, colors)
+            if isinstance(p, tuple):
+                return tuple(mean(x, y) for x, y in zip(p, q))
+            return (1 - f) * p + f * q
+
+        if f in (0, 1):
+            return b if f else a
+        emission = tuple((1 - f) * a.strength * x + f * b.strength * y for x, y in zip(a.emission.factor, b.emission.factor))
+        return Surface(mean(a.base, b.base), mean(a.metallic, b.metallic), mean(a.roughness, b.roughness),
+                       mean(a.reflectance, b.reflectance), b.ior if b.transmission.factor > 0 else a.ior,
+                       mean(a.transmission, b.transmission), mean(a.coat, b.coat), mean(a.coat_roughness, b.coat_roughness),
+                       mean(a.alpha, b.alpha), Value(emission, a.emission.texture or b.emission.texture), 1.0,
+                       a.normal or b.normal)
+
+    def _add(self, node, groups):
+        a, b = self.read(node.inputs[0], groups), self.read(node.inputs[1], groups)
+        if b.base != BLACK or b.metallic.factor:
+            a, b = b, a
+        if b.base != BLACK:
+            self._note("an Add Shader of two reflecting shaders is rendered as one surface with the mean of both")
+            return self._mean(a, b, 0.5)
+        sum_ = tuple(a.strength * x + b.strength * y for x, y in zip(a.emission.factor, b.emission.factor))
+        return replace(a, emission=Value(sum_, a.emission.texture or b.emission.texture), strength=1.0)
+
+
+def _input(node, *names):
+    return next((node.inputs[n] for n in names if n in node.inputs), None)
+
+
+def _differs(value, plain):
+    return any(abs(v - plain) > 1e-6 for v in (value[:3] if hasattr(value, "__len__") else (value,)))
+
+
+def _is_clear(surface):
+    return surface.alpha.factor == 0 and not surface.alpha.texture

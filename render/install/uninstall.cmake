@@ -1,0 +1,30 @@
+# Removes what the last `cmake --install BUILD` put there, and the folders that it made.
+# FOLDERS: file of the latter, a path per line.
+if(NOT EXISTS ${BUILD}/install_manifest.txt)
+  message(FATAL_ERROR "${BUILD}/install_manifest.txt: expected the list of what was installed, found "
+    "none; install first")
+endif()
+file(STRINGS ${BUILD}/install_manifest.txt files)
+set(folders "")
+foreach(file IN LISTS files)
+  file(REMOVE "$ENV{DESTDIR}${file}")
+  cmake_path(GET file PARENT_PATH folder)
+  # Whatever bears the name is nobody else's.
+  while(folder MATCHES "/lacuna(/|$)|/Lacuna(/|$)")
+    list(APPEND folders ${folder})
+    cmake_path(GET folder PARENT_PATH folder)
+  endwhile()
+endforeach()
+if(EXISTS ${FOLDERS})
+  file(STRINGS ${FOLDERS} made)
+  list(APPEND folders ${made})
+endif()
+list(REMOVE_DUPLICATES folders)
+list(SORT folders ORDER DESCENDING)  # inner ones first
+foreach(folder IN LISTS folders)
+  file(GLOB rest LIST_DIRECTORIES true "$ENV{DESTDIR}${folder}/*" "$ENV{DESTDIR}${folder}/.*")
+  if(NOT rest)
+    file(REMOVE_RECURSE "$ENV{DESTDIR}${folder}")
+  endif()
+endforeach()
+file(REMOVE ${BUILD}/install_manifest.txt ${FOLDERS})

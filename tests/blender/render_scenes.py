@@ -1,0 +1,140 @@
+"""Renders the scenes of scenes.py by Lacuna and by Cycles, and compares the means of regions.
+
+  blender -b --factory-startup --python-exit-code 1 -P tests/blender/render_scenes.py -- ADD-ON.zip lacuna-render OUT
+      [--only NAME] [--page FILE.md]
+
+Each scene is a .blend in OUT, rendered by `blender -b FILE -E LACUNA -f 1` with the add-on from the zip. OUT has both
+pictures as .exr and side by side as .png (Lacuna left). Exits with 1 where a region differs by more than is allowed.
+"""
+
+import datetime
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import bpy
+import numpy
+
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "render" / "blender")]
+import scenes  # noqa: E402
+from lacuna_blender import exr, textures  # noqa: E402
+
+EDGES, SAMPLES, ROWS, COLUMNS = 8, 192, 3, 4
+
+
+def arguments():
+    given = sys.argv[sys.argv.index("--") + 1:]
+    options = {given[i]: given[i + 1] for i in range(len(given)) if given[i].startswith("--")}
+    archive, program, out = (Path(a).resolve() for a in given[:3])
+    return archive, program, out, options.get("--only"), options.get("--page")
+
+
+def settings(scene):
+    render, cycles = scene.render, scene.cycles
+    render.resolution_x, render.resolution_y = 96, 72
+    render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
+    render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
+    scene.view_settings.view_transform = "Standard"
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
+    cycles.pixel_filter_type, cycles.blur_glossy, cycles.sample_clamp_indirect = "BOX", 0, 0
+    cycles.light_sampling_threshold = 0
+    # Cycles does not count the edge at the lens and that at the light.
+    for kind in ("max", "diffuse", "glossy", "transmission"):
+        setattr(cycles, kind + "_bounces", EDGES - 2)
+
+
+def make(name, out):
+    """The .blend, and Cycles' picture of it."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    settings(scene)
+    scenes.SCENES[name][0]()
+    scene.render.filepath, scene.render.use_file_extension = str(out / f"{name}-cycles.exr"), False
+    bpy.ops.render.render(write_still=True)
+    scene.render.filepath = str(out / f"{name}-lacuna.exr")
+    bpy.ops.wm.save_as_mainfile(filepath=str(out / f"{name}.blend"))
+
+
+def render(name, out, environment):
+    """What users type. The scene's settings of Lacuna come by a line of Python."""
+    chosen = f"import bpy; s = bpy.context.scene.lacuna; s.samples, s.seconds, s.depth = {SAMPLES}, 0, {EDGES}"
+    done = subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--addons", "lacuna_blender", str(out / f"{name}.blend"),
+                           "--python-expr", chosen, "-E", "LACUNA", "-o", str(out / f"{name}-lacuna.exr"), "-x", "0", "-f", "1"],
+                          env=environment, capture_output=True, text=True)
+    (out / f"{name}.log").write_text(done.stdout + done.stderr)
+    return [line[len("Lacuna: "):] for line in done.stdout.splitlines() if line.startswith("Lacuna: ")]
+
+
+def regions(picture):
+    """ROWS x COLUMNS means of red, green and blue."""
+    rgb = picture.stack("R", "G", "B").astype(float)
+    return numpy.array([[block.mean(axis=(0, 1)) for block in numpy.array_split(row, COLUMNS, axis=1)]
+                        for row in numpy.array_split(rgb, ROWS, axis=0)])
+
+
+def differences(ours, theirs):
+    """By region, as a share; what is nearly black is measured against a twentieth of the picture."""
+    return (ours - theirs).mean(axis=2) / numpy.maximum(theirs.mean(axis=2), 0.05 * theirs.mean())
+
+
+def save_png(path, *pictures):
+    exposure = 0.4 / max(pictures[-1].stack("R", "G", "B").mean(), 1e-6)
+    rows = [textures.to_srgb(p.stack("R", "G", "B") * exposure) for p in pictures]
+    sheet = numpy.concatenate(rows, axis=1).repeat(3, axis=0).repeat(3, axis=1)
+    path.write_bytes(textures.png((numpy.clip(sheet, 0, 1) * 255 + 0.5).astype(numpy.uint8)))
+
+
+def newest(out, name):
+    """Blender adds the number of the frame."""
+    return next(p for p in (out / f"{name}-lacuna.exr0001", out / f"{name}-lacuna0001.exr", out / f"{name}-lacuna.exr")
+                if p.exists())
+
+
+def main():
+    archive, program, out, only, page = arguments()
+    addons = out / "scripts" / "addons"
+    addons.mkdir(parents=True, exist_ok=True)
+    zipfile.ZipFile(archive).extractall(addons)
+    environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(out / "scripts"),
+                   "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"}
+    rows, failed = [], []
+    for name, (_, allowed, why) in scenes.SCENES.items():
+        if only and name != only:
+            continue
+        for old in out.glob(f"{name}-*"):
+            old.unlink()
+        make(name, out)
+        notes = render(name, out, environment)
+        ours, theirs = exr.read(newest(out, name)), exr.read(out / f"{name}-cycles.exr")
+        save_png(out / f"{name}.png", ours, theirs)
+        error = differences(regions(ours), regions(theirs))
+        ratio = regions(ours).mean() / regions(theirs).mean()
+        rows.append((name, ratio, 1 + error.min(), 1 + error.max(), allowed, why))
+        print(f"{name}: whole {ratio:.3f}, regions {1 + error.min():.3f} to {1 + error.max():.3f}, allowed {allowed}", flush=True)
+        for note in notes:
+            print("   ", note)
+        if numpy.abs(error).max() > allowed:
+            failed.append(name)
+            print(numpy.round(1 + error, 3))
+    if page:
+        write_page(Path(page), rows)
+    if failed:
+        raise SystemExit("differs from Cycles: " + ", ".join(failed))
+
+
+def write_page(path, rows):
+    day = datetime.date.today().isoformat()
+    lines = ["# The add-on against Cycles", "", f"{day}, Blender {bpy.app.version_string}. Made by `tests/blender/render_scenes.py --page`.", "",
+             f"Each scene is rendered by the add-on (`auto`, {SAMPLES} samples, depth {EDGES}) and by Cycles (256 samples, as many edges), "
+             "96 x 72 pixels. The ratio is that of the means, Lacuna's over Cycles'; the picture is cut into "
+             f"{COLUMNS} x {ROWS} regions, whose mean of the three channels may differ by what is allowed.", "",
+             "| scene | whole | darkest and brightest region | allowed | what differs by design |", "|---|---|---|---|---|"]
+    lines += [f"| {n} | {r:.3f} | {low:.3f} to {high:.3f} | {a:.0%} | {why or 'nothing'} |" for n, r, low, high, a, why in rows]
+    path.write_text("\n".join(lines) + "\n")
+
+
+main()

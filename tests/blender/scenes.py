@@ -1,0 +1,294 @@
+"""Ten small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+
+import math
+
+import bpy
+import numpy
+from mathutils import Vector
+
+
+def material(name, kind, **inputs):
+    """One BSDF with these inputs, linked to the output; returns material, tree and node."""
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    tree = made.node_tree
+    output = tree.get_output_node("CYCLES")
+    tree.nodes.remove(tree.nodes["Principled BSDF"])
+    node = tree.nodes.new(kind)
+    for key, value in inputs.items():
+        node.inputs[key.replace("_", " ")].default_value = value
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return made, tree, node
+
+
+def diffuse(name, *color):
+    return material(name, "ShaderNodeBsdfDiffuse", Color=(*color, 1))[0]
+
+
+def principled(name, color, **inputs):
+    return material(name, "ShaderNodeBsdfPrincipled", Base_Color=(*color, 1), **inputs)[0]
+
+
+def textured(name, picture, kind="ShaderNodeBsdfDiffuse"):
+    made, tree, node = material(name, kind)
+    image = tree.nodes.new("ShaderNodeTexImage")
+    image.image = picture
+    tree.links.new(image.outputs["Color"], node.inputs["Color"])
+    return made, tree, image
+
+
+def image(name, texels, color=True, deep=False):
+    """Height x width x 3 as stored, row 0 at the bottom."""
+    height, width, _ = texels.shape
+    made = bpy.data.images.new(name, width, height, float_buffer=deep)
+    if not deep:
+        made.colorspace_settings.name = "sRGB" if color else "Non-Color"
+    made.pixels = numpy.dstack([texels, numpy.ones((height, width))]).ravel().tolist()
+    made.pack()
+    return made
+
+
+def quarters(name, colors, size=32):
+    """Four colours: lower left, lower right, upper left, upper right."""
+    c = numpy.array(colors, float).reshape(2, 2, 3)
+    return image(name, c.repeat(size, axis=0).repeat(size, axis=1))
+
+
+def add(operator, made=None, smooth=False, **settings):
+    operator(**settings)
+    thing = bpy.context.object
+    if made:
+        thing.data.materials.append(made)
+    if smooth:
+        for face in thing.data.polygons:
+            face.use_smooth = True
+    return thing
+
+
+def plane(made, size=1, **place):
+    return add(bpy.ops.mesh.primitive_plane_add, made, size=size, **place)
+
+
+def cube(made, size=1, **place):
+    return add(bpy.ops.mesh.primitive_cube_add, made, size=size, **place)
+
+
+def ball(made, radius=0.5, **place):
+    return add(bpy.ops.mesh.primitive_uv_sphere_add, made, smooth=True, radius=radius, segments=48, ring_count=24, **place)
+
+
+def lamp(kind, location, to, energy, **settings):
+    data = bpy.data.lights.new(kind.title(), kind)
+    data.energy = energy
+    for key, value in settings.items():
+        setattr(data, key, value)
+    thing = bpy.data.objects.new(kind.title(), data)
+    thing.location = location
+    thing.rotation_euler = (Vector(to) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.collection.objects.link(thing)
+    return thing
+
+
+def camera(location=(0, -6, 2.2), to=(0, 0, 0.8), lens=35, **settings):
+    data = bpy.data.cameras.new("Camera")
+    data.lens = lens
+    for key, value in settings.items():
+        setattr(data, key, value)
+    thing = bpy.data.objects.new("Camera", data)
+    thing.location = location
+    thing.rotation_euler = (Vector(to) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.collection.objects.link(thing)
+    bpy.context.scene.camera = thing
+    return thing
+
+
+def stage():
+    """A floor and a wall."""
+    plane(diffuse("floor", 0.7, 0.65, 0.6), 12)
+    plane(diffuse("wall", 0.5, 0.6, 0.7), 12, location=(0, 3, 0), rotation=(math.pi / 2, 0, 0))
+
+
+def world(color=(0, 0, 0), strength=1.0):
+    made = bpy.data.worlds.new("World")
+    made.use_nodes = True
+    background = made.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*color, 1)
+    background.inputs["Strength"].default_value = strength
+    bpy.context.scene.world = made
+    return made
+
+
+def sky(rotation):
+    """An image whose quarters differ, turned by a Mapping node."""
+    made = world(strength=1.5)
+    x, y = numpy.meshgrid(numpy.linspace(0, 1, 64), numpy.linspace(0, 1, 32))
+    texels = numpy.dstack([0.2 + (x < 0.25) * 2.0, 0.2 + (x > 0.6) * 1.5 * y, 0.3 + 0.7 * y])
+    tree = made.node_tree
+    node = tree.nodes.new("ShaderNodeTexEnvironment")
+    node.image = image("sky", texels, deep=True)
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Rotation"].default_value = rotation
+    place = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
+    tree.links.new(node.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+def area_lamps():
+    stage()
+    ball(diffuse("red", 0.7, 0.2, 0.1), location=(-0.8, 0, 0.5))
+    lamp("AREA", (1.5, 0.5, 2.5), (0, 0, 0.5), 120, size=0.8, color=(1, 0.9, 0.7))  # in the picture, seen by nobody
+    lamp("AREA", (0, -3, 0.7), (0, 3, 0.5), 40, shape="ELLIPSE", size=1.0, size_y=0.5).scale = (1.5, 0.5, 1)  # before it
+    camera()
+
+
+def bulbs():
+    stage()
+    cube(diffuse("green", 0.2, 0.6, 0.2), location=(0, 0.4, 0.5))
+    lamp("POINT", (-1.2, -0.5, 1.4), (0, 0, 0), 80, shadow_soft_size=0.25, color=(1, 0.7, 0.4))
+    lamp("POINT", (1.6, -1, 2.2), (0, 0, 0), 60, shadow_soft_size=0).scale = (2, 2, 2)
+    camera()
+
+
+def spots():
+    stage()
+    ball(diffuse("blue", 0.2, 0.3, 0.7), location=(0.8, 0, 0.5))
+    lamp("SPOT", (-1.5, -2, 3), (-0.8, 0.5, 0), 400, spot_size=0.8, spot_blend=0.5, shadow_soft_size=0.15)
+    lamp("SPOT", (2, -2, 3), (0.8, 0, 0.4), 300, spot_size=0.6, spot_blend=0.0, shadow_soft_size=0, color=(1, 0.6, 0.5))
+    world((0.02, 0.02, 0.03))
+    camera()
+
+
+def sun_and_colour():
+    stage()
+    cube(diffuse("white", 0.8, 0.8, 0.8), location=(-0.5, 0, 0.5), rotation=(0, 0, 0.5))
+    lamp("SUN", (0, 0, 5), (1.5, 2.5, 0), 3, angle=math.radians(10), color=(1, 0.95, 0.8))
+    world((0.1, 0.2, 0.4), 0.8)
+    camera()
+
+
+def sky_image():
+    plane(diffuse("ground", 0.6, 0.6, 0.6), 6)
+    ball(material("mirror", "ShaderNodeBsdfGlossy", Color=(0.9, 0.9, 0.9, 1), Roughness=0)[0], 0.7, location=(-0.9, 0, 0.7))
+    ball(diffuse("white", 0.8, 0.8, 0.8), 0.6, location=(0.9, 0, 0.6))
+    sky((0.3, 0, math.radians(50)))
+    camera()
+
+
+def lens_and_film():
+    """A shifted camera with a lens, of another sensor fit, that looks up, in a picture that is higher than wide."""
+    stage()
+    for i in range(4):
+        cube(diffuse(f"pillar {i}", 0.2 + 0.2 * i, 0.5, 0.8 - 0.2 * i), location=(-1.5 + i, -1 + i, 1), scale=(0.4, 0.4, 2))
+    sky((0, 0, math.radians(-30)))
+    thing = camera(to=(0, 0, 2.2), sensor_fit="HORIZONTAL", shift_x=0.1, shift_y=-0.3)
+    thing.data.dof.use_dof, thing.data.dof.focus_distance, thing.data.dof.aperture_fstop = True, 6.0, 0.2
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 72, 96
+
+
+def shaders():
+    stage()
+    ball(principled("plastic", (0.7, 0.1, 0.1), Roughness=0.3), 0.4, location=(-1.8, 0, 0.4))
+    ball(principled("gold", (0.9, 0.7, 0.3), Metallic=1.0, Roughness=0.3), 0.4, location=(-0.9, 0, 0.4))
+    ball(material("glass", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0, IOR=1.5)[0], 0.4, location=(0, 0, 0.45))
+    ball(material("lamp", "ShaderNodeEmission", Color=(0.4, 0.8, 1, 1), Strength=2.0)[0], 0.3, location=(0.9, 0, 0.4))
+    made, tree, node = material("veil", "ShaderNodeMixShader", Fac=0.4)
+    output = tree.nodes.new("ShaderNodeBsdfTransparent"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    for i in range(2):
+        tree.links.new(output[i].outputs[0], node.inputs[1 + i])
+    plane(made, 1.0, location=(1.8, 0, 0.6), rotation=(math.pi / 2, 0, 0))
+    lamp("AREA", (0, -2, 4), (0, 0, 0), 200, size=1.5)
+    world((0.1, 0.1, 0.1))
+    camera()
+
+
+def images_on_surfaces():
+    made, tree, node = textured("quarters", quarters("four", [(.9, .2, .2), (.2, .9, .2), (.2, .2, .9), (.9, .9, .2)]))
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Location"].default_value = (0.1, 0.3, 0)
+    mapping.inputs["Rotation"].default_value = (0, 0, 0.4)
+    mapping.inputs["Scale"].default_value = (1.5, 0.8, 1)
+    place = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(place.outputs["UV"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
+    plane(made, 4, location=(-1, 2, 2), rotation=(math.pi / 2, 0, 0))
+    plane(textured("plain", quarters("grey", [(.2,) * 3, (.8,) * 3, (.5,) * 3, (.9,) * 3]))[0], 6)
+    x = numpy.linspace(0, 8 * math.pi, 64)
+    slope = 0.6 * numpy.sin(x)[None, :].repeat(64, axis=0)
+    normal = numpy.dstack([slope, 0 * slope, numpy.sqrt(1 - slope * slope)])
+    made, tree, node = textured("waves", image("waves", 0.5 * normal + 0.5, color=False))
+    bump = tree.nodes.new("ShaderNodeNormalMap")
+    shader = tree.nodes["Diffuse BSDF"]
+    tree.links.new(node.outputs["Color"], bump.inputs["Color"])
+    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    tree.links.remove(shader.inputs["Color"].links[0])
+    shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
+    plane(made, 2, location=(2, 1, 1), rotation=(math.pi / 2, 0, -0.6))
+    made, tree, shader = material("painted", "ShaderNodeBsdfDiffuse")
+    colors = tree.nodes.new("ShaderNodeVertexColor")
+    colors.layer_name = "paint"
+    tree.links.new(colors.outputs["Color"], shader.inputs["Color"])
+    thing = cube(made, location=(0.5, -0.5, 0.5), rotation=(0, 0, 0.5))
+    paint = thing.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")
+    for i, entry in enumerate(paint.data):
+        entry.color = ((i % 4) / 3, 0.5, 1 - (i % 3) / 2, 1)
+    lamp("SUN", (0, 0, 5), (-1.5, 3, 0), 3, angle=0)
+    world((0.2, 0.2, 0.2))
+    camera()
+
+
+def copies_and_modifiers():
+    """What is hidden from renders (a cutter, the collection that is instanced) must not appear."""
+    stage()
+    brick = cube(diffuse("brick", 0.7, 0.3, 0.2), 0.4, location=(-2.2, 0.8, 0.2))
+    array = brick.modifiers.new("Array", "ARRAY")
+    array.count, array.relative_offset_displace = 6, (1.3, 0, 0)
+    cutter = ball(diffuse("cutter", 1, 0, 1), 0.7, location=(1.2, -0.8, 1.0))
+    cutter.hide_render = True
+    block = cube(diffuse("block", 0.3, 0.6, 0.6), location=(1.2, -0.3, 0.5))
+    cut = block.modifiers.new("Cut", "BOOLEAN")
+    cut.object, cut.operation = cutter, "DIFFERENCE"
+    round_ = cube(diffuse("round", 0.8, 0.7, 0.2), 0.9, location=(0, 0, 0.5))
+    round_.modifiers.new("Subdivision", "SUBSURF").render_levels = 3
+    source = bpy.data.collections.new("Source")
+    bpy.context.scene.collection.children.link(source)
+    tower = cube(diffuse("tower", 0.2, 0.3, 0.8), 0.4)
+    tower.scale = (0.5, 0.5, 3)
+    for collection in list(tower.users_collection):
+        collection.objects.unlink(tower)
+    source.objects.link(tower)
+    bpy.context.view_layer.layer_collection.children["Source"].exclude = True
+    for i in range(3):
+        copy = bpy.data.objects.new(f"copy {i}", None)
+        copy.instance_type, copy.instance_collection = "COLLECTION", source
+        copy.location, copy.scale = (-1.6 + 0.5 * i, -1, 0.5), (1 - 2 * (i % 2), 1, 1)
+        bpy.context.collection.objects.link(copy)
+    ring = add(bpy.ops.curve.primitive_bezier_circle_add, radius=0.5, location=(1.6, 0.6, 1.8), rotation=(1.2, 0, 0))
+    ring.data.bevel_depth = 0.1
+    lamp("POINT", (-1, -3, 3), (0, 0, 0), 300, shadow_soft_size=0.3)
+    world((0.1, 0.1, 0.1))
+    camera()
+
+
+def ray_visibility():
+    stage()
+    blind = plane(diffuse("blind", 0.8, 0.2, 0.2), 3, location=(0, -2.5, 1.5), rotation=(math.pi / 2, 0, 0))
+    blind.visible_camera = False  # its shadow stays
+    shining = plane(material("tube", "ShaderNodeEmission", Color=(1, 0.8, 0.5, 1), Strength=4)[0], 1, location=(-1.5, 1, 1.5),
+                    rotation=(1.2, 0, 0.5))
+    shining.scale = (-1, 0.3, 1)
+    cube(None, 0.8, location=(0.6, 0.6, 0.4))  # Blender's grey
+    lamp("AREA", (0.4, -4.2, 1.6), (0.4, 3, 0.8), 60, size=0.5)  # seen from behind
+    world((0.15, 0.15, 0.2))
+    camera()
+
+
+# Allowed difference of a region's mean from Cycles', as a share of it, and why it is more than noise.
+SCENES = {
+    "area-lamps": (area_lamps, 0.04, ""), "bulbs": (bulbs, 0.04, ""),
+    "spots": (spots, 0.12, "the cone fades by glTF's curve"),
+    "sun-and-colour": (sun_and_colour, 0.04, ""), "sky-image": (sky_image, 0.05, ""),
+    "lens-and-film": (lens_and_film, 0.05, ""),
+    "shaders": (shaders, 0.15, "what is diffuse under a glossy layer is darker"),
+    "images-on-surfaces": (images_on_surfaces, 0.08, "normal maps end at the surface's own horizon"),
+    "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, "")}
