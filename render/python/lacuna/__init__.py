@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._lacuna import (
     Error,
@@ -44,7 +45,7 @@ class LacunaWarning(UserWarning):
     """The picture may not be what was meant."""
 
 
-class Layers(Mapping):
+class Layers(Mapping[str, NDArray[np.float32]]):
     """The layers of an image by name: "albedo", "normal", "Z", "variance", ..; "" is the picture.
 
     A layer of three channels is an array (height, width, 3), any other one (height, width).
@@ -71,7 +72,7 @@ class Layers(Mapping):
         triple = self._parts(layer)
         return layer if triple and channel in triple else channel
 
-    def __getitem__(self, layer: str) -> np.ndarray:
+    def __getitem__(self, layer: str) -> NDArray[np.float32]:
         triple = self._parts(layer)
         if triple:
             return np.stack([self._picture.channel(channel) for channel in triple], axis=-1)
@@ -95,10 +96,12 @@ class Image:
     def __init__(self, rgb: Any):
         """`rgb`: an array (height, width, 3), or the picture of a render."""
         own = isinstance(rgb, _lacuna.Picture)
-        self._picture = rgb if own else _lacuna.Picture(np.asarray(rgb, dtype=np.float32))
+        self._picture: _lacuna.Picture = (
+            rgb if own else _lacuna.Picture(np.asarray(rgb, dtype=np.float32))
+        )
 
     @classmethod
-    def load(cls, path: str | os.PathLike) -> Image:
+    def load(cls, path: str | os.PathLike[str]) -> Image:
         """Reads an .exr with its layers, an .hdr, .pfm or .png. Raises InputError."""
         return cls(_lacuna.Picture.load(os.fspath(path)))
 
@@ -111,7 +114,7 @@ class Image:
         return self._picture.height
 
     @property
-    def rgb(self) -> np.ndarray:
+    def rgb(self) -> NDArray[np.float32]:
         """Linear Rec. 709 radiance: (height, width, 3), float32. A view that cannot be written."""
         return self._picture.rgb
 
@@ -122,18 +125,19 @@ class Image:
     @property
     def statistics(self) -> dict[str, Any]:
         """What `lacuna-render --json` writes; of an image that was read, its header."""
-        return json.loads(self._picture.statistics())
+        statistics: dict[str, Any] = json.loads(self._picture.statistics())
+        return statistics
 
-    def save(self, path: str | os.PathLike) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """.exr with all layers, .pfm, or .png, which is exposed by itself. Raises RunError."""
         self._picture.save(os.fspath(path))
 
-    def compare(self, reference: Image | np.ndarray) -> dict[str, float]:
+    def compare(self, reference: Image | NDArray[Any]) -> dict[str, float]:
         """mae, rmse, mape and relmse against a reference. Raises InputError where sizes differ."""
         other = reference if isinstance(reference, Image) else Image(reference)
         return self._picture.compare(other._picture)
 
-    def __array__(self, dtype: Any = None) -> np.ndarray:
+    def __array__(self, dtype: Any = None) -> NDArray[Any]:
         return np.asarray(self.rgb, dtype=dtype)
 
     def __repr__(self) -> str:
@@ -157,7 +161,7 @@ def _assignments(values: Mapping[str, Any] | None) -> list[tuple[str, str]]:
 
 
 def render(
-    scene: str | os.PathLike | Scene,
+    scene: str | os.PathLike[str] | Scene,
     *,
     set: Mapping[str, Any] | None = None,
     on_progress: Callable[[Progress], None] | None = None,
@@ -188,7 +192,9 @@ def render(
             given += [(name, f"{key}={text}") for key, text in _assignments(value)]
         else:
             given.append((name, _text(value)))
-    source = scene._builder if isinstance(scene, Scene) else os.fspath(scene)
+    source: str | _lacuna.SceneBuilder = (
+        scene._builder if isinstance(scene, Scene) else os.fspath(scene)
+    )
     told: list[str] = []
     picture = _lacuna.render(source, given, flags, _assignments(set), on_progress, told.append)
     for text in told:

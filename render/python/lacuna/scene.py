@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._lacuna import SceneBuilder, UsageError
 
 
 def look_at(
     eye: Sequence[float], target: Sequence[float], up: Sequence[float] = (0, 1, 0)
-) -> np.ndarray:
+) -> NDArray[np.float64]:
     """The matrix (4, 4) of a camera or lamp at `eye` whose -Z axis points at `target`."""
     return np.array(SceneBuilder.look_at(eye, target, up)).reshape(4, 4).T
 
@@ -22,21 +23,25 @@ def _columns(matrix: Any) -> list[float]:
     array = np.eye(4) if matrix is None else np.asarray(matrix, dtype=float)
     if array.shape != (4, 4):
         raise UsageError(f"transform: expected an array (4, 4), found {array.shape}")
-    return array.T.ravel().tolist()
+    columns: list[float] = array.T.ravel().tolist()
+    return columns
 
 
-def _rows(name: str, values: Any, width: int, dtype: Any) -> np.ndarray | None:
-    if values is None:
-        return None
+def _rows(name: str, values: Any, width: int, dtype: Any) -> NDArray[Any]:
     array = np.asarray(values)
     if array.ndim != 2 or array.shape[1] != width:
         raise UsageError(f"{name}: expected an array (n, {width}), found {array.shape}")
     if np.issubdtype(dtype, np.unsignedinteger):
         if not np.issubdtype(array.dtype, np.integer):
             raise UsageError(f"{name}: expected integers, found {array.dtype}")
-        if array.size and array.min() < 0:
-            raise UsageError(f"{name}: expected indices from 0, found {array.min()}")
+        for index in (array.min(), array.max()) if array.size else ():
+            if not 0 <= index <= np.iinfo(dtype).max:
+                raise UsageError(f"{name}: expected indices from 0, of 32 bits, found {index}")
     return np.ascontiguousarray(array, dtype=dtype)
+
+
+def _rows_or_none(name: str, values: Any, width: int) -> NDArray[np.float32] | None:
+    return None if values is None else _rows(name, values, width, np.float32)
 
 
 class Scene:
@@ -92,9 +97,9 @@ class Scene:
         mesh = self._builder.add_mesh(
             _rows("positions", positions, 3, np.float32),
             _rows("triangles", triangles, 3, np.uint32),
-            _rows("normals", normals, 3, np.float32),
-            _rows("uvs", uvs, 2, np.float32),
-            _rows("colours", colours, 4, np.float32),
+            _rows_or_none("normals", normals, 3),
+            _rows_or_none("uvs", uvs, 2),
+            _rows_or_none("colours", colours, 4),
             material,
         )
         if place:
@@ -129,6 +134,6 @@ class Scene:
         """The scene as a .glb file."""
         return self._builder.glb()
 
-    def save(self, path: str | os.PathLike) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the .glb. Raises RunError."""
         self._builder.save(os.fspath(path))
