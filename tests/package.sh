@@ -9,7 +9,8 @@ project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 page=${1:-$project/tests/results/package-$(date +%F).md}
 packages=$project/build-package/packages
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# What is still mounted in the root is not of ours to remove.
+trap 'rm -rf --one-file-system "$work"' EXIT
 cd "$project"
 
 SECONDS=0

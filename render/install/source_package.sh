@@ -26,7 +26,7 @@ git -C "$project" archive --format=tar --prefix="lacuna-$version/" HEAD |
     xz -T0 >"$out/lacuna_$version.orig.tar.xz"
 tar -C "$out" -xf "$out/lacuna_$version.orig.tar.xz"
 cp -r "$debian" "$folder/debian"
-packages=$(awk '$1 == "build" { printf "%s%s", between, $2; between = ", " }' "$project/.ci/packages")
+packages=$(awk '$1 == "build" && $2 != "g++" { printf "%s%s", between, $2; between = ", " }' "$project/.ci/packages")
 sed -i "s/@PACKAGES@/$packages, libopenmpi-dev/" "$folder/debian/control"
 cd "$folder"
 dpkg-buildpackage "${options[@]}"
