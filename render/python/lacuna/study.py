@@ -27,10 +27,10 @@ def find_program(name: str) -> str:
     """The path of a program of Lacuna: the one that was built or installed with this package, else
     that of the PATH. Raises RunError where there is none.
     """
-    package = Path(__file__).resolve().parent
+    package = Path(__file__).absolute().parent
     # The package is BUILD/python/lacuna, or PREFIX/lib/python3/dist-packages/lacuna.
     places = [package.parents[1] / "render" / name]
-    places += [prefix / "bin" / name for prefix in package.parents[1:5]]
+    places += [p.parent / "bin" / name for p in package.parents if p.name in ("lib", "lib64")]
     for place in places:
         if place.is_file() and os.access(place, os.X_OK):
             return str(place)
@@ -54,7 +54,7 @@ def _from_here(value: Any, key: str = "") -> Any:
         return [_from_here(v) for v in value]
     if key in ("file", "reference", "env"):
         return _absolute(value)
-    if isinstance(value, (np.integer, np.floating)):
+    if isinstance(value, np.generic):
         return value.item()
     return value
 

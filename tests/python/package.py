@@ -1,0 +1,49 @@
+"""What the tests of the Python package share; importing it ends with 77 where nothing is built."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ROOT / "scenes"
+CORNELL = SCENES / "cornell-box.glb"
+
+try:
+    import lacuna
+except ModuleNotFoundError as missing:
+    if missing.name not in ("lacuna", "lacuna._lacuna", "numpy"):
+        raise
+    print(f"no module {missing.name}: the Python package is built where pybind11-dev, python3-dev "
+          "and python3-numpy are")
+    sys.exit(77)
+
+from lacuna.study import find_program  # noqa: E402
+
+
+def small(scene, **options):
+    """A picture of 8 x 6 pixels, unless options say otherwise."""
+    return lacuna.render(scene, **{"width": 8, "height": 6, "method": "bpt", "threads": 2} | options)
+
+
+def program(*arguments) -> None:
+    """Runs lacuna-render."""
+    subprocess.run([find_program("lacuna-render"), "--quiet", *map(str, arguments)], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+class InFolder(unittest.TestCase):
+    """Has a folder of its own, where the user's caches lie as well."""
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="lacuna-python-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        before = os.environ.get("XDG_CACHE_HOME")
+        os.environ["XDG_CACHE_HOME"] = str(self.folder)
+        self.addCleanup(lambda: os.environ.pop("XDG_CACHE_HOME") if before is None
+                        else os.environ.update(XDG_CACHE_HOME=before))
