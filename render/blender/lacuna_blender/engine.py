@@ -59,7 +59,7 @@ class LacunaEngine(bpy.types.RenderEngine):
 
     def _follow(self, child, scene, layer, image):
         """Until the child ends; whether it made a whole picture."""
-        start, seen, iterations, said = time.monotonic(), None, 0, 0
+        begun, seen, iterations, said = None, None, 0, 0
         while (code := child.wait(_LOOK)) is None:
             if self._stopped():
                 self.update_stats("", "Lacuna: stopping")
@@ -68,10 +68,11 @@ class LacunaEngine(bpy.types.RenderEngine):
             newest = _age(image)
             if newest != seen:
                 seen = newest
+                begun = begun or time.monotonic()  # the time limit does not count what came before
                 picture = exr.read(image)  # replaced as a whole, never half
                 iterations = picture.header.get("iterations", iterations)
                 self._show(picture, scene, layer)
-            self.update_progress(command.share_done(scene.lacuna, time.monotonic() - start, iterations))
+            self.update_progress(command.share_done(scene.lacuna, time.monotonic() - begun if begun else 0, iterations))
             if len(child.lines) != said:
                 said = len(child.lines)
                 self.update_stats("", "Lacuna: " + child.lines[-1])
