@@ -1,6 +1,9 @@
-# `cpack -G DEB`: the packages lacuna and liblacuna-dev. The preset `package` sets the rest.
+# `cpack -G DEB`: the packages lacuna, liblacuna-dev and python3-lacuna. The preset `package` sets the rest.
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
 set(packages programs:lacuna development:liblacuna-dev)
+if(LACUNA_PYTHON)
+  list(APPEND packages python:python3-lacuna)
+endif()
 
 file(STRINGS ${debian}/changelog newest LIMIT_COUNT 1)
 string(REGEX REPLACE "^lacuna \\(([0-9.]+)-([0-9]+)\\).*" "\\1;\\2" version "${newest}")
@@ -23,7 +26,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL programs development)
+list(TRANSFORM packages REPLACE ":.*" "" OUTPUT_VARIABLE CPACK_COMPONENTS_ALL)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)

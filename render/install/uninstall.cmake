@@ -9,8 +9,9 @@ set(folders "")
 foreach(file IN LISTS files)
   file(REMOVE "$ENV{DESTDIR}${file}")
   cmake_path(GET file PARENT_PATH folder)
-  # Whatever bears the name is nobody else's.
+  # Whatever bears the name is nobody else's. Python compiles what it imports.
   while(folder MATCHES "/lacuna(/|$)|/Lacuna(/|$)")
+    file(REMOVE_RECURSE "$ENV{DESTDIR}${folder}/__pycache__")
     list(APPEND folders ${folder})
     cmake_path(GET folder PARENT_PATH folder)
   endwhile()

@@ -22,9 +22,9 @@ namespace lacuna {
 namespace {
 
 /// What prints something instead of rendering, and what is of a process and its terminal.
-constexpr std::array kNotOfAPicture = {"help",     "version", "list-methods", "help-method",
-                                       "effects",  "replay",  "quiet",        "verbose",
-                                       "estimate", "denoise"};
+constexpr std::array kNotOfAPicture = {"help",        "help-as",  "version", "list-methods",
+                                       "help-method", "effects",  "replay",  "quiet",
+                                       "verbose",     "estimate", "denoise"};
 
 /// The name as the command line writes it. Throws UsageError for what a library does not do.
 std::string ofAPicture(std::string name) {

@@ -82,14 +82,15 @@ class Engine(unittest.TestCase):
         from lacuna_blender import engine
         scenes.camera()
         self.scene.lacuna.samples, self.scene.lacuna.seconds = 0, 600
-        broken, shown = engine.LacunaEngine.test_break, []
-        engine.LacunaEngine.test_break = lambda self: True
+        shown = []
+        stopped, engine.LacunaEngine._stopped = engine.LacunaEngine._stopped, lambda self: True
         show = engine.LacunaEngine._show
         engine.LacunaEngine._show = lambda *given: shown.append(given)
         try:
             bpy.ops.render.render()
         finally:
-            engine.LacunaEngine.test_break, engine.LacunaEngine._show = broken, show
+            engine.LacunaEngine._stopped = stopped
+            engine.LacunaEngine._show = show
         self.assertEqual(shown, [])
 
     def test_what_is_not_carried_over_is_listed(self):

@@ -118,9 +118,9 @@ class Passes(unittest.TestCase):
 
 class Commands(unittest.TestCase):
     def test_limits_and_progress(self):
-        settings = object_with(method="bpt", samples=10, seconds=4, error=5, depth=3, seed=2, animate_seed=True)
+        settings = object_with(method="spcbpt", samples=10, seconds=4, error=5, depth=3, seed=2, animate_seed=True)
         text = " ".join(command.options(settings, 7, 2))
-        self.assertEqual(text, "--method bpt --iterations 10 --time 4s --until mape=0.05 --max-depth 3 --seed 9 --prepare --threads 2")
+        self.assertEqual(text, "--method spcbpt --iterations 10 --time 4s --until mape=0.05 --max-depth 3 --seed 9 --prepare --threads 2")
         self.assertEqual(command.share_done(settings, 1, 5), 0.5)
         self.assertEqual(command.limits(0, 0, 0), [])
 

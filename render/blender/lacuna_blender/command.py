@@ -1,6 +1,9 @@
 """The command line of lacuna-render, from the settings of a scene. Knows nothing of Blender."""
 
 
+_PREPARED = ("skelbpt", "spcbpt")  # read what is made of the scene beforehand
+
+
 def limits(samples, seconds, error_percent):
     """Whichever comes first; without any, lacuna-render's own."""
     options = []
@@ -17,7 +20,7 @@ def options(settings, frame, threads):
     """`settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0: all."""
     found = ["--method", settings.method, *limits(settings.samples, settings.seconds, settings.error),
              "--max-depth", str(settings.depth), "--seed", str(settings.seed + (frame if settings.animate_seed else 0))]
-    if settings.method != "auto":
+    if settings.method in _PREPARED:
         found.append("--prepare")
     if threads:
         found += ["--threads", str(threads)]

@@ -61,7 +61,7 @@ class LacunaEngine(bpy.types.RenderEngine):
         """Until the child ends; whether it made a whole picture."""
         start, seen, iterations, said = time.monotonic(), None, 0, 0
         while (code := child.wait(_LOOK)) is None:
-            if self.test_break():
+            if self._stopped():
                 self.update_stats("", "Lacuna: stopping")
                 child.stop()
                 return False
@@ -81,6 +81,10 @@ class LacunaEngine(bpy.types.RenderEngine):
         for warning in child.warnings():
             self.report({"WARNING"}, warning)
         return True
+
+    def _stopped(self):
+        """Whether the user pressed Esc."""
+        return self.test_break()
 
     def _show(self, picture, scene, layer):
         result = self.begin_result(0, 0, picture.width, picture.height, layer=layer)

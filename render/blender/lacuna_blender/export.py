@@ -40,7 +40,7 @@ def write(depsgraph, view, folder, notes):
     _say_what_the_scene_loses(scene, notes)
     path = os.path.join(folder, "scene.glb")
     glb.write(path)
-    return [path, *arguments, *world.options(scene.world, folder, notes)]
+    return [path, *arguments, *world.options(depsgraph.scene_eval.world, folder, notes)]
 
 
 def _hidden(thing, depsgraph):

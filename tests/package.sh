@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Makes the Debian packages and tries them on a Debian that has nothing else; by hand, as root:
+#
+#   bash tests/package.sh [FILE.md]
+#
+# Needs lintian, and mmdebstrap for the clean root. FILE.md gets what was found.
+set -euo pipefail
+project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
+page=${1:-$project/tests/results/package-$(date +%F).md}
+packages=$project/build-package/packages
+work=$(mktemp -d)
+# What is still mounted in the root is not of ours to remove.
+trap 'rm -rf --one-file-system "$work"' EXIT
+cd "$project"
+
+SECONDS=0
+cmake --preset package >/dev/null
+cmake --build --preset package >/dev/null
+rm -rf "$packages"
+cpack --preset package >/dev/null
+build_seconds=$SECONDS
+lintian --no-cfg -i --tag-display-limit 0 "$packages"/*.deb >"$work/lintian" 2>&1 || true
+
+SECONDS=0
+mmdebstrap --variant=apt --aptopt='Apt::Install-Recommends "false"' bookworm "$work/root" \
+    http://deb.debian.org/debian >"$work/bootstrap" 2>&1
+cp "$packages"/lacuna_*.deb "$work/root/root/"
+inside() { chroot "$work/root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+# What is of Lacuna: its own files, not what apt itself keeps.
+listing() { (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./var -o -path ./root \) -prune -o -print | sort); }
+listing >"$work/before"
+inside apt-get install -y -qq /root/lacuna_*.deb >"$work/install" 2>&1
+install_seconds=$SECONDS
+[[ -e $work/root/proc/self ]] || mount -t proc proc "$work/root/proc"
+rendered=$(inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.png --time 5s \
+    --cache /root/cache 2>&1)
+umount "$work/root/proc" 2>/dev/null || true
+[[ -s $work/root/root/door.png ]]
+inside apt-get purge -y -qq --autoremove lacuna >"$work/purge" 2>&1
+listing >"$work/after"
+left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
+
+{
+    echo "# The Debian packages, $(date +%F)"
+    echo
+    echo "By \`bash tests/package.sh\`, on $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores."
+    echo
+    echo "| | |"
+    echo "|---|---|"
+    for file in "$packages"/*.deb; do
+        echo "| $(basename "$file") | $(stat -c %s "$file") bytes, installed $(dpkg-deb -f "$file" Installed-Size) KiB |"
+    done
+    echo "| build and packages | $build_seconds s |"
+    echo "| a clean Debian 12 and \`apt install\` with all it depends on | $install_seconds s |"
+    echo "| left after \`apt purge\` | ${left:-nothing} |"
+    echo
+    echo "Depends: $(dpkg-deb -f "$packages"/lacuna_*.deb Depends)"
+    echo
+    echo "lintian:"
+    echo
+    sed 's/^/    /' "$work/lintian"
+    echo
+    echo "The render in the clean root:"
+    echo
+    sed 's/^/    /' <<<"$rendered"
+} >"$page"
+[[ -z $left ]]
