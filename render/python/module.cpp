@@ -62,7 +62,9 @@ Picture runWatched(Render& render) {
     std::exception_ptr failure;
     std::mutex mutex;
     std::condition_variable ended;
-    bool done = false, interrupted = false;
+    bool done = false;
+    // What a handler of signals raised: KeyboardInterrupt, or what people let theirs raise.
+    std::optional<py::error_already_set> raised;
     std::thread worker([&] {
         try {
             picture = render.run(stop.get_token());
@@ -80,10 +82,9 @@ Picture runWatched(Render& render) {
             lock.unlock();
             {
                 const py::gil_scoped_acquire acquire;
-                if (!interrupted && PyErr_CheckSignals() != 0) {
-                    interrupted = true;
+                if (!raised && PyErr_CheckSignals() != 0) {
+                    raised.emplace();
                     stop.request_stop();
-                    PyErr_Clear();
                 }
             }
             lock.lock();
@@ -91,10 +92,7 @@ Picture runWatched(Render& render) {
         lock.unlock();
         worker.join();
     }
-    if (interrupted) {
-        PyErr_SetNone(PyExc_KeyboardInterrupt);
-        throw py::error_already_set();
-    }
+    if (raised) throw *raised;
     if (failure) std::rethrow_exception(failure);
     return *picture;
 }

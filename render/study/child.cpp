@@ -14,8 +14,23 @@
 namespace lacuna {
 namespace {
 
-/// In the child, between fork and exec: nothing but system calls.
-[[noreturn]] void becomeProgram(char* const* argv, int log, pid_t parent) {
+/// All signals wait until `mask` is put back.
+sigset_t holdSignals() {
+    sigset_t all, mask;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &mask);
+    return mask;
+}
+
+/// In the child, between fork and exec: nothing but system calls. Signals are held: our handlers
+/// would take an interrupt that comes before exec, and the program would never hear of it.
+[[noreturn]] void becomeProgram(char* const* argv, int log, pid_t parent, const sigset_t& mask) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction action {};
+        sigaction(number, nullptr, &action);
+        if (action.sa_handler != SIG_IGN) signal(number, SIG_DFL);
+    }
+    sigprocmask(SIG_SETMASK, &mask, nullptr);
     // Out of the terminal's foreground group: Ctrl-C comes to us alone, and from us to the child.
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -38,8 +53,10 @@ int runChild(const std::vector<std::string>& arguments, const std::string& log,
     const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file < 0) throw RunError(log + ": expected to write there, found it not writable");
     const pid_t parent = getpid();
+    const sigset_t mask = holdSignals();
     const pid_t child = fork();
-    if (child == 0) becomeProgram(argv.data(), file, parent);
+    if (child == 0) becomeProgram(argv.data(), file, parent, mask);
+    pthread_sigmask(SIG_SETMASK, &mask, nullptr);
     close(file);
     if (child < 0) throw RunError(arguments[0] + ": expected to start it, found no process left");
 

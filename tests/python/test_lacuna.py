@@ -345,6 +345,16 @@ class Interrupts(InFolder):
         self.assertEqual(called, [True])
         self.assertEqual(image.statistics["stopped"], "time")
 
+    def test_what_a_handler_raises_comes_out(self):
+        def give_up(*_):
+            raise TimeoutError("long enough")
+
+        before = signal.signal(signal.SIGUSR1, give_up)
+        self.addCleanup(signal.signal, signal.SIGUSR1, before)
+        threading.Timer(0.3, signal.raise_signal, [signal.SIGUSR1]).start()
+        with self.assertRaisesRegex(TimeoutError, "long enough"):
+            small(CORNELL, time="10m")
+
 
 if __name__ == "__main__":
     warnings.simplefilter("error", lacuna.LacunaWarning)
