@@ -26,7 +26,7 @@ int main() {
     scene.addCamera({"", lacuna::SceneBuilder::lookAt({0, 0, 1}, {0, 0, 0}), .5, 1.0});
 
     lacuna::Render render(scene);
-    render.option("method", "bpt").option("width", 16).option("height", 16).option("iterations", 8);
+    render.option("method", "pt").option("width", 16).option("height", 16).option("iterations", 8);
     const lacuna::Picture picture = render.run();
     double sum = 0.0;
     for (const float value : picture.rgb()) sum += value;
