@@ -11,8 +11,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SCENES = ROOT / "scenes"
-CORNELL = SCENES / "cornell-box.glb"
+CORNELL = ROOT / "scenes" / "cornell-box.glb"
 
 try:
     import lacuna
