@@ -11,19 +11,18 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SCENES = ROOT / "scenes"
-CORNELL = SCENES / "cornell-box.glb"
+CORNELL = ROOT / "scenes" / "cornell-box.glb"
 
 try:
     import lacuna
+    import lacuna._lacuna  # an empty folder would do for `import lacuna`
+    from lacuna.study import find_program
 except ModuleNotFoundError as missing:
     if missing.name not in ("lacuna", "lacuna._lacuna", "numpy"):
         raise
     print(f"no module {missing.name}: the Python package is built where pybind11-dev, python3-dev "
           "and python3-numpy are")
     sys.exit(77)
-
-from lacuna.study import find_program  # noqa: E402
 
 
 def small(scene, **options):

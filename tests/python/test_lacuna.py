@@ -19,7 +19,7 @@ import unittest
 import warnings
 from pathlib import Path
 
-from package import CORNELL, SCENES, InFolder, lacuna, program, small
+from package import CORNELL, InFolder, lacuna, program, small
 
 import numpy as np
 
