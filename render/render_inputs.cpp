@@ -1,26 +1,12 @@
 #include "render/render_inputs.h"
 
-#include <dlfcn.h>
-#include <link.h>
-
 #include <string>
 
 #include "libcore/base/content_hash.h"
+#include "render/code_file.h"
 
 namespace lacuna {
 namespace {
-
-/// The file that holds this code: the library, or a program that it is linked into.
-std::string ownFile() {
-    Dl_info info;
-    link_map* map = nullptr;
-    const void* here = reinterpret_cast<const void*>(&renderInputs);
-    if (dladdr1(here, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 || !map ||
-        map->l_name[0] == '\0') {
-        return "/proc/self/exe";
-    }
-    return map->l_name;
-}
 
 /// As glibc names them. A package holds the library for several: the processor decides.
 constexpr const char* kInstructionSet =
@@ -51,7 +37,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     const PixelRect& crop = stage.settings.crop;
     add("version", LACUNA_VERSION);
     // Another build may round in another way, and so may one with fused multiplications.
-    add("program", hashOfFile(ownFile()));
+    add("program", hashOfFile(codeFile()));
     add("instruction set", kInstructionSet);
     add("method", row.name);
     add("seed", std::to_string(options.common.seed));

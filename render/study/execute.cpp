@@ -1,12 +1,14 @@
 #include "render/study/execute.h"
 
 #include <filesystem>
+#include <span>
 
 #include "libcore/base/content_hash.h"
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
 #include "libcore/methods/registry.h"
 #include "render/choose/choice.h"
+#include "render/code_file.h"
 #include "render/study/machine.h"
 #include "render/study/run_directory.h"
 
@@ -124,6 +126,16 @@ void renderTechniques(Results& results, const std::string& directory, const std:
     }
 }
 
+/// The program beside us, and the library that both of us are linked with.
+std::string hashOfRenderer(const std::string& program) {
+    ContentHash hash;
+    for (const std::string& file : {program, codeFile()}) {
+        const std::string text = hashOfFile(file);
+        hash.addValues(std::span<const char>(text));
+    }
+    return hash.hex();
+}
+
 }  // namespace
 
 Execution execute(const Study& study, const std::string& directory, const std::string& renderer,
@@ -132,7 +144,7 @@ Execution execute(const Study& study, const std::string& directory, const std::s
     Results& results = execution.results;
     results.study = study;
     results.machine = machineText();
-    results.rendererHash = hashOfFile(renderer);
+    results.rendererHash = hashOfRenderer(renderer);
     findReferences(results, directory, renderer, cancel, progress);
     std::vector<std::string> referenceHashes;
     for (const Reference& r : results.references) referenceHashes.push_back(r.hash);

@@ -31,7 +31,7 @@ struct TechniqueResult {
 struct Results {
     Study study;
     std::string machine;                      ///< see machineText
-    std::string rendererHash;                 ///< of lacuna-render's file
+    std::string rendererHash;                 ///< of lacuna-render's files
     std::vector<SceneFacts> facts;            ///< by scene
     std::vector<Reference> references;        ///< by scene
     std::vector<RunResult> runs;              ///< in the order of the plan

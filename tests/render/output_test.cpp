@@ -438,7 +438,9 @@ TEST_F(RenderOutput, AnEnvironmentOfOneColour) {
     const Image ofMap = readImage(path("out.exr"));
     ASSERT_EQ(run(quick("bpt", "--quiet --env-colour 0.5,1,2")).exitCode, 0);
     EXPECT_EQ(readImage(path("out.exr")).pixels, ofMap.pixels);
-    EXPECT_NEAR(ofMap.at(0, 0).b, 2.0f, 1e-5f);  // past the room
+    // One edge: seen directly past the room, exactly its radiance.
+    ASSERT_EQ(run(quick("pt", "--quiet --env-colour 0.5,1,2 --max-depth 1")).exitCode, 0);
+    EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).b, 2.0f, 1e-5f);
 }
 
 }  // namespace

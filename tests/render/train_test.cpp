@@ -170,7 +170,7 @@ TEST_F(TrainTool, CachesOfOtherInputsAreRefusedByName) {
         {" --env @sky.exr", "environment (there 'none', here one)"},
         {" --effect area_lights=off",
          "effects (there 'as the scene calls for', here 'area_lights=off')"},
-        {" --env-colour 0,0.5,1", "environment (there 'none', here 'colour 0 0.5 1')"},
+        {" --env-colour 0,0.5,1", "here 'colour 0 0.5 1')"},
         {" --aperture 0.01 --focus 2", "lens (there 'pinhole', here 'radius"},
         {" --shift 0.1,-0.25", "lens (there 'pinhole', here 'pinhole shift 0.1 -0.25')"},
         {" --max-depth 5", "max depth (there '12', here '5')"},
