@@ -190,6 +190,11 @@ Rendered Session::run() {
     return finished(savedText());
 }
 
+/// What messages and viewers call it: it need not be a file.
+const std::string& Session::pictureName() const {
+    return options_.output.empty() ? options_.scene : options_.output;
+}
+
 Rendered Session::finished(std::string text) {
     return {std::move(report_), std::move(image_), std::move(text), std::move(failure_)};
 }
@@ -204,7 +209,7 @@ void Session::saveUnfinished() {
     }
     report_.warnings.push_back(
         "the first iteration was not finished: pixels are missing or too dark");
-    progress_.warning("warning: " + options_.output + ": " + report_.warnings.back());
+    progress_.warning("warning: " + pictureName() + ": " + report_.warnings.back());
     log_.reset();
     save();
 }
@@ -359,7 +364,7 @@ void Session::beginLiveView() {
     const std::vector<std::string>& layers = options_.displayLayers;
     const std::vector<std::string> all = layers.empty() ? layers : channelNames();
     live_.emplace(*options_.displayServer,
-                  TevImage{options_.output, film_.width(), film_.height(),
+                  TevImage{pictureName(), film_.width(), film_.height(),
                            channelsOfLayers("--display-layers", layers, all)},
                   [this](const std::string& text) { progress_.warning(text); });
 }
@@ -453,7 +458,7 @@ void Session::measure() {
     const Stopwatch watch(report_.phaseSeconds["compare"]);
     try {
         report_.error = reference_->compare(
-            film_.sum(idlePool()).image(film_.width(), film_.height()), options_.output);
+            film_.sum(idlePool()).image(film_.width(), film_.height()), pictureName());
     } catch (const InputError& e) {
         report_.error.reset();
         failure_ = e.what();
@@ -536,7 +541,7 @@ std::string Session::savedText() const {
                   report_.iterations == 1 ? "" : "s", report_.seconds, report_.setupSeconds,
                   double(report_.statistics.totalRays()),
                   report_.stopped == "interrupt" ? " (interrupted)" : "");
-    std::string text = options_.output + ": " + line;
+    std::string text = pictureName() + ": " + line;
     if (report_.error) {
         std::snprintf(line, sizeof line, "mae %.6g rmse %.6g mape %.6g relmse %.6g\n",
                       report_.error->mae, report_.error->rmse, report_.error->mape,

@@ -48,6 +48,7 @@ class Session {
     ErrorNow errorNow() const;
     Rendered costs();
     Rendered finished(std::string text);
+    const std::string& pictureName() const;
     bool mayBegin() const;
     void tell();
     void keep();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "libcore/base/text_list.h"
 #include "libcore/tool/help_forms.h"
 #include "libcore/tool/tool.h"
 
@@ -99,12 +100,6 @@ std::string functionName(const CLI::App& app) {
     return name;
 }
 
-std::string joined(const std::vector<std::string>& list) {
-    std::string text;
-    for (const std::string& item : list) text += (text.empty() ? "" : " ") + item;
-    return text;
-}
-
 bool isShown(const CLI::Option& option) {
     return !option.get_group().empty();
 }
@@ -112,8 +107,9 @@ bool isShown(const CLI::Option& option) {
 /// As kBashReader has it.
 std::string bashKind(const ValueKind& kind) {
     if (kind.of == Of::Folders) return "/folder";
-    if (kind.of == Of::Files) return "/file" + (kind.list.empty() ? "" : " " + joined(kind.list));
-    return joined(kind.list);
+    if (kind.of == Of::Files)
+        return "/file" + (kind.list.empty() ? "" : " " + joined(kind.list, " "));
+    return joined(kind.list, " ");
 }
 
 /// One entry of an associative array.
@@ -127,13 +123,11 @@ std::string zshAction(const ValueKind& kind, bool settings) {
     switch (kind.of) {
         case Of::Folders:
             return "_files -/";
-        case Of::Files: {
-            std::string endings;
-            for (const std::string& e : kind.list) endings += (endings.empty() ? "" : "|") + e;
-            return kind.list.empty() ? "_files" : "_files -g \"*.(" + endings + ")(-.)\"";
-        }
+        case Of::Files:
+            if (kind.list.empty()) return "_files";
+            return "_files -g \"*.(" + joined(kind.list, "|") + ")(-.)\"";
         case Of::Words:
-            return "_lacuna_words " + joined(kind.list);
+            return "_lacuna_words " + joined(kind.list, " ");
         default:
             return " ";
     }
@@ -162,7 +156,7 @@ std::vector<std::string> zshSpecifications(const CLI::Option& option, const Valu
     std::vector<std::string> all;
     for (const std::string& name : names) {
         const bool isLong = name.starts_with("--");
-        std::string text = repeats ? "*" : "(" + joined(names) + ")";
+        std::string text = repeats ? "*" : "(" + joined(names, " ") + ")";
         text += name;
         if (kind.of != Of::Nothing) text += isLong ? "=" : "+";
         text += "[" + zshText(option.get_description()) + "]";
@@ -195,11 +189,12 @@ std::string bashCompletion(const CLI::App& app, const ValueWords& words) {
         }
     }
     std::string settings;
-    for (const auto& [method, keys] : words.byMethod) settings += bashRow(method, joined(keys));
+    for (const auto& [method, keys] : words.byMethod)
+        settings += bashRow(method, joined(keys, " "));
     const std::string name = functionName(app);
     return "# Made by " + app.get_name() + " --help-as bash.\n" + kBashReader + name +
-           "() {\n    local options=" + shellQuoted(joined(names)) + "\n    local -A values=(\n" +
-           values + "    )\n    local -A settings=(\n" + settings +
+           "() {\n    local options=" + shellQuoted(joined(names, " ")) +
+           "\n    local -A values=(\n" + values + "    )\n    local -A settings=(\n" + settings +
            "    )\n    _lacuna_complete\n}\ncomplete -F " + name + " " + app.get_name() + "\n";
 }
 
@@ -213,7 +208,7 @@ std::string zshCompletion(const CLI::App& app, const ValueWords& words) {
     }
     std::string settings;
     for (const auto& [method, keys] : words.byMethod) {
-        settings += "        " + method + ") _lacuna_words " + joined(keys) + " ;;\n";
+        settings += "        " + method + ") _lacuna_words " + joined(keys, " ") + " ;;\n";
     }
     if (!settings.empty()) {
         settings =

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <regex>
 
+#include "libcore/base/text_list.h"
 #include "libcore/tool/help_forms.h"
 
 namespace lacuna {
@@ -73,10 +74,7 @@ std::string synopsis(const CLI::App& app) {
 }
 
 std::string entry(const CLI::Option& option) {
-    std::string names;
-    for (const std::string& name : namesOf(option)) {
-        names += (names.empty() ? "" : ", ") + bold(name);
-    }
+    std::string names = joined(namesOf(option), ", ", bold);
     const std::string type = typeOf(option);
     if (option.get_positional()) {
         names = italic(type);

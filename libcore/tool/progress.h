@@ -21,9 +21,8 @@ inline constexpr const char* kNothingWritten =
 inline constexpr const char* kBeingSaved =
     "the picture is finished and is being saved (interrupted again: exit at once)";
 inline constexpr const char* kFirstIteration =
-    "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there is of "
-    "it "
-    "is saved (again: exit at once)";
+    "interrupted: no iteration is complete yet; the first one has 3 s to end, or what there is "
+    "of it is saved (again: exit at once)";
 
 class Progress {
   public:

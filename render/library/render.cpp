@@ -6,13 +6,11 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "lacuna/scene_builder.h"
 #include "libcore/base/error.h"
 #include "libcore/base/number_text.h"
-#include "libcore/base/text_list.h"
 #include "libcore/tool/progress.h"
 #include "render/options.h"
 #include "render/picture.h"
@@ -143,8 +141,7 @@ Render::Render(Render&&) noexcept = default;
 Render& Render::operator=(Render&&) noexcept = default;
 
 Render& Render::option(const std::string& name, const std::string& value) {
-    const std::string known = ofAPicture(name);
-    request_->options.emplace_back(known, value);
+    request_->options.emplace_back(ofAPicture(name), value);
     return *this;
 }
 

@@ -32,19 +32,24 @@ constexpr double kPi = 3.14159265358979323846;
 const std::array<float, 12> kQuad{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
 const std::array<std::uint32_t, 6> kTwoTriangles{0, 1, 2, 0, 2, 3};
 
-/// A square of two by two at the origin that faces +Z, and a camera that sees a quarter of its
-/// width.
-SceneBuilder square(const SceneBuilder::Material& material) {
-    SceneBuilder scene;
+const std::array<float, 8> kUvs{0, 1, 1, 1, 1, 0, 0, 0};  // the picture upright
+
+/// A square of two by two at the origin that faces +Z.
+SceneBuilder::Mesh quad(SceneBuilder::Index material) {
     SceneBuilder::Mesh mesh;
     mesh.positions = kQuad;
     mesh.triangles = kTwoTriangles;
-    const std::array<float, 8> uvs{0, 1, 1, 1, 1, 0, 0, 0};
-    mesh.uvs = uvs;
-    mesh.material = scene.addMaterial(material);
-    scene.addInstance(scene.addMesh(mesh));
-    scene.addCamera({"", SceneBuilder::lookAt({0, 0, 1}, {0, 0, 0}), 2 * std::atan(.25), 1.0});
-    return scene;
+    mesh.uvs = kUvs;
+    mesh.material = material;
+    return mesh;
+}
+
+/// It alone, and a camera at that distance that sees `width` of it.
+void addSquare(SceneBuilder& scene, const SceneBuilder::Material& material, double distance,
+               double width) {
+    scene.addInstance(scene.addMesh(quad(scene.addMaterial(material))));
+    scene.addCamera({"", SceneBuilder::lookAt({0, 0, distance}, {0, 0, 0}),
+                     2 * std::atan(.5 * width / distance), 1.0});
 }
 
 Render small(Render render) {
@@ -110,7 +115,8 @@ TEST_F(Library, sceneFromMemoryHasTheUnitsItSays) {
     SceneBuilder::Material grey;
     grey.baseColour = {.5, .25, .125};
     grey.specular = 0.0;
-    SceneBuilder scene = square(grey);
+    SceneBuilder scene;
+    addSquare(scene, grey, 1.0, .5);
     SceneBuilder::Lamp sun;
     sun.kind = SceneBuilder::Lamp::Kind::Directional;
     sun.intensity = {3 * kPi, 3 * kPi, 3 * kPi};
@@ -132,15 +138,8 @@ TEST_F(Library, texturesLieAsTheirRowsDo) {
                                               0,   0, 255, 255, 255, 255, 255, 255};
     SceneBuilder scene;
     lamp.emissionTexture = scene.addTexture(2, 2, texels);
-    SceneBuilder::Mesh mesh;
-    mesh.positions = kQuad;
-    mesh.triangles = kTwoTriangles;
-    const std::array<float, 8> uvs{0, 1, 1, 1, 1, 0, 0, 0};
-    mesh.uvs = uvs;
-    mesh.material = scene.addMaterial(lamp);
-    scene.addInstance(scene.addMesh(mesh));
-    // From so far that the square fills the picture: these are the texels' centres.
-    scene.addCamera({"", SceneBuilder::lookAt({0, 0, 10}, {0, 0, 0}), 2 * std::atan(.1), 1.0});
+    // The square fills the picture: these are the texels' centres.
+    addSquare(scene, lamp, 10.0, 2.0);
     Render render(scene);
     render.option("width", 20).option("height", 20).option("method", "pt").option("iterations", 4);
     const Picture picture = render.run();
@@ -157,7 +156,8 @@ TEST_F(Library, texturesLieAsTheirRowsDo) {
 
 /// Everything that a builder can say, in one scene.
 SceneBuilder rich() {
-    SceneBuilder scene = square({});
+    SceneBuilder scene;
+    addSquare(scene, {}, 1.0, .5);
     const std::array<std::uint8_t, 4> texel{200, 100, 50, 128};
     SceneBuilder::Material m;
     m.name = "all of it";
@@ -177,22 +177,17 @@ SceneBuilder rich() {
     m.alphaMode = SceneBuilder::Material::Alpha::Mask;
     m.baseColourTexture = m.metallicRoughnessTexture = m.normalTexture = m.emissionTexture =
         m.transmissionTexture = scene.addTexture(1, 1, texel);
-    SceneBuilder::Mesh mesh;
-    mesh.positions = kQuad;
-    mesh.triangles = kTwoTriangles;
+    SceneBuilder::Mesh mesh = quad(scene.addMaterial(m));
     const std::array<float, 12> normals{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-    const std::array<float, 8> uvs{0, 1, 1, 1, 1, 0, 0, 0};
     const std::array<float, 16> colours{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     mesh.normals = normals;
-    mesh.uvs = uvs;
     mesh.colours = colours;
-    mesh.material = scene.addMaterial(m);
     SceneBuilder::Transform behind = SceneBuilder::kIdentity;
     behind[14] = -0.5;
-    const SceneBuilder::Index quad = scene.addMesh(mesh);
-    scene.addInstance(quad, behind);
+    const SceneBuilder::Index placed = scene.addMesh(mesh);
+    scene.addInstance(placed, behind);
     behind[12] = 1.0;
-    scene.addInstance(quad, behind);
+    scene.addInstance(placed, behind);
     for (const auto kind : {SceneBuilder::Lamp::Kind::Point, SceneBuilder::Lamp::Kind::Spot,
                             SceneBuilder::Lamp::Kind::Directional}) {
         scene.addLamp({kind, {3, 2, 1}, SceneBuilder::lookAt({0, 1, 2}, {0, 0, 0}), .1, .5});
