@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "preprocess/emission_asset.h"
 #include "preprocess/skeleton_asset.h"
 #include "preprocess/subspace_asset.h"
 
@@ -18,6 +19,7 @@ std::string AssetRequest::file(const CacheStamp& stamp, const std::string& kind)
 
 std::span<const AssetRow> assetRows() {
     static const AssetRow rows[] = {
+        {"emission", acquireEmission},
         {"skeleton", acquireSkeleton},
         {"subspaces", acquireSubspaces},
     };

@@ -37,6 +37,7 @@ struct AssetRequest {
     const SceneOptions& options;  ///< as the stage was loaded with, for the cache and for messages
     const Settings& settings;     ///< of the method
     const std::string& prefix;    ///< of the asset's own options among them: "voxels."
+    const AssetSet& before;       ///< what the method needs and is there already
     bool build;                   ///< where there is no file of it, or none that can be used
     const ThreadPool& pool;
     const std::atomic<bool>& cancel;

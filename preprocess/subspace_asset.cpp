@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
-#include "libcore/tool/table_options.h"
+#include "preprocess/emission_asset.h"
 #include "preprocess/number_layer.h"
 #include "preprocess/train.h"
+#include "preprocess/train_command.h"
 
 namespace lacuna {
 namespace {
@@ -46,20 +47,19 @@ class SubspaceAsset final : public Asset {
 
 std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
     const TrainSettings settings{trainingOptions().read(r.settings, r.prefix)};
-    const CacheStamp stamp = subspaceStamp(sceneInputs(r.stage), r.stage.viewInputs, settings);
-    const std::string remedy =
-        "add --prepare, or run lacuna-train" +
-        optionArguments(changedValues<TrainingSettings>(trainingOptions(), settings)) +
-        sceneArguments(r.options) + viewArguments(r.options) + " " + shellQuoted(r.options.scene);
+    const auto guide = r.before.get<EmissionGuide>();
+    const CacheStamp stamp = subspaceStamp(sceneInputs(r.stage), r.stage.viewInputs, settings,
+                                           guide ? guide->contentHash() : kPlainEmission);
     std::optional<SubspaceFile> file;
     r.phases.run("read subspaces", [&] {
-        file = readCache<SubspaceFile>(r, stamp, "subspaces", remedy, readSubspaceFile);
+        file = readCache<SubspaceFile>(r, stamp, "subspaces", trainRemedy(r), readSubspaceFile);
     });
     if (!file) {
         const std::string path = r.file(stamp, "subspaces");
         makeCacheDirectory(path);
-        const TrainingView view =
+        TrainingView view =
             trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);
+        view.lights = guidedLights(*r.stage.scene, r.before);
         file = train(*r.stage.scene, view, settings, stamp, r.pool, r.cancel, r.phases).file;
         writeSubspaceFile(path, *file);
         r.built(path);

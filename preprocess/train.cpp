@@ -146,7 +146,8 @@ void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces
     struct Sums {
         std::vector<double> q, count;
     };
-    const Walker walker(scene, view.camera, view.limits);
+    const Walker walker(scene, view.lights ? *view.lights : scene.lights(), view.camera,
+                        view.limits);
     const std::uint64_t tasks = (settings.lightPaths + kLightPathsPerTask - 1) / kLightPathsPerTask;
     subspaces.lightPaths = settings.lightPaths;
     subspaces.q.assign(subspaces.lightCount, 0.0);
@@ -205,10 +206,11 @@ double emptyShareOfEye(const GammaData& data) {
 }  // namespace
 
 CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
-                         const TrainingSettings& settings) {
+                         const TrainingSettings& settings, const std::string& emission) {
     CacheStamp stamp{sceneInputs};
     stamp.inputs.insert(viewInputs.begin(), viewInputs.end());
     for (const auto& [name, value] : trainingOptions().values(settings)) stamp.inputs[name] = value;
+    stamp.inputs["emission"] = emission;
     return stamp;
 }
 
@@ -225,7 +227,8 @@ Trained train(const Scene& scene, const TrainingView& view, const TrainSettings&
     CollectedPaths paths;
     run("paths", [&] {
         const auto cells = std::uint32_t(std::lround(kLightShare * settings.subspaces));
-        s.cells = LightCells(scene.lights(), std::max(1u, cells));
+        const Lights& lights = view.lights ? *view.lights : scene.lights();
+        s.cells = LightCells(lights, std::max(1u, cells));
         paths = collectPaths(scene, view, s.cells, settings.paths, settings.seed, pool, cancel);
         result.trainPaths = paths.train.size();
         result.heldOutPaths = paths.heldOut.size();

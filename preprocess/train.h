@@ -14,9 +14,9 @@ struct TrainSettings : TrainingSettings {
     std::uint64_t seed = 1;
 };
 
-/// What subspaces are made of.
+/// What subspaces are made of. `emission`: hash of the guide that light subpaths follow.
 CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
-                         const TrainingSettings& settings);
+                         const TrainingSettings& settings, const std::string& emission);
 
 /// One of the two trees against the nearest centroid.
 struct TreeReport {

@@ -9,6 +9,7 @@
 #include "libcore/tool/progress.h"
 #include "libcore/tool/scene_stage.h"
 #include "libcore/tool/table_options.h"
+#include "preprocess/emission_asset.h"
 #include "preprocess/tool_stage.h"
 #include "preprocess/train.h"
 
@@ -31,6 +32,29 @@ void printTree(const char* name, const TreeReport& r) {
         "leaves, %.0f ns per look-up\n",
         name, r.centroids, r.heldOutAccuracy, r.samples, r.accuracy, r.depth, r.leaves,
         r.nanoseconds);
+}
+
+nlohmann::json emissionJson(const EmissionTraining& t, const std::string& file) {
+    const LearnedEmission& l = t.learned;
+    const bool learned = l.guide != nullptr;
+    return {{"file", file},
+            {"learned", learned},
+            {"paths", t.trainPaths + t.heldOutPaths},
+            {"held_out_loss", l.heldOutLoss},
+            {"train_loss", l.trainLoss},
+            {"plain_share", l.plainShare},
+            {"virtual_samples", l.virtualSamples},
+            {"point_trees", learned ? l.guide->points.size() : 0},
+            {"ray_trees", learned ? l.guide->rays.size() : 0}};
+}
+
+void printEmission(const EmissionTraining& t) {
+    const LearnedEmission& l = t.learned;
+    std::printf(
+        "emission: second moment of light subpaths %.3g of plain emission's (held out; %.3g ",
+        l.heldOutLoss, l.trainLoss);
+    std::printf("on the paths learned from), by %zu paths%s\n", t.trainPaths + t.heldOutPaths,
+                l.guide ? "" : ": plain emission is kept");
 }
 
 void print(const std::string& path, const Trained& t, const Phases& phases, double seconds) {
@@ -61,21 +85,27 @@ void print(const std::string& path, const Trained& t, const Phases& phases, doub
 }
 
 int trainTool(int argc, const char* const* argv) {
-    CLI::App app("Trains the subspaces of a scene's light and eye subpaths", "lacuna-train");
+    CLI::App app("Learns where light paths begin, and trains the subspaces of a scene's paths",
+                 "lacuna-train");
     BuildOptions options;
     addBuildOptions(app, options);
     addViewOptions(app, options);
+    const TableOptions<EmissionSettings> emissionTable(app, emissionOptions(Emission::Learned));
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
-        "Writes KEY.subspaces into the scene's cache, for lacuna-render --method spcbpt with the\n"
-        "same options of scene, picture and camera: what is learned is of what they show.\n"
+        "Writes KEY.emission and KEY.subspaces into the scene's cache, for lacuna-render --method\n"
+        "spcbpt with the same options of scene, picture and camera: what is learned is of what "
+        "they\n"
+        "show. Other methods take the former with --set emission=learned.\n"
         "Examples:\n"
         "  lacuna-train door.glb --paths 200000\n"
         "  lacuna-render door.glb -o door.exr --method spcbpt --set train.paths=200000\n"
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 the scene cannot be used, 130\n"
         "interrupted (nothing is written then).");
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
+    const EmissionSettings emission = emissionTable.read();
     const TrainSettings settings{training.read(), options.common.seed};
+    const std::uint64_t pathsOfEmission = emissionPaths(emission, settings.paths);
     checkBuildOptions(options);
 
     const ThreadPool pool(options.common.threads);
@@ -84,16 +114,40 @@ int trainTool(int argc, const char* const* argv) {
     Phases phases([&](const std::string& name) { progress.phase(name); });
     Phases total;
     SceneStage stage;
+    EmissionTraining emissionTraining;
     Trained result;
-    std::string path;
+    std::string path, emissionPath;
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, Look::Camera, pool, progress); });
-        const CacheStamp stamp = subspaceStamp(sceneInputs(stage), stage.viewInputs, settings);
+        TrainingView view = trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);
+        std::string emissionHash = kPlainEmission;
+        EmissionFile learned;
+        if (emission.emission == Emission::Learned) {
+            const CacheStamp stamp =
+                emissionStamp(sceneInputs(stage), stage.viewInputs, pathsOfEmission);
+            emissionPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
+                                     stamp, "emission");
+            makeCacheDirectory(emissionPath);
+            phases.run("emission", [&] {
+                emissionTraining =
+                    trainEmission(*stage.scene, *stage.camera, stage.aspect, stage.limits,
+                                  pathsOfEmission, settings.seed, pool, interrupt.requested());
+            });
+            learned = emissionFile(stamp, emissionTraining);
+            emissionHash = learned.contentHash;
+            if (learned.guide) {
+                view.lights =
+                    std::make_shared<const Lights>(stage.scene->lights().guidedBy(learned.guide));
+            }
+        }
+        const CacheStamp stamp =
+            subspaceStamp(sceneInputs(stage), stage.viewInputs, settings, emissionHash);
         path = resultFile(options, stamp, "subspaces");
-        const TrainingView view =
-            trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);
         result = train(*stage.scene, view, settings, stamp, pool, interrupt.requested(), phases);
-        phases.run("write", [&] { writeSubspaceFile(path, result.file); });
+        phases.run("write", [&] {
+            if (!emissionPath.empty()) writeEmissionFile(emissionPath, learned);
+            writeSubspaceFile(path, result.file);
+        });
     });
     if (result.trainPaths == 0) {
         progress.warning("warning: " + options.scene +
@@ -101,37 +155,41 @@ int trainTool(int argc, const char* const* argv) {
     }
 
     const double seconds = total.seconds().at("all");
+    if (emission.emission == Emission::Learned) printEmission(emissionTraining);
     print(path, result, phases, seconds);
     const GammaResult& g = result.gamma;
-    writeReport(options.common, {{"file", path},
-                                 {"light_tree", treeJson(result.lightTree)},
-                                 {"eye_tree", treeJson(result.eyeTree)},
-                                 {"gamma",
-                                  {{"train_loss_full", g.fullTrainLoss},
-                                   {"train_loss", g.trainLoss[g.kept]},
-                                   {"held_out_loss_full", g.fullHeldOutLoss},
-                                   {"virtual_paths", g.virtualPaths},
-                                   {"held_out_loss", g.heldOutLoss[g.kept]},
-                                   {"kept_epoch", g.kept},
-                                   {"train_loss_by_epoch", g.trainLoss},
-                                   {"held_out_loss_by_epoch", g.heldOutLoss}}},
-                                 {"subspaces", settings.subspaces},
-                                 {"light_subspaces", result.file.subspaces.lightCount},
-                                 {"light_source_cells", result.file.subspaces.cells.count()},
-                                 {"eye_subspaces", result.file.subspaces.eyeCount},
-                                 {"empty_light_subspaces", result.emptyLight},
-                                 {"empty_eye_subspaces", result.emptyEye},
-                                 {"paths", result.trainPaths + result.heldOutPaths},
-                                 {"held_out_paths", result.heldOutPaths},
-                                 {"traced_paths", result.traced},
-                                 {"outliers_lowered", result.outliers},
-                                 {"path_bytes", result.pathBytes},
-                                 {"content_hash", result.file.contentHash},
-                                 {"scene_hash", stage.scene->description().contentHash},
-                                 {"phases", phases.seconds()},
-                                 {"phase_peak_bytes", result.peakBytes},
-                                 {"seconds", seconds},
-                                 {"peak_bytes", peakBytes()}});
+    writeReport(options.common,
+                {{"file", path},
+                 {"emission", emissionPath.empty() ? nlohmann::json()
+                                                   : emissionJson(emissionTraining, emissionPath)},
+                 {"light_tree", treeJson(result.lightTree)},
+                 {"eye_tree", treeJson(result.eyeTree)},
+                 {"gamma",
+                  {{"train_loss_full", g.fullTrainLoss},
+                   {"train_loss", g.trainLoss[g.kept]},
+                   {"held_out_loss_full", g.fullHeldOutLoss},
+                   {"virtual_paths", g.virtualPaths},
+                   {"held_out_loss", g.heldOutLoss[g.kept]},
+                   {"kept_epoch", g.kept},
+                   {"train_loss_by_epoch", g.trainLoss},
+                   {"held_out_loss_by_epoch", g.heldOutLoss}}},
+                 {"subspaces", settings.subspaces},
+                 {"light_subspaces", result.file.subspaces.lightCount},
+                 {"light_source_cells", result.file.subspaces.cells.count()},
+                 {"eye_subspaces", result.file.subspaces.eyeCount},
+                 {"empty_light_subspaces", result.emptyLight},
+                 {"empty_eye_subspaces", result.emptyEye},
+                 {"paths", result.trainPaths + result.heldOutPaths},
+                 {"held_out_paths", result.heldOutPaths},
+                 {"traced_paths", result.traced},
+                 {"outliers_lowered", result.outliers},
+                 {"path_bytes", result.pathBytes},
+                 {"content_hash", result.file.contentHash},
+                 {"scene_hash", stage.scene->description().contentHash},
+                 {"phases", phases.seconds()},
+                 {"phase_peak_bytes", result.peakBytes},
+                 {"seconds", seconds},
+                 {"peak_bytes", peakBytes()}});
     return 0;
 }
 

@@ -88,7 +88,7 @@ Encounters meet(const Stage& stage, const SmallPicture& picture) {
         e.eyeRough += meets && path[1].connectable();
         for (const PathVertex& v : path) {
             if (v.kind != VertexKind::Surface || v.light == kNone) continue;
-            const bool shines = emissionOf(scene.lights(), v, v.toPrevious).profile > 0.0f;
+            const bool shines = scene.lights().profile(v.light, v.ng, v.toPrevious) > 0.0f;
             ++(shines ? e.front : e.behind);
         }
     }

@@ -1,6 +1,7 @@
 #include "render/block_maker.h"
 
 #include "libcore/base/stopwatch.h"
+#include "preprocess/emission_asset.h"
 #include "render/block_plan.h"
 
 namespace lacuna {
@@ -9,10 +10,11 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
                        Stage& stage, const Caches& caches, const ThreadPool& pool)
     : row_(row),
       settings_(settings),
-      caches_(caches),
+      assets_(caches.all()),
       method_(freshMethod()),
       plan_(planOf(options, *method_)) {
     stage.settings.blockIterations = plan_.iterations;
+    stage.settings.lights = guidedLights(*stage.scene, assets_);
     integrator_ = std::make_unique<BidirIntegrator>(*stage.scene, *stage.camera, stage.techniques,
                                                     *method_, stage.settings, pool);
     const PixelRect& crop = stage.settings.crop;
@@ -23,8 +25,7 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
         layers_.push_back(techniques_.get());
     }
     if (options.verify) {
-        verifier_ = std::make_unique<WeightVerifier>(*stage.scene, *stage.camera,
-                                                     stage.settings.limits, pool);
+        verifier_ = std::make_unique<WeightVerifier>(integrator_->walker(), pool);
     }
     if (options.techniques && !row.proposalLabels.empty()) {
         proposals_ =
@@ -41,7 +42,7 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
 
 std::unique_ptr<Method> BlockMaker::freshMethod() const {
     std::unique_ptr<Method> method = row_.create(settings_);
-    caches_.giveTo(*method);
+    method->use(assets_);
     return method;
 }
 

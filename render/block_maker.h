@@ -67,7 +67,7 @@ class BlockMaker {
 
     const MethodRow& row_;
     const Settings& settings_;
-    const Caches& caches_;
+    const AssetSet assets_;
     std::unique_ptr<Method> method_;  ///< of the open block
     BlockPlan plan_;
     std::unique_ptr<BidirIntegrator> integrator_;

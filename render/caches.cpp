@@ -2,17 +2,18 @@
 
 namespace lacuna {
 
-void Caches::giveTo(Method& method) const {
+AssetSet Caches::all() const {
     AssetSet set;
     for (const auto& asset : assets) asset->giveTo(set);
-    method.use(set);
+    return set;
 }
 
 Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                   const SceneStage& stage, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress) {
     Caches caches;
-    if (row.needs.empty()) {
+    const std::vector<AssetNeed> needs = needsOf(row, settings);
+    if (needs.empty()) {
         if (options.prepare) {
             progress.remark("--prepare: " + row.name + " needs no caches: nothing to build");
         }
@@ -25,10 +26,12 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
         if (options.common.verbose) progress.remark("built " + path);
     };
     total.run("all", [&] {
-        for (const AssetNeed& need : row.needs) {
+        AssetSet before;
+        for (const AssetNeed& need : needs) {
             caches.assets.push_back(
-                findAsset(need.name).acquire({stage, options, settings, need.prefix,
+                findAsset(need.name).acquire({stage, options, settings, need.prefix, before,
                                               options.prepare, pool, cancel, phases, built}));
+            caches.assets.back()->giveTo(before);
             caches.hashes[need.name] = caches.assets.back()->contentHash();
         }
     });

@@ -13,12 +13,12 @@
 namespace lacuna {
 
 struct Caches {
-    std::vector<std::unique_ptr<Asset>> assets;  ///< in the order of the row's needs
+    std::vector<std::unique_ptr<Asset>> assets;  ///< in the order of their making
     std::map<std::string, std::string> hashes;   ///< of their content, by name
     std::map<std::string, double> phaseSeconds;
     double seconds = 0.0;
 
-    void giveTo(Method& method) const;
+    AssetSet all() const;
 };
 
 /// Reads what `row` needs. A missing or stale cache is an InputError that names the command that

@@ -105,7 +105,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
             });
             if (!chosen) return std::nullopt;
         }
-        options.prepare = !row->needs.empty();
+        options.prepare = !needsOf(*row, settings).empty();
     }
     // Rank 0 makes the caches that are missing, the others read them.
     Caches caches;

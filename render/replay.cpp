@@ -5,6 +5,7 @@
 #include "libcore/base/error.h"
 #include "libcore/bidir/verify.h"
 #include "libcore/tool/interrupt.h"
+#include "preprocess/emission_asset.h"
 #include "render/block_plan.h"
 #include "render/caches.h"
 #include "render/stage.h"
@@ -84,7 +85,7 @@ class Printer {
                     p.z, double(v.ng.x), double(v.ng.y), double(v.ng.z), nameOf(v.event));
         if (v.light != kNone) std::printf(", light %u", v.light);
         const Rgb throughput =
-            letter == 'y' ? walker_.scene().lights().inFileUnits(v.throughput) : v.throughput;
+            letter == 'y' ? walker_.lights().inFileUnits(v.throughput) : v.throughput;
         std::printf(", pdfA %.9g, reverse pdfA %.9g, survival %.6g, throughput %.9g %.9g %.9g\n",
                     double(v.pdfA), double(v.pdfReverseA), double(v.survival), double(throughput.r),
                     double(throughput.g), double(throughput.b));
@@ -138,7 +139,9 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     whole.blockIterations = blockIterations;
     const Caches caches =
         loadCaches(options, row, settings, stage, pool, interrupt.requested(), progress);
-    caches.giveTo(*method);
+    const AssetSet assets = caches.all();
+    method->use(assets);
+    whole.lights = guidedLights(*stage.scene, assets);
     BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 
@@ -164,7 +167,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
         "the light to the lens; densities per area (at infinity: per solid angle), roulette left "
         "out; `n r`: samples of the strategy whose eye part begins at that vertex\n");
     progress.phase("replaying");
-    const Walker walker(*stage.scene, *stage.camera, whole.limits);
+    const Walker& walker = integrator.walker();
     Printer printer(walker);
     const PathObserver print = [&](const PathEvent& event) { printer.contribution(event); };
     if (sample.light) {

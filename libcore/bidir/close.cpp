@@ -47,7 +47,7 @@ bool liesBehind(const PathVertex& v, const PathVertex& other) {
 
 /// Whether `v` is on a light that sends nothing along `direction`.
 bool isDark(const Lights& lights, const PathVertex& v, const Vec3& direction) {
-    return v.index == 0 && !(emissionOf(lights, v, direction).profile > 0.0f);
+    return v.index == 0 && !(lights.profile(v.light, v.ng, direction) > 0.0f);
 }
 
 /// The path's size and who made its edges, but for a connection's one.
@@ -84,9 +84,10 @@ bool isHiddenFromCamera(const Scene& scene, const PathVertex& y) {
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path) {
     const PathVertex& z = eye.back();
     if (z.light == kNone || z.index == 0) return std::nullopt;
-    const Lights& lights = walker.scene().lights();
+    const Lights& lights = walker.lights();
     const LightPoint point = lightPointOf(lights, z);
-    const Lights::Emission emission = lights.emission(point, z.toPrevious);
+    const Lights::Emission emission =
+        lights.emission(point, z.toPrevious, eye[eye.size() - 2].position);
     const Closed closed{z.throughput * point.exitance * emission.profile, int(eye.size()), {}};
     if (isBlack(closed.contribution)) return std::nullopt;
 
@@ -102,7 +103,7 @@ std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path
 
 std::optional<LensEdge> lensEdge(const Walker& walker, const PathVertex& y, const PathVertex& z0,
                                  const PixelRect& crop, RayTally& tally) {
-    const Lights& lights = walker.scene().lights();
+    const Lights& lights = walker.lights();
     // A punctual light in the picture itself has no size: no strategy makes that path, so that all
     // methods agree (and no pixel holds a spike that grows with the resolution).
     if (y.index == 0 && !isHittable(lights.kind(y.light))) return std::nullopt;
@@ -122,7 +123,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
                                  const LensEdge& open, FullPath& path) {
     const auto& [edge, projection] = open;
     const PathVertex& y = light.back();
-    const EndValue end = lightEnd(walker.scene().lights(), y, -edge.direction);
+    const EndValue end = lightEnd(walker.lights(), y, -edge.direction, z0);
     const Rgb through = transmittance(walker.scene().absorption(), z0, edge.direction, y);
     const Closed closed{y.throughput * end.f * through * (edge.geometry * projection.pdfW), 1,
                         projection.raster};
@@ -148,7 +149,7 @@ std::optional<Edge> connectingEdge(const Walker& walker, const PathVertex& y, co
                                    RayTally& tally) {
     if (liesBehind(y, z) || liesBehind(z, y)) return std::nullopt;
     const Edge edge = edgeBetween(y, z);
-    if (!(edge.geometry > 0.0f) || isDark(walker.scene().lights(), y, edge.direction) ||
+    if (!(edge.geometry > 0.0f) || isDark(walker.lights(), y, edge.direction) ||
         !connected(walker.scene(), y, z, RayKind::Connection, tally)) {
         return std::nullopt;
     }
@@ -160,8 +161,7 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
     const auto& [light, eye, edge, lightAsEye, eyeAsLight] = open;
     const PathVertex& y = light.back();
     const PathVertex& z = eye.back();
-    const Lights& lights = walker.scene().lights();
-    const EndValue atLight = lightEnd(lights, y, edge.direction);
+    const EndValue atLight = lightEnd(walker.lights(), y, edge.direction, z);
     const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
     const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
     const Closed closed{z.throughput * atEye.f * atLight.f * through * y.throughput * edge.geometry,

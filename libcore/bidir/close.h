@@ -28,10 +28,11 @@ struct EndValue {
     float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
     float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
 };
-/// That of a light subpath's last vertex; `toEye` is unit.
-inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye) {
+/// That of a light subpath's last vertex; `toEye` is unit, `other` the connection's other end.
+inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye,
+                         const PathVertex& other) {
     if (y.index == 0) {
-        const Lights::Emission e = emissionOf(lights, y, toEye);
+        const Lights::Emission e = emissionOf(lights, y, toEye, other.position);
         return {Rgb(e.profile), e.pdfW, 0.0f};
     }
     const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);

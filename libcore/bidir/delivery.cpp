@@ -19,7 +19,7 @@ PathObserver Delivery::setObserver(PathObserver observer) {
 }
 
 Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts) const {
-    const Lights& lights = setup_.scene.lights();
+    const Lights& lights = setup_.walker.lights();
     const double weight = misWeight(c.path, counts, c.closed.t);
     const Rgb scaled = c.closed.contribution * float(c.scale);
     const Rgb value = lights.inFileUnits(scaled * float(weight));

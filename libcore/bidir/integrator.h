@@ -44,6 +44,7 @@ class BidirIntegrator {
     /// Layers to fill as well, observers, recordings.
     Delivery& delivery() { return delivery_; }
 
+    const Walker& walker() const { return setup_.walker; }
     /// L.
     std::uint64_t lightPaths() const { return setup_.lightPaths; }
     const LightPool& pool() const { return pool_; }

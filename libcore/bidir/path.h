@@ -143,10 +143,11 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
 /// The vertex as a point on its light with its density and exitance. `vertex.light` must be set.
 LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex);
 
-/// Profile and density of what leaves the light vertex along `direction`.
+/// Profile and density of what leaves the light vertex along `direction` and comes to `x1`.
 inline Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex,
-                                   const Vec3& direction) {
-    return lights.emission(vertex.light, vertex.ng, direction);
+                                   const Vec3& direction, const Vec3& x1) {
+    return lights.emission({vertex.light, vertex.position, vertex.ng, vertex.lightUv}, direction,
+                           x1);
 }
 
 }  // namespace lacuna

@@ -28,7 +28,7 @@ class Products {
           counts_(counts),
           k_(path.edges),
           split_(path.edges + 1 - made),
-          lights_(walker.scene().lights()),
+          lights_(walker.lights()),
           source_(lightPointOf(lights_, *path.vertex[0])) {
         for (int i = 0; i < k_; ++i) setEdge(i);
         setLightSource();
@@ -80,7 +80,7 @@ class Products {
 
     /// p(x_0), p(x_1 | x_0).
     void setLightSource() {
-        const Lights::Emission emission = lights_.emission(source_, towardsLens(0));
+        const Lights::Emission emission = lights_.emission(source_, towardsLens(0), x(1).position);
         lightPdfA_[0] = double(source_.pdf);
         if (k_ > 1) lightPdfA_[1] = double(emission.pdfW) * toLens_[0];
         scatter_[0] = Rgb(emission.profile);
@@ -213,11 +213,10 @@ double misWeightByProducts(const Walker& walker, const FullPath& path,
     return Products(walker, path, counts, t).weight(t);
 }
 
-WeightVerifier::WeightVerifier(const Scene& scene, const Camera& camera, WalkLimits limits,
-                               const ThreadPool& pool)
-    : walker_(scene, camera, limits),
+WeightVerifier::WeightVerifier(const Walker& walker, const ThreadPool& pool)
+    : walker_(walker),
       pool_(pool),
-      filmWidth_(camera.film().width),
+      filmWidth_(walker.camera().film().width),
       slots_(std::size_t(pool.threads())) {}
 
 bool WeightVerifier::Worst::worseThan(const Worst& other) const {

@@ -24,8 +24,8 @@ double misWeightByProducts(const Walker& walker, const FullPath& path,
 /// Compares the weight of every path it is shown; called from many threads at once.
 class WeightVerifier {
   public:
-    WeightVerifier(const Scene& scene, const Camera& camera, WalkLimits limits,
-                   const ThreadPool& pool);
+    /// What the walker refers to must outlive it.
+    WeightVerifier(const Walker& walker, const ThreadPool& pool);
 
     void check(const PathEvent& event);
 
@@ -51,7 +51,7 @@ class WeightVerifier {
         Worst worst;
     };
 
-    Walker walker_;
+    const Walker walker_;
     const ThreadPool& pool_;
     int filmWidth_;
     std::vector<Slot> slots_;

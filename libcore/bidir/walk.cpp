@@ -25,22 +25,20 @@ bool Walker::sampleLight(Rng& rng, PathVertex& out) const {
 }
 
 std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) const {
-    const Lights& lights = scene_.lights();
-    if (lights.empty()) return std::nullopt;
-    const LightPoint p = lights.samplePoint(rng);
+    if (lights_.empty()) return std::nullopt;
+    const LightPoint p = lights_.samplePoint(rng);
     if (!setLightVertex(p, out)) return std::nullopt;
     return p;
 }
 
 double Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
-    const Lights& lights = scene_.lights();
-    if (lights.empty()) return 0.0;
-    const Lights::SeenPoint seen = lights.sampleSeenPoint(viewpointOf(eye), rng);
+    if (lights_.empty()) return 0.0;
+    const Lights::SeenPoint seen = lights_.sampleSeenPoint(viewpointOf(eye), rng);
     return setLightVertex(seen.point, out) ? seen.samples : 0.0;
 }
 
 double Walker::seenSamples(const PathVertex& light, const PathVertex& eye) const {
-    return scene_.lights().seenSamples(light.light, viewpointOf(eye));
+    return lights_.seenSamples(light.light, viewpointOf(eye));
 }
 
 /// False where the point is dark.
@@ -53,9 +51,9 @@ bool Walker::setLightVertex(const LightPoint& p, PathVertex& out) const {
     out.ng = p.ng;
     out.light = p.light;
     out.lightUv = p.uv;
-    out.twoSided = scene_.lights().twoSided(p.light);
+    out.twoSided = lights_.twoSided(p.light);
     if (p.kind == LightKind::Area && !scene_.absorption().empty()) {
-        out.material = scene_.lights().material(p.light);
+        out.material = lights_.material(p.light);
     }
     out.pdfA = p.pdf;
     out.throughput = throughput;
@@ -81,18 +79,20 @@ std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) c
     out.push_back(y0);
     if (limits_.maxDepth < 2) return std::nullopt;
 
-    const auto ray = scene_.lights().sampleEmission(*point, rng);
+    const auto ray = lights_.sampleEmission(*point, rng);
     if (!ray) return std::nullopt;
     out[0].scatter = Rgb(ray->emission.profile);
-    const auto cosine = float(measureCosine(y0, ray->direction));
-    return Walk{Side::Light,
-                &out,
-                &rng,
-                ray->origin,
-                y0.ng,
-                ray->direction,
-                ray->emission.pdfW,
-                y0.throughput * ray->emission.profile * (cosine / ray->emission.pdfW)};
+    Walk walk{Side::Light, &out, &rng, ray->origin, y0.ng, ray->direction, 0.0f, {}};
+    setOut(walk, ray->emission);
+    return walk;
+}
+
+/// What the first ray of a light walk carries.
+void Walker::setOut(Walk& walk, const Lights::Emission& emission) {
+    const PathVertex& y0 = walk.path->front();
+    const auto cosine = float(measureCosine(y0, walk.direction));
+    walk.pdfW = emission.pdfW;
+    walk.throughput = y0.throughput * emission.profile * (cosine / emission.pdfW);
 }
 
 Walk Walker::startEye(Vec2 raster, Rng& rng, std::vector<PathVertex>& out) const {
@@ -196,7 +196,7 @@ std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
     v.index = std::uint8_t(out.size() - 1);
     v.position = walk.direction;
     v.toPrevious = -walk.direction;
-    v.light = scene_.lights().environmentIndex();
+    v.light = lights_.environmentIndex();
     v.throughput = walk.throughput;
     v.pdfA = walk.pdfW;
     v.toPreviousFactor = float(measureCosine(previous, walk.direction));
@@ -207,6 +207,11 @@ std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
 bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     std::vector<PathVertex>& out = *walk.path;
     if (hit.position == out.back().position) return false;  // no distance, no measure
+    // The density of the disk is asked for by what the whole path knows: x_1. Rounding may have
+    // led over the edge of a cell.
+    if (out[0].infinite() && out.size() == 1 && lights_.guided()) {
+        setOut(walk, emissionOf(lights_, out[0], walk.direction, hit.position));
+    }
     addSurface(hit, walk.direction, walk.pdfW, walk.throughput, out);
     const std::size_t maxVertices =
         std::size_t(limits_.maxDepth) + (walk.side == Side::Eye ? 1 : 0);

@@ -33,10 +33,14 @@ struct Walk {
 
 class Walker final : public LightSampler {
   public:
+    /// `lights`: the scene's, or those guided (Lights::guidedBy). All must outlive it.
+    Walker(const Scene& scene, const Lights& lights, const Camera& camera, WalkLimits limits)
+        : scene_(scene), lights_(lights), camera_(camera), limits_(limits) {}
     Walker(const Scene& scene, const Camera& camera, WalkLimits limits)
-        : scene_(scene), camera_(camera), limits_(limits) {}
+        : Walker(scene, scene.lights(), camera, limits) {}
 
     const Scene& scene() const { return scene_; }
+    const Lights& lights() const { return lights_; }
     const Camera& camera() const { return camera_; }
     const WalkLimits& limits() const { return limits_; }
 
@@ -64,6 +68,7 @@ class Walker final : public LightSampler {
   private:
     std::optional<LightPoint> sampleLightPoint(Rng& rng, PathVertex& out) const;
     bool setLightVertex(const LightPoint& point, PathVertex& out) const;
+    static void setOut(Walk& walk, const Lights::Emission& emission);
     void finishAlone(Walk& walk, RayTally& tally) const;
     void finishTogether(std::span<Walk> walks, RayTally& tally) const;
     std::optional<Hit> nextHit(const Walk& walk, RayTally& tally) const;
@@ -72,6 +77,7 @@ class Walker final : public LightSampler {
                     const Rgb& throughput, std::vector<PathVertex>& out) const;
 
     const Scene& scene_;
+    const Lights& lights_;
     const Camera& camera_;
     WalkLimits limits_;
 };

@@ -1,12 +1,6 @@
-// KEY.subspaces: what lacuna-train writes and lacuna-render reads. One file (files.md,
-// "Subspaces"):
-//
-//   64 bytes   magic, version, number of sections, bytes in all, XXH3-128 of everything else
-//   sections   name (16 bytes), bytes per element, number of elements, elements, zeros up to a
-//              multiple of 8; in the order and with the element sizes of the table in the .cpp
-//
-// Little-endian, as it lies in memory. Length, checksum and version are compared before anything
-// else is read; then every size, index and number is.
+// KEY.subspaces: what lacuna-train writes and lacuna-render reads. One section file (section_file.h;
+// files.md, "Subspaces"), its sections in the order and with the element sizes of the table in the
+// .cpp. Every size, index and number is compared before it is used.
 #pragma once
 
 #include "libcore/cache/cache_name.h"

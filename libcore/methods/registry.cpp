@@ -48,9 +48,18 @@ const OptionTable<SplatOptions>& splatOptions() {
 
 }  // namespace
 
-std::vector<Option> allOptions(const MethodRow& row, std::vector<Option> own) {
-    std::vector<Option> all;
-    if (row.techniques.splats) all = splatOptions().options();
+void complete(MethodRow& row, std::vector<Option> own) {
+    std::vector<Option>& all = row.options;
+    if (row.techniques.splats) {
+        all = splatOptions().options();
+        const auto isLearned = [](const Settings& settings) {
+            return emissionOptions({}).read(settings).emission == Emission::Learned;
+        };
+        // First: everything else is learned from light subpaths that begin as it says.
+        row.needs.insert(
+            row.needs.begin(),
+            AssetNeed{"emission", "", emissionOptions(row.emission).options(), isLearned});
+    }
     for (Option& option : own) all.push_back(std::move(option));
     for (const AssetNeed& need : row.needs) {
         for (Option option : need.options) {
@@ -67,7 +76,14 @@ std::vector<Option> allOptions(const MethodRow& row, std::vector<Option> own) {
         preset.standard = "measured";
         all.push_back(std::move(preset));
     }
-    return all;
+}
+
+std::vector<AssetNeed> needsOf(const MethodRow& row, const Settings& settings) {
+    std::vector<AssetNeed> needs;
+    for (const AssetNeed& need : row.needs) {
+        if (!need.wanted || need.wanted(settings)) needs.push_back(need);
+    }
+    return needs;
 }
 
 Settings resolve(const MethodRow& row, std::span<const std::string> assignments,

@@ -11,6 +11,7 @@
 
 #include "libcore/base/options.h"
 #include "libcore/bidir/method.h"
+#include "libcore/guide/emission_settings.h"
 
 namespace lacuna {
 
@@ -19,6 +20,8 @@ struct AssetNeed {
     std::string name;             ///< of the asset: "skeleton"
     std::string prefix;           ///< of its options among the row's: "voxels."
     std::vector<Option> options;  ///< of how it is made
+    /// Whether a render with these settings of the row needs it; empty: all do.
+    std::function<bool(const Settings&)> wanted = {};
 };
 
 /// What a method is, for the integrator, the command line, the documentation and the tests.
@@ -27,7 +30,8 @@ struct MethodRow {
     std::string reference = {};  ///< key in REFERENCES.md
     std::string summary = {};    ///< one line
     Techniques techniques = {};
-    std::vector<AssetNeed> needs = {};
+    Emission emission = Emission::Plain;           ///< the default, where there are light subpaths
+    std::vector<AssetNeed> needs = {};             ///< in the order in which they are made
     std::vector<std::string> proposalLabels = {};  ///< names of Proposal::label, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
     /// What `preset=paper` sets, where the paper's value is not our default: "name=value".
@@ -36,14 +40,17 @@ struct MethodRow {
     std::function<std::unique_ptr<Method>(const Settings&)> create = {};
 };
 
-/// A row's options: its own, and those that follow from the rest of it. Rows that splat have
-/// `light_paths`, rows that need assets those of their making, rows with a paper's preset `preset`.
-std::vector<Option> allOptions(const MethodRow& row, std::vector<Option> own);
+/// What follows from the rest of a row. Rows that splat trace light subpaths, so that they have
+/// `light_paths` and `emission`; rows that need assets have the options of their making, rows with a
+/// paper's preset `preset`; then there are the row's own.
+void complete(MethodRow& row, std::vector<Option> own);
+/// The assets that a render with these settings needs.
+std::vector<AssetNeed> needsOf(const MethodRow& row, const Settings& settings);
 
 /// The row with its options, and how a method is made of them.
 template <class Options, class Make>
 MethodRow methodRow(MethodRow row, const OptionTable<Options>& table, Make make) {
-    row.options = allOptions(row, table.options());
+    complete(row, table.options());
     row.create = [table, make](const Settings& settings) -> std::unique_ptr<Method> {
         return make(table.read(settings));
     };

@@ -405,15 +405,17 @@ OptionTable<Options> subspaceOptions(const Options& defaults) {
 
 MethodRow subspaceRow(const std::string& name, const std::string& summary, bool biased,
                       const OptionTable<Options>& table) {
-    return methodRow(
-        {.name = name,
-         .reference = "Su22",
-         .summary = summary,
-         .techniques = {.hits = true, .connects = true, .splats = true},
-         .needs = {{"subspaces", "train.", trainingOptions().options()}},
-         .biased = biased,
-         .paper = {"first_connections=0", "deep_connections=0", "weights=paper", "reuse=200"}},
-        table, [](const Options& o) { return std::make_unique<SubspaceConnections>(o); });
+    return methodRow({.name = name,
+                      .reference = "Su22",
+                      .summary = summary,
+                      .techniques = {.hits = true, .connects = true, .splats = true},
+                      .emission = Emission::Learned,
+                      .needs = {{"subspaces", "train.", trainingOptions().options()}},
+                      .biased = biased,
+                      .paper = {"first_connections=0", "deep_connections=0", "weights=paper",
+                                "reuse=200", "emission=plain"}},
+                     table,
+                     [](const Options& o) { return std::make_unique<SubspaceConnections>(o); });
 }
 
 }  // namespace

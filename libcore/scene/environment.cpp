@@ -94,6 +94,21 @@ Environment::Sample Environment::sampleSquare(double across, double down) const 
     return inTexel(texel, float(texel.remapped()), float((down - begin) / (end - begin)));
 }
 
+SquarePoint Environment::squareOf(Vec3 direction) const {
+    const Vec2 uv = uvOf(direction);
+    const auto width = std::size_t(width_);
+    const double column = double(uv.x) * width_;
+    const auto x = std::min(std::size_t(column), width - 1);
+    const auto y = std::min(std::size_t(uv.y * float(height_)), std::size_t(height_ - 1));
+    const Row& row = rows_[y];
+    const double begin = texels_.before(y * width), end = texels_.before((y + 1) * width);
+    const double rest = texels_.before(y * width + x) - begin;
+    const auto share = [](double part) { return std::clamp(part, 0.0, 1.0); };
+    const double down = share((row.top - double(direction.y)) / (row.top - row.bottom));
+    const double across = rest + share(column - double(x)) * texels_.pmf(y * width + x);
+    return {end > begin ? share(across / (end - begin)) : 0.0, begin + down * (end - begin)};
+}
+
 /// Uniform in it.
 Environment::Sample Environment::inTexel(const DiscreteDistribution::Pick& pick, float u1,
                                          float u2) const {

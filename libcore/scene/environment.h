@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libcore/base/discrete.h"
+#include "libcore/base/square_density.h"
 #include "libcore/base/vec.h"
 #include "libcore/image/image.h"
 
@@ -37,6 +38,8 @@ class Environment {
     Sample sample(double uTexel, float u1, float u2) const;
     /// The same density from a point of the square: points that are even there are even in the sky.
     Sample sampleSquare(double across, double down) const;
+    /// The point of the square that gives `direction`: {across, down}. Not for a black map.
+    SquarePoint squareOf(Vec3 direction) const;
 
     bool black() const { return texels_.empty(); }
     /// Integral of the radiance over all directions (by texel means).

@@ -148,8 +148,9 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         kinds_.push_back(LightKind::Environment);
     }
     const std::vector<double> power = powers();
-    selection_ = DiscreteDistribution(power);
-    tree_ = makeTree(power);
+    byPower_ = std::make_shared<const DiscreteDistribution>(power);
+    selection_ = *byPower_;
+    tree_ = std::make_shared<const LampTree>(makeTree(power));
     chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
         const EmissiveTriangle& t = triangles_[i];
@@ -159,14 +160,28 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         a.edge2 = t.corners[2] - t.corners[0];
         a.ng = triangleNormal(t.corners[0], t.corners[1], t.corners[2]);
         a.exitance = t.radiance * perRadiance(t);
-        // A triangle without area is never picked; a ray may still run into what rounding left of
-        // it.
-        const double area = triangleArea(t);
-        a.pdfA = area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
+        a.pdfA = pdfOfTriangle(i);
         a.twoSided = t.twoSided;
         a.textured = t.texture != nullptr;
         a.hasHoles = t.alpha.has_value();
     }
+}
+
+Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
+    Lights guided = *this;
+    guided.guide_ = std::move(guide);
+    guided.selection_ = DiscreteDistribution(guided.guide_->pmf);
+    for (std::uint32_t i = 0; i < guided.area_.size(); ++i) {
+        guided.area_[i].pdfA = guided.pdfOfTriangle(i);
+    }
+    return guided;
+}
+
+/// Of its points, selection included. A triangle without area is never picked; a ray may still run
+/// into what rounding left of it.
+float Lights::pdfOfTriangle(std::uint32_t i) const {
+    const double area = triangleArea(triangles_[i]);
+    return area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
 }
 
 /// In W, by light.
@@ -256,6 +271,7 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
     const Environment::Seen seen = environment_->seen(direction);
     p.pdf = float(selection_.pmf(environmentIndex_)) * seen.pdfW;
     p.exitance = skyExitance(seen.radiance);
+    if (guide_) p.pdf *= guidedPdf(p);
     return p;
 }
 
@@ -264,8 +280,95 @@ const double Lights::kByPower = 0.1;
 /// By even numbers of 24 bits and another one, which gives each 26 more: skies have rare texels.
 Environment::Sample Lights::sampleSky(double rest, float across, float down) const {
     const double scaled = rest * 0x1p26, first = std::floor(scaled);
-    return environment_->sampleSquare(double(across) + first * 0x1p-50,
-                                      double(down) + (scaled - first) * 0x1p-24);
+    const SquarePoint u{double(across) + first * 0x1p-50,
+                        double(down) + (scaled - first) * 0x1p-24};
+    const SquarePoint at = warpPoint(environmentIndex_, u);
+    return environment_->sampleSquare(at[0], at[1]);
+}
+
+/// To where the guide wants it.
+SquarePoint Lights::warpPoint(std::uint32_t light, SquarePoint u) const {
+    if (!guide_ || guide_->pointTree[light] == kNone) return u;
+    return guide_->points[guide_->pointTree[light]].warp(u);
+}
+
+namespace {
+
+/// Undoes concentricDisk, for a point of the disk or close to it.
+SquarePoint squareOfDisk(double x, double y) {
+    constexpr double kPerRadian = 4.0 / std::numbers::pi;
+    const double r = std::min(std::hypot(x, y), 1.0);
+    double a = 0.0, b = 0.0;
+    if (std::abs(x) > std::abs(y)) {
+        a = std::copysign(r, x);
+        b = a * std::atan(y / x) * kPerRadian;
+    } else if (y != 0.0) {
+        b = std::copysign(r, y);
+        a = b * std::atan(x / y) * kPerRadian;
+    }
+    return {std::clamp(0.5 * (a + 1.0), 0.0, 1.0), std::clamp(0.5 * (b + 1.0), 0.0, 1.0)};
+}
+
+/// Angle about the axis as a share of a turn, in [0, 1].
+double turnOf(double y, double x) {
+    const double turn = std::atan2(y, x) / (2.0 * std::numbers::pi);
+    return turn < 0.0 ? turn + 1.0 : turn;
+}
+
+}  // namespace
+
+SquarePoint Lights::pointSquare(const LightPlace& y0) const {
+    if (y0.light < area_.size()) {
+        // Undoes the map of pointOn.
+        const double s = 1.0 - double(y0.uv.x);
+        return {s * s, s > 0.0 ? std::clamp(double(y0.uv.y) / s, 0.0, 1.0) : 0.0};
+    }
+    if (y0.light == environmentIndex_) return environment_->squareOf(y0.position);
+    return {0.0, 0.0};
+}
+
+SquarePoint Lights::raySquare(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const {
+    switch (kinds_[y0.light]) {
+        case LightKind::Area: {
+            // By the normal that rays are drawn about: that of a hit may be zero in another way,
+            // and a frame jumps there.
+            const AreaLight& a = area_[y0.light];
+            const bool back = a.twoSided && dot(a.ng, direction) < 0.0f;
+            const Vec3 local = Frame(back ? -a.ng : a.ng).toLocal(direction);
+            SquarePoint p = squareOfDisk(double(local.x), double(local.y));
+            if (a.twoSided) p[0] = 0.5 * (p[0] + (back ? 1.0 : 0.0));
+            return p;
+        }
+        case LightKind::Point:
+            return {0.5 * (1.0 - double(direction.z)),
+                    turnOf(double(direction.y), double(direction.x))};
+        case LightKind::Spot: {
+            const std::size_t i = y0.light - triangles_.size();
+            const Vec3 local = Frame(punctualDirection_[i]).toLocal(direction);
+            const double v = 0.5 * lengthSquared(Vec3d(direction) - Vec3d(punctualDirection_[i]));
+            return {std::clamp(v / versine(punctual_[i].outerConeAngle), 0.0, 1.0),
+                    turnOf(double(local.y), double(local.x))};
+        }
+        case LightKind::Directional:
+        case LightKind::Environment:
+            break;
+    }
+    const Vec3 local = Frame(y0.position).toLocal(x1);
+    return squareOfDisk(double(local.x) / double(diskRadius_),
+                        double(local.y) / double(diskRadius_));
+}
+
+Lights::GuidedPdfs Lights::guidedPdfs(const LightPlace& y0, const Vec3& direction,
+                                      const Vec3& x1) const {
+    const double byPower = byPower_->pmf(y0.light);
+    if (!guide_ || !(byPower > 0.0)) return {};
+    return {float(selection_.pmf(y0.light) / byPower) * guidedPdf(y0),
+            guidedRayPdf(y0, direction, x1)};
+}
+
+float Lights::guidedRayPdf(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const {
+    const SquareDensity* rays = guide_->at(y0.light, pointSquare(y0)).rays;
+    return rays ? float(rays->at(raySquare(y0, direction, x1)).pdf) : 1.0f;
 }
 
 LightPoint Lights::samplePoint(Rng& rng) const {
@@ -276,18 +379,18 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 
 Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
-    if (!tree_.chooses() || draw.pick < kByPower) {
-        const double u = tree_.chooses() ? draw.pick / kByPower : draw.pick;
+    if (!tree_->chooses() || draw.pick < kByPower) {
+        const double u = tree_->chooses() ? draw.pick / kByPower : draw.pick;
         const DiscreteDistribution::Pick pick = selection_.sample(u);
         return {pointOn(pick.index, pick.remapped(), draw), seenSamples(pick.index, from)};
     }
-    const LampTree::Pick pick = tree_.pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
+    const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
     return {pointOn(pick.light, pick.remapped, draw), seenSamples(pick.light, pick.pmf)};
 }
 
 double Lights::seenSamples(std::uint32_t light, const Viewpoint& from) const {
-    if (!tree_.chooses()) return selection_.pmf(light) > 0.0 ? 1.0 : 0.0;
-    return seenSamples(light, tree_.pmf(from, light));
+    if (!tree_->chooses()) return selection_.pmf(light) > 0.0 ? 1.0 : 0.0;
+    return seenSamples(light, tree_->pmf(from, light));
 }
 
 double Lights::seenSamples(std::uint32_t light, double pmfOfTree) const {
@@ -299,8 +402,9 @@ double Lights::seenSamples(std::uint32_t light, double pmfOfTree) const {
 LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const {
     if (light < area_.size()) {
         const AreaLight& a = area_[light];
-        const float s = std::sqrt(draw.u1);
-        const Vec2 b{1.0f - s, draw.u2 * s};
+        const SquarePoint at = warpPoint(light, {double(draw.u1), double(draw.u2)});
+        const float s = std::sqrt(float(at[0]));
+        const Vec2 b{1.0f - s, float(at[1]) * s};
         return areaPoint(light, a.corner + a.edge1 * b.x + a.edge2 * b.y, a.ng, b);
     }
     LightPoint p;
@@ -308,11 +412,13 @@ LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw)
     p.kind = kinds_[light];
     const double pmf = selection_.pmf(light);
     if (p.kind == LightKind::Environment) {
-        const Environment::Sample s =
-            draw.even ? sampleSky(u, draw.u1, draw.u2) : environment_->sample(u, draw.u1, draw.u2);
+        const Environment::Sample s = draw.even || guide_
+                                          ? sampleSky(u, draw.u1, draw.u2)
+                                          : environment_->sample(u, draw.u1, draw.u2);
         p.position = s.direction;
         p.pdf = float(pmf) * s.pdfW;
         p.exitance = skyExitance(environment_->radiance(s.direction));
+        if (guide_) p.pdf *= guidedPdf(p);
         return p;
     }
     const std::size_t i = light - triangles_.size();
@@ -349,7 +455,13 @@ Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& directio
 }
 
 std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& point, Rng& rng) const {
-    const auto [u1, u2] = rng.evenPair();
+    auto [u1, u2] = rng.evenPair();
+    if (const SquareDensity* rays =
+            guide_ ? guide_->at(point.light, pointSquare(point)).rays : nullptr) {
+        const SquarePoint u = rays->warp({double(u1), double(u2)});
+        u1 = float(u[0]);
+        u2 = float(u[1]);
+    }
     switch (point.kind) {
         case LightKind::Area: {
             const bool twoSided = area_[point.light].twoSided;
@@ -357,7 +469,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
             const float u = twoSided ? (back ? 2.0f * u1 - 1.0f : 2.0f * u1) : u1;
             const Vec3 normal = back ? -point.ng : point.ng;
             const Vec3 direction = Frame(normal).toWorld(cosineHemisphere(u, u2));
-            const Emission e = emission(point, direction);
+            const Emission e = emission(point, direction, {});
             if (e.pdfW <= 0.0f) return std::nullopt;
             return EmissionRay{point.position, direction, e};
         }
@@ -365,7 +477,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
             const float z = 1.0f - 2.0f * u1, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
             const float phi = 2.0f * kPi * u2;
             const Vec3 direction{r * std::cos(phi), r * std::sin(phi), z};
-            return EmissionRay{point.position, direction, emission(point, direction)};
+            return EmissionRay{point.position, direction, emission(point, direction, {})};
         }
         case LightKind::Spot: {
             const std::size_t i = point.light - triangles_.size();
@@ -375,7 +487,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
             const Vec3 local{float(s * std::cos(phi)), float(s * std::sin(phi)),
                              float(1.0 - oneMinusCos)};
             const Vec3 direction = Frame(punctualDirection_[i]).toWorld(local);
-            const Emission e = emission(point, direction);
+            const Emission e = emission(point, direction, {});
             if (e.pdfW <= 0.0f) return std::nullopt;
             return EmissionRay{point.position, direction, e};
         }
@@ -386,8 +498,8 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
     // A disk that covers the scene's bounding sphere, seen from the light.
     const Frame frame(point.position);
     const Vec2 d = concentricDisk(u1, u2) * diskRadius_;
-    return EmissionRay{frame.toWorld(Vec3{d.x, d.y, diskRadius_}), -point.position,
-                       emission(point, -point.position)};
+    const Vec3 origin = frame.toWorld(Vec3{d.x, d.y, diskRadius_});
+    return EmissionRay{origin, -point.position, emission(point, -point.position, origin)};
 }
 
 }  // namespace lacuna

@@ -13,10 +13,14 @@
 // Exitances are in units of unit(), which is 1 for all but extreme scenes: what a path carries is
 // the power of the lights times densities, and lights of 1e37 W/m^2 leave a float no room for that.
 // A contribution goes back into the file's units at the very end, by inFileUnits().
+//
+// guidedBy() gives the same lights with other densities: which light, where on it and along which ray
+// follow an EmissionGuide. Everything that asks for a density asks here, so that it follows as well.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,6 +31,7 @@
 #include "libcore/base/vec.h"
 #include "libcore/scene/alpha.h"
 #include "libcore/scene/description.h"
+#include "libcore/scene/emission_guide.h"
 #include "libcore/scene/environment.h"
 #include "libcore/scene/lamp_tree.h"
 #include "libcore/scene/ray.h"
@@ -47,13 +52,17 @@ struct EmissiveTriangle {
     std::uint32_t material = kNone;
 };
 
-/// A point (or, at infinity, a direction) on a light: y_0.
-struct LightPoint {
+/// Where y_0 is: what the density of a ray from there depends on.
+struct LightPlace {
     std::uint32_t light = kNone;
-    LightKind kind = LightKind::Area;
     Vec3 position;  ///< at infinity: unit direction from the scene towards the light
     Vec3 ng;        ///< area lights: the emitting side
     Vec2 uv;        ///< barycentric (area lights)
+};
+
+/// A point (or, at infinity, a direction) on a light: y_0.
+struct LightPoint : LightPlace {
+    LightKind kind = LightKind::Area;
     float pdf = 0;  ///< in the light's own measure, see above; includes the selection pmf
     /// Area: W/m^2, of what is there; point, spot: W; directional, environment: W/m^2(/sr); per
     /// Lights::unit().
@@ -80,6 +89,10 @@ class Lights {
     /// without power are kept (so that indices stay) but never picked.
     Lights(std::vector<EmissiveTriangle> triangles, std::span<const PunctualLight> punctual,
            Vec3d offset, const Environment* environment, float sceneRadius);
+    /// These lights, with densities by `guide`, which must fit them (EmissionGuide::check). What
+    /// these refer to (textures, the environment) must outlive the result.
+    Lights guidedBy(std::shared_ptr<const EmissionGuide> guide) const;
+    bool guided() const { return guide_ != nullptr; }
 
     /// No light has any power.
     bool empty() const { return selection_.empty(); }
@@ -89,7 +102,7 @@ class Lights {
     std::uint32_t material(std::uint32_t light) const { return triangles_[light].material; }
     const Environment* environment() const { return environment_; }
     std::uint32_t environmentIndex() const { return environmentIndex_; }
-    /// Probability of picking this light (proportional to its power).
+    /// Probability of picking this light (proportional to its power, or what the guide says).
     double pmf(std::uint32_t light) const { return selection_.pmf(light); }
     /// What exitances are divided by: a power of two, so that nothing is rounded; 1 where the power
     /// of all lights together is within 2^64 and 2^-64 W.
@@ -113,7 +126,7 @@ class Lights {
     /// Share of the points of sampleSeenPoint that go by power all the same: nothing that the tree
     /// does not know costs more than 1 / kByPower of the samples.
     static const double kByPower;
-    const LampTree& tree() const { return tree_; }
+    const LampTree& tree() const { return *tree_; }
 
     /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
     /// included).
@@ -128,6 +141,7 @@ class Lights {
         p.pdf = a.pdfA;
         p.exitance = a.textured ? texturedExitance(light, uv) : a.exitance;
         if (a.hasHoles) p.opacity = opacityAt(light, uv);
+        if (guide_) p.pdf *= guidedPdf(p);
         return p;
     }
     /// Whether it shines to both sides of its surface.
@@ -151,20 +165,16 @@ class Lights {
         float profile = 0;
         float pdfW = 0;  ///< of w given y_0; at infinity: of the point on the disk (area measure)
     };
-    /// Profile and density for light that leaves `point` along the unit `direction`. At infinity
-    /// the direction is the light's own and is not read.
-    Emission emission(const LightPoint& point, const Vec3& direction) const {
-        return emission(point.light, point.ng, direction);
+    /// Profile and density for light that leaves `y0` along the unit `direction` and comes to `x1`.
+    /// At infinity the direction is the light's own and is not read; elsewhere x1 is not.
+    Emission emission(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const {
+        Emission e = plainEmission(y0.light, y0.ng, direction);
+        if (guide_) e.pdfW *= guidedRayPdf(y0, direction, x1);
+        return e;
     }
-    /// The same; nothing else about the point matters.
-    Emission emission(std::uint32_t light, const Vec3& ng, const Vec3& direction) const {
-        if (light >= area_.size()) return otherEmission(light, direction);
-        const float cosine = dot(ng, direction);
-        if (area_[light].twoSided) {
-            return {0.5f / kPi, std::fabs(cosine) * (0.5f / kPi)};
-        }
-        if (cosine <= 0.0f) return {};
-        return {1.0f / kPi, cosine / kPi};
+    /// Its profile alone.
+    float profile(std::uint32_t light, const Vec3& ng, const Vec3& direction) const {
+        return plainEmission(light, ng, direction).profile;
     }
 
     struct EmissionRay {
@@ -172,8 +182,25 @@ class Lights {
         Vec3 direction;
         Emission emission;
     };
-    /// Draws the light subpath's first ray; empty where the draw emits nothing.
+    /// Draws the light subpath's first ray; empty where the draw emits nothing. At infinity `origin`
+    /// stands for x_1: where the ray arrives, the density is asked for again.
     std::optional<EmissionRay> sampleEmission(const LightPoint& point, Rng& rng) const;
+
+    /// What the guide's densities are relative to those without one: of the point, with the choice of
+    /// its light, and of the ray.
+    struct GuidedPdfs {
+        float point = 1.0f, ray = 1.0f;
+    };
+    GuidedPdfs guidedPdfs(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const;
+    /// Probability of picking the light without a guide: its share of the power.
+    double powerShare(std::uint32_t light) const { return byPower_->pmf(light); }
+
+    /// The square that points of a light are spread over evenly without a guide. Lights without an
+    /// extent have none: its corner.
+    SquarePoint pointSquare(const LightPlace& y0) const;
+    /// The square that rays from a point are spread over evenly without a guide: directions, or at
+    /// infinity the disk, on which x1 stands for the ray.
+    SquarePoint raySquare(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const;
 
     /// Radius of the disk from which lights at infinity send their subpaths.
     float diskRadius() const { return diskRadius_; }
@@ -194,6 +221,22 @@ class Lights {
     float opacityAt(std::uint32_t light, Vec2 barycentric) const {
         return triangles_[light].alpha->opacity(barycentric);
     }
+    Emission plainEmission(std::uint32_t light, const Vec3& ng, const Vec3& direction) const {
+        if (light >= area_.size()) return otherEmission(light, direction);
+        const float cosine = dot(ng, direction);
+        if (area_[light].twoSided) {
+            return {0.5f / kPi, std::fabs(cosine) * (0.5f / kPi)};
+        }
+        if (cosine <= 0.0f) return {};
+        return {1.0f / kPi, cosine / kPi};
+    }
+    float pdfOfTriangle(std::uint32_t light) const;
+    SquarePoint warpPoint(std::uint32_t light, SquarePoint u) const;
+    float guidedPdf(const LightPlace& y0) const {
+        if (!isHittable(kinds_[y0.light])) return 1.0f;  // no extent: one point
+        return float(guide_->at(y0.light, pointSquare(y0)).pdf);
+    }
+    float guidedRayPdf(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const;
     Emission otherEmission(std::uint32_t light, const Vec3& direction) const;
     Emission spotEmission(const PunctualLight& light, Vec3 direction) const;
 
@@ -213,8 +256,10 @@ class Lights {
     std::vector<Vec3> punctualPosition_, punctualDirection_;
     const Environment* environment_;
     std::uint32_t environmentIndex_ = kNone;  // the last one
-    DiscreteDistribution selection_;
-    LampTree tree_;
+    std::shared_ptr<const DiscreteDistribution> byPower_;
+    DiscreteDistribution selection_;  // that, or what the guide says
+    std::shared_ptr<const LampTree> tree_;
+    std::shared_ptr<const EmissionGuide> guide_;  // null: by power, and evenly
     float diskRadius_;
     double unit_ = 1.0;
 };

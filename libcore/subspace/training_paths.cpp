@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "libcore/base/parallel.h"
 
@@ -10,8 +9,6 @@ namespace lacuna {
 
 namespace {
 
-constexpr double kDarkness = 0.02;      // of the picture's mean, added to every pixel's
-constexpr double kLargestShare = 1e-3;  // of the sum of squares that a path may have
 constexpr std::size_t kPathsPerTask = 8192;
 
 }  // namespace
@@ -55,48 +52,14 @@ void TrainingPaths::append(const TrainingPaths& other, std::size_t index) {
     paths_.push_back(p);
 }
 
-void TrainingPaths::relate(std::span<const Rgb> image, int width, int block) {
-    const int height = int(image.size()) / width;
-    const int columns = (width + block - 1) / block, rows = (height + block - 1) / block;
-    std::vector<double> sum(std::size_t(columns) * std::size_t(rows), 0.0);
-    std::vector<double> pixels(sum.size(), 0.0);
-    const auto blockOf = [&](std::uint32_t pixel) {
-        const int x = int(pixel) % width / block, y = int(pixel) / width / block;
-        return std::size_t(y) * std::size_t(columns) + std::size_t(x);
-    };
-    double total = 0.0;
-    for (std::uint32_t p = 0; p < image.size(); ++p) {
-        const double value = double(mean(image[p]));
-        if (!std::isfinite(value)) continue;
-        sum[blockOf(p)] += value;
-        pixels[blockOf(p)] += 1.0;
-        total += value;
-    }
-    const double floor = kDarkness * total / double(image.size());
-    for (Path& p : paths_) {
-        const std::size_t b = blockOf(p.pixel);
-        p.contribution = float(double(p.contribution) / (sum[b] / pixels[b] + floor));
-    }
+void TrainingPaths::relate(const PixelScale& scale) {
+    for (Path& p : paths_) p.contribution = float(double(p.contribution) / scale.of(p.pixel));
 }
 
 float TrainingPaths::outlierLimit() const {
-    std::vector<double> squares;
-    double rest = 0.0;  // of the sum: those that are not lowered
-    for (const Path& p : paths_) {
-        squares.push_back(double(p.contribution) * double(p.contribution));
-        rest += squares.back();
-    }
-    std::sort(squares.begin(), squares.end(), std::greater<>());
-    for (std::size_t lowered = 0; lowered < squares.size(); ++lowered) {
-        // With so many lowered to L:  L = share (lowered L + rest).
-        const double left = 1.0 - kLargestShare * double(lowered);
-        if (!(left > 0.0)) break;
-        const double limit = kLargestShare * rest / left;
-        if (squares[lowered] <= limit) return float(std::sqrt(limit));
-        rest -= squares[lowered];
-    }
-    // So few paths that each is a large share.
-    return squares.empty() ? 0.0f : float(std::sqrt(squares[0]));
+    std::vector<float> contributions;
+    for (const Path& p : paths_) contributions.push_back(p.contribution);
+    return lacuna::outlierLimit(contributions);
 }
 
 std::size_t TrainingPaths::lowerTo(float limit) {

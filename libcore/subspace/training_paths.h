@@ -16,6 +16,7 @@
 
 #include "libcore/bidir/mis.h"
 #include "libcore/subspace/gamma.h"
+#include "libcore/subspace/relative_contribution.h"
 #include "libcore/subspace/subspaces.h"
 
 namespace lacuna {
@@ -42,16 +43,14 @@ class TrainingPaths {
     /// Adds path `index` of another set.
     void append(const TrainingPaths& other, std::size_t index);
 
-    /// Divides contributions by their pixel's luminance, the mean over blocks of `block`^2 pixels,
-    /// to which a small share of the whole picture's mean is added [Su22 7.1].
-    void relate(std::span<const Rgb> image, int width, int block);
-    /// The contribution whose square is a thousandth of the sum of squares once all that are larger
-    /// have been lowered to it: a loss on finitely many paths would follow those few alone.
+    /// Divides contributions by what their pixels show.
+    void relate(const PixelScale& scale);
     float outlierLimit() const;
     /// Lowers larger contributions to the limit. Returns how many there were.
     std::size_t lowerTo(float limit);
 
     std::size_t size() const { return paths_.size(); }
+    std::uint32_t pixel(std::size_t index) const { return paths_[index].pixel; }
     const Path& path(std::size_t index) const { return paths_[index]; }
     std::uint64_t bytes() const;
 

@@ -9,7 +9,8 @@ namespace lacuna {
 
 std::string Choice::byName() const {
     std::string text = "--method " + method;
-    if (!findMethod(method).needs.empty()) text += " --prepare";
+    const MethodRow& row = findMethod(method);
+    if (!needsOf(row, resolve(row, assignments)).empty()) text += " --prepare";
     for (const std::string& a : assignments) text += " --set " + shellQuoted(a);
     return text + " --sampler " + nameOf(sampling);
 }

@@ -71,6 +71,11 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
             "train.epochs=" + rounded(std::clamp(factor, 5.0, 20.0))};
 }
 
+bool learns(const MethodRow& row) {
+    return std::any_of(row.needs.begin(), row.needs.end(),
+                       [](const AssetNeed& need) { return need.name == "subspaces"; });
+}
+
 /// A row that was tried.
 struct Tried {
     const Row* row = nullptr;
@@ -130,7 +135,7 @@ class Pilot {
     std::vector<std::string> assignments(const Row& candidate, std::uint64_t subpaths) const {
         const MethodRow& row = findMethod(candidate.method);
         std::vector<std::string> result;
-        if (!row.needs.empty()) {
+        if (learns(row)) {
             result = subspaceSettings(kTrainingShare * budget_ / kRaysPerTrainingPath, subpaths);
         }
         if (const std::uint64_t splats = splatsOfCrop(); row.techniques.splats && splats > 0) {
@@ -161,7 +166,7 @@ class Pilot {
 
     /// A folder that cannot be written is a reason to do without, not to fail.
     bool mayKeepCaches(const Row& row) const {
-        if (findMethod(row.method).needs.empty()) return true;
+        if (!learns(findMethod(row.method))) return true;
         const std::string directory =
             cacheDirectory(options_.scene, options_.common.cacheDirectory);
         try {
@@ -193,7 +198,7 @@ class Pilot {
         RenderOptions options = options_;
         options.prepare = true;
         Caches caches;
-        if (!row.needs.empty()) {
+        if (!needsOf(row, settings).empty()) {
             caches = loadCaches(options, row, settings, stage_, pool_, cancel_, progress_);
             progress_.phase(kPhase, kNothingWritten);
         }

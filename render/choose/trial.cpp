@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "preprocess/emission_asset.h"
+
 namespace lacuna {
 namespace {
 
@@ -70,8 +72,10 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
               const Settings& settings, const Caches& caches, double poolScale, std::uint64_t seed,
               double rays, const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result) {
     const std::unique_ptr<Method> method = row.create(settings);
-    caches.giveTo(*method);
+    const AssetSet assets = caches.all();
+    method->use(assets);
     RenderSettings render = stage.settings;
+    render.lights = guidedLights(*stage.scene, assets);
     render.seed = seed;
     render.crop = small.crop;
     const double filmPixels = pixelsOf(stage.camera->film()), smallPixels = pixelsOf(small.film);

@@ -83,7 +83,11 @@ void renderRun(const Results& results, const PlannedRun& run, const RunDirectory
     // Whatever is made beforehand is made anew in each run: its time is part of it.
     const std::string& method = results.study.methods[run.method].method;
     const bool chooses = method == kAuto;
-    if (!chooses && !findMethod(method).needs.empty()) arguments.push_back("--prepare");
+    const auto needsCaches = [&] {
+        const MethodRow& row = findMethod(method);
+        return !needsOf(row, resolve(row, results.study.methods[run.method].assignments)).empty();
+    };
+    if (!chooses && needsCaches()) arguments.push_back("--prepare");
     arguments.insert(arguments.end(), {"--cache", directory.cache()});
     directory.render(renderer, results.study.scenes[run.scene].file, arguments, cancel);
 }

@@ -125,7 +125,8 @@ std::string renderReference(const StudyScene& scene, const SceneFacts& facts, in
         arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
     }
     // All parts share what their method prepares: nothing is timed here.
-    if (!findMethod(recipe.method).needs.empty()) {
+    const MethodRow& row = findMethod(recipe.method);
+    if (!needsOf(row, resolve(row, recipe.assignments)).empty()) {
         arguments.insert(arguments.end(), {"--prepare", "--cache", folder + "/cache"});
     }
     Average average;

@@ -112,6 +112,32 @@ TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
     stabilityCase("nonsense-skeletons", worstDeviation(), kOfAllowed);
 }
 
+/// Light paths that begin anywhere, with any density that is positive: all rows, under lights of
+/// all kinds.
+class EmissionOfNonsense : public testing::TestWithParam<std::string> {};
+
+TEST_P(EmissionOfNonsense, leavesTheMeanAsItIs) {
+    const MethodRow row = rowNamed(GetParam());
+    for (const NamedScene& named : {underTheSky(), punctualLights(), instancedEmitters()}) {
+        const auto scene = named.builder.build();
+        Shot shot = quickShot(300);
+        shot.seed = 100;
+        const Picture reference = render(*scene, rowNamed("bpt"), shot);
+        shot.seed = 1;
+        shot.iterations = 150;
+        for (std::uint64_t guide = 1; guide <= 2; ++guide) {
+            shot.guide = guide;
+            expectSame(render(*scene, row, shot), reference, named.name, Judge::BlocksAndMean);
+        }
+    }
+    stabilityCase("nonsense-emission", worstDeviation(), kOfAllowed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, EmissionOfNonsense,
+                         testing::Values("lt", "bpt", "lvcbpt", "pcbpt", "risbpt", "tsrbpt",
+                                         "icbpt", "skelbpt", "spcbpt"),
+                         ByParameter());
+
 /// Q and populations over thirty decades: a Q far too small believes in its subspace, one far too
 /// large does not; neither is more than noise.
 TEST(SubspacesOfNonsense, valuesOfAnyRangeLeaveTheMeanAsItIs) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "tests/acceptance/scene_caches.h"
+#include "tests/fixtures/random_guide.h"
 
 namespace lacuna::test {
 
@@ -152,6 +153,10 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     r.sampling = shot_.sampling;
     r.crop = cropOf(shot_);
     r.lightPaths = lightPathsOf(settings_);
+    if (shot_.guide != 0) {
+        const Lights& plain = scene.lights();
+        r.lights = std::make_shared<const Lights>(plain.guidedBy(randomGuide(plain, shot_.guide)));
+    }
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
     integrator_->delivery().setTechniqueFilm(shot_.techniques);

@@ -38,6 +38,7 @@ struct Shot {
     int candidates = 0;            ///< likewise; 0: one light subpath per pixel
     std::vector<std::string> settings = {};
     const ThreadPool* threads = nullptr;  ///< null: the shared pool
+    std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
     TechniqueFilm* techniques = nullptr;
     PathObserver observer = nullptr;
 };

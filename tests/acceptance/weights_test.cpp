@@ -43,14 +43,22 @@ bool drawable(const FullPath& path, const TechniqueCounts& techniques, int t) {
 struct Case {
     std::string row;
     int scene;
+    std::uint64_t guide = 0;  ///< Shot::guide
 };
 void PrintTo(const Case& c, std::ostream* out) {
     *out << c.row << " in " << weightScenes()[std::size_t(c.scene)].name;
+    if (c.guide != 0) *out << " guided";
 }
 std::vector<Case> allCases() {
     std::vector<Case> cases;
     for (const std::string& row : rowNames()) {
-        for (int i = 0; i < int(weightScenes().size()); ++i) cases.push_back({row, i});
+        for (int i = 0; i < int(weightScenes().size()); ++i) {
+            cases.push_back({row, i});
+            // Of all rows in some scenes, and in all scenes of some rows.
+            if (row == "bpt" || row == "spcbpt" || i % 4 == 3) {
+                cases.push_back({row, i, std::uint64_t(i) + 1});
+            }
+        }
     }
     return cases;
 }
@@ -62,6 +70,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
     const auto scene = named.builder.build();
     const MethodRow row = rowNamed(GetParam().row);
     Shot shot = weightShot();
+    shot.guide = GetParam().guide;
     int judged = 0;
     double worstSum = 0, worstProduct = 0, ownDifference = 0;
     std::string worstPath;
@@ -101,8 +110,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
         }
     };
     Render render(*scene, row, shot);
-    const Walker theWalker(*scene, render.camera(), {shot.maxDepth, shot.rouletteDepth});
-    walker = &theWalker;
+    walker = &render.integrator().walker();
     render.warmUp();
     for (std::uint32_t i = 0; judged < kPaths && i < 2000; ++i) render.iterate(i);
 

@@ -94,6 +94,59 @@ TEST_F(TrainTool, ReportHasItsKeysAndTheRendererReadsTheFile) {
     EXPECT_LT(json("out.json").at("verify").at("max_difference"), 1e-6);
 }
 
+/// On the door, where emission is worth learning.
+TEST_F(TrainTool, EmissionIsLearnedFirstAndFollowed) {
+    const std::string scene = LACUNA_SCENES "/door.glb --cache @cache ";
+    const std::string small = "--width 24 --height 16 --quiet ";
+    const Outcome o = train(scene + small + "--paths 20000 --subspaces 50 --light-paths 5000 " +
+                            "--json @t.json");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    const nlohmann::json emission = json("t.json").at("emission");
+    EXPECT_TRUE(emission.at("learned"));
+    EXPECT_NEAR(emission.at("paths").get<double>(), 10000, 2500);
+    EXPECT_LT(emission.at("held_out_loss"), 0.85);
+    EXPECT_GT(emission.at("ray_trees"), 0);
+    EXPECT_TRUE(std::filesystem::exists(emission.at("file").get<std::string>()));
+    EXPECT_NE(o.out.find("emission: second moment"), std::string::npos) << o.out;
+
+    // Found by the methods that ask for it, and by no other.
+    const std::string render = scene + small + "--iterations 2 -o @out.exr --json @out.json ";
+    const std::string learned = "--set emission=learned --set emission_paths=10000 ";
+    const auto hash = [&](const std::string& name) {
+        return json("out.json").at("cache_hashes").at(name).get<std::string>();
+    };
+    ASSERT_EQ(run(render + "--method spcbpt --set train.paths=20000 --set train.subspaces=50 "
+                           "--set train.light_paths=5000 --verify")
+                  .exitCode,
+              0);
+    EXPECT_LT(json("out.json").at("verify").at("max_difference"), 1e-6);
+    const std::string guide = hash("emission");
+    ASSERT_EQ(run(render + "--method bpt --verify " + learned).exitCode, 0);
+    EXPECT_EQ(hash("emission"), guide);
+    EXPECT_LT(json("out.json").at("verify").at("max_difference"), 1e-6);
+    ASSERT_EQ(run(render + "--method bpt").exitCode, 0);
+    EXPECT_TRUE(json("out.json").at("cache_hashes").empty());
+    expectFailure(render + "--method bpt --set emission=learned --set emission_paths=77", 3,
+                  "add --prepare");
+    expectFailure(render + "--method pt --set emission=learned", 2, "emission");
+}
+
+/// Subspaces are trained under one emission, and refused under another.
+TEST_F(TrainTool, SubspacesBelongToTheirEmission) {
+    const std::string scene = LACUNA_SCENES "/door.glb --quiet --cache @cache ";
+    const std::string shape = "--width 24 --height 16 ";
+    ASSERT_EQ(train(scene + shape +
+                    "--emission plain --paths 5000 --subspaces 50 "
+                    "--light-paths 5000 --json @t.json")
+                  .exitCode,
+              0);
+    EXPECT_TRUE(json("t.json").at("emission").is_null());
+    const std::string render =
+        scene + shape + "--iterations 1 -o @out.exr --method spcbpt " + std::string(kSameSmall);
+    EXPECT_EQ(run(render + " --set emission=plain").exitCode, 0);
+    expectFailure(render, 3, "run lacuna-train --paths 5000");
+}
+
 TEST_F(TrainTool, ResultDoesNotDependOnThreads) {
     std::vector<std::string> hashes;
     for (const char* threads : {"1", "2", "5"}) {

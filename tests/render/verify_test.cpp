@@ -124,7 +124,7 @@ TEST_F(RenderVerify, AWrongWeightIsReportedWithItsReplay) {
     RenderSettings settings;
     settings.crop = {0, 16, 0, 12};
     BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, pool);
-    WeightVerifier verifier(scene, camera, settings.limits, pool);
+    WeightVerifier verifier(integrator.walker(), pool);
     EXPECT_EQ(verifier.result().paths, 0u);
     integrator.delivery().setObserver([&](const PathEvent& e) {
         PathEvent wrong = e;

@@ -81,8 +81,8 @@ TEST(AreaLights, LightAndEyePathsAgree) {
                 ASSERT_NEAR(z.exitance.r, texel.r * 5 * kPi, 1e-4f * z.exitance.r);
                 ASSERT_NEAR(z.exitance.g, texel.g * 4 * kPi, 1e-4f * z.exitance.g);
                 // The back is dark.
-                ASSERT_EQ(lights.emission(z, -away).pdfW, 0.0f);
-                ASSERT_GT(lights.emission(z, away).pdfW, 0.0f);
+                ASSERT_EQ(lights.emission(z, -away, {}).pdfW, 0.0f);
+                ASSERT_GT(lights.emission(z, away, {}).pdfW, 0.0f);
                 const auto back =
                     scene->intersect(y.position - y.ng * 0.01f, {}, y.ng, RayKind::EyeWalk, tally);
                 ASSERT_TRUE(back);
@@ -181,7 +181,8 @@ TEST(AreaLights, DoubleSidedEmitsBothWaysTheSame) {
         Rng rng(3, 0, StreamKind::User, i);
         const LightPoint y = scene->lights().samplePoint(rng);
         const Vec3 d = randomDirection(rng);
-        const auto front = scene->lights().emission(y, d), back = scene->lights().emission(y, -d);
+        const auto front = scene->lights().emission(y, d, {}),
+                   back = scene->lights().emission(y, -d, {});
         EXPECT_EQ(front.pdfW, back.pdfW);
         EXPECT_EQ(front.profile, back.profile);
         EXPECT_GT(front.pdfW, 0.0f);

@@ -97,7 +97,7 @@ TEST(LampTree, whatIsNeverPickedSendsNothing) {
         const Vec3 to = infinite ? y.position : normalize(y.position - from.position);
         const bool scatters = from.side == Vec3{} || dot(from.side, to) > 0.0f;
         const double pmf = lights.tree().pmf(from, y.light);
-        if (scatters && lights.emission(y, -to).profile > 0.0f) {
+        if (scatters && lights.emission(y, -to, {}).profile > 0.0f) {
             ++sends;
             EXPECT_GT(pmf, 0.0) << "light " << y.light << ", kind " << int(y.kind);
             EXPECT_GT(lights.tree().importance(from, y.light), 0.0);

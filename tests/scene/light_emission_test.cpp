@@ -67,13 +67,13 @@ TEST(Emission, ProfileAndDensity) {
         for (const double p : bins.integrate(
                  [&](Vec3 d) {
                      const double cosine = std::abs(dot(Vec3d(d), Vec3d(point.ng)));
-                     return lights.emission(point, d).profile * (source.projected ? cosine : 1);
+                     return lights.emission(point, d, {}).profile * (source.projected ? cosine : 1);
                  },
                  16)) {
             profile += p;
         }
         const std::vector<double> mass =
-            bins.integrate([&](Vec3 d) { return lights.emission(point, d).pdfW; }, 16);
+            bins.integrate([&](Vec3 d) { return lights.emission(point, d, {}).pdfW; }, 16);
         for (const double m : mass) density += m;
         EXPECT_NEAR(profile, 1, 1e-3);
         EXPECT_NEAR(density, 1, 1e-3);
@@ -92,7 +92,7 @@ TEST(Emission, ProfileAndDensity) {
             ASSERT_EQ(ray->origin, point.position);
             ASSERT_NEAR(length(Vec3d(ray->direction)), 1, 1e-6);
             ASSERT_GT(ray->emission.pdfW, 0.0f);
-            const Lights::Emission e = lights.emission(point, ray->direction);
+            const Lights::Emission e = lights.emission(point, ray->direction, {});
             ASSERT_EQ(e.pdfW, ray->emission.pdfW);
             ASSERT_EQ(e.profile, ray->emission.profile);
             ++counts[bins.find(ray->direction)];
@@ -110,13 +110,13 @@ TEST(Emission, OneSideOnly) {
     const LightPoint p = one.samplePoint(rng), q = two.samplePoint(rng);
     for (int i = 0; i < 2000; ++i) {
         const Vec3 d = randomDirection(rng);
-        const Rgb front = p.exitance * one.emission(p, d).profile;
-        const Rgb both = q.exitance * two.emission(q, d).profile;
+        const Rgb front = p.exitance * one.emission(p, d, {}).profile;
+        const Rgb both = q.exitance * two.emission(q, d, {}).profile;
         const bool out = dot(d, p.ng) > 0;
         EXPECT_NEAR(front.g, out ? 2.0f : 0.0f, 1e-6f);
-        EXPECT_EQ(one.emission(p, d).pdfW > 0, out);
+        EXPECT_EQ(one.emission(p, d, {}).pdfW > 0, out);
         EXPECT_NEAR(both.g, 2.0f, 1e-6f);
-        EXPECT_GT(two.emission(q, d).pdfW, 0.0f);
+        EXPECT_GT(two.emission(q, d, {}).pdfW, 0.0f);
     }
 }
 
@@ -126,7 +126,7 @@ TEST(Emission, ExitanceTimesProfileIsWhatTheFileSays) {
     const Lights point = punctual(pointLight({1, 2, 3}, intensity));
     const LightPoint p = point.samplePoint(rng);
     EXPECT_EQ(p.position, (Vec3{0, 1, 2}));  // the scene's centre is subtracted
-    const Rgb seen = p.exitance * point.emission(p, {0, 1, 0}).profile;
+    const Rgb seen = p.exitance * point.emission(p, {0, 1, 0}, {}).profile;
     EXPECT_NEAR(seen.r, 4, 1e-5);
     EXPECT_NEAR(seen.b, 1, 1e-5);
 
@@ -153,7 +153,7 @@ TEST(Emission, ExitanceTimesProfileIsWhatTheFileSays) {
                     (versine(outer) - versine(angle)) / (versine(outer) - versine(inner)), 2);
             }
             const bool edge = std::abs(angle - outer) < 1e-3 * outer;
-            const Rgb got = s.exitance * spot.emission(s, Vec3(d)).profile;
+            const Rgb got = s.exitance * spot.emission(s, Vec3(d), {}).profile;
             if (edge) continue;
             EXPECT_NEAR(got.r, 4 * falloff, 0.01) << outer << " " << angle;
         }

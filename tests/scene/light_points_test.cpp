@@ -245,7 +245,7 @@ TEST(AreaLight, HitPointAsIfItHadBeenDrawn) {
         const EmissiveTriangle& t = threeTriangles()[p.light];
         Rgb radiance = t.radiance;
         if (t.texture) radiance *= sampleTexture(*t.texture, {p.uv.x, p.uv.y}).rgb;
-        const Rgb seen = q.exitance * lights.emission(q, q.ng).profile;
+        const Rgb seen = q.exitance * lights.emission(q, q.ng, {}).profile;
         ASSERT_NEAR(seen.r, radiance.r, 1e-6f * radiance.r);
         ASSERT_NEAR(seen.b, radiance.b, 1e-6f * radiance.b);
     }

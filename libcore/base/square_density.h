@@ -1,0 +1,62 @@
+// A density on the unit square that is constant in each leaf of a tree of halves.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lacuna {
+
+/// A point of the unit square.
+using SquarePoint = std::array<double, 2>;
+
+/// A node halves its part of the square along one axis and knows the probability of the lower half.
+/// By default one leaf: uniform.
+class SquareDensity {
+  public:
+    struct Node {
+        float lower = 1.0f;      ///< probability of the half with smaller coordinates, in (0, 1)
+        std::uint32_t code = 0;  ///< leaf: its number; else kInner, the axis, first child's index
+        friend bool operator==(const Node&, const Node&) = default;
+    };
+    static constexpr std::uint32_t kInner = 0x80000000u, kSecondAxis = 0x40000000u;
+    /// Levels of a tree: what a product of two 24-bit numbers can tell apart.
+    static constexpr int kMostLevels = 24;
+
+    SquareDensity() : SquareDensity(std::vector<Node>{Node{}}) {}
+    /// The root first; the two children of a node stand side by side, behind it. Leaves are numbered
+    /// 0, 1, .. in any order. Throws std::invalid_argument for anything else.
+    explicit SquareDensity(std::vector<Node> nodes);
+
+    std::span<const Node> nodes() const { return nodes_; }
+    std::uint32_t leafCount() const { return leafCount_; }
+
+    /// Where a point lies.
+    struct Place {
+        std::uint32_t leaf;
+        double pdf;  ///< density per area of the square
+    };
+    Place at(SquarePoint p) const {
+        SquarePoint low{0.0, 0.0}, size{1.0, 1.0};
+        double pdf = 1.0;
+        const Node* node = nodes_.data();
+        while (node->code & kInner) {
+            const std::size_t axis = node->code & kSecondAxis ? 1 : 0;
+            size[axis] *= 0.5;
+            const bool upper = p[axis] >= low[axis] + size[axis];
+            low[axis] += upper ? size[axis] : 0.0;
+            pdf *= 2.0 * double(upper ? 1.0f - node->lower : node->lower);
+            node = nodes_.data() + (node->code & ~(kInner | kSecondAxis)) + (upper ? 1 : 0);
+        }
+        return {node->code, pdf};
+    }
+    /// The point that a point of the square, drawn evenly, is moved to: with the density of `at`.
+    SquarePoint warp(SquarePoint u) const;
+
+  private:
+    std::vector<Node> nodes_;
+    std::uint32_t leafCount_ = 1;
+};
+
+}  // namespace lacuna

@@ -1,0 +1,114 @@
+// A file of learned emission comes back as it was written, and is refused when anything about it is
+// wrong.
+#include "libcore/cache/emission_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "libcore/base/error.h"
+#include "tests/base/random_density.h"
+#include "tests/cache/example_subspaces.h"
+
+namespace lacuna::test {
+namespace {
+
+std::shared_ptr<EmissionGuide> exampleGuide() {
+    Rng rng(4, 0, StreamKind::User, 0);
+    auto guide = std::make_shared<EmissionGuide>();
+    guide->pmf = {0.25, 0.0, 0.75};
+    guide->pointTree = {1, kNone, 0};
+    for (int i = 0; i < 2; ++i) guide->points.push_back(randomDensity(rng, 2));
+    guide->firstLeaf = {0, 2};
+    guide->rayTree = {0, kNone, 1, 0};
+    for (int i = 0; i < 2; ++i) guide->rays.push_back(randomDensity(rng, 6));
+    guide->check(3);
+    return guide;
+}
+
+class EmissionFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        directory_ = std::filesystem::temp_directory_path() /
+                     (std::string("lacuna-emission-test-") +
+                      testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::create_directories(directory_);
+    }
+    void TearDown() override { std::filesystem::remove_all(directory_); }
+
+    std::string path() const { return (directory_ / "e.emission").string(); }
+    std::string content() const {
+        std::ostringstream bytes;
+        bytes << std::ifstream(path(), std::ios::binary).rdbuf();
+        return bytes.str();
+    }
+    void replace(const std::string& bytes) const {
+        std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
+    }
+    void write(std::shared_ptr<const EmissionGuide> guide) const {
+        writeEmissionFile(path(), {guide, kStamp, guide ? guide->contentHash() : "plain"});
+    }
+    void expectRefused(const std::string& what, const CacheStamp& expected = kStamp) const {
+        try {
+            readEmissionFile(path(), expected, "learn again");
+            ADD_FAILURE() << what << " was accepted";
+        } catch (const InputError& e) {
+            EXPECT_NE(std::string(e.what()).find("learn again"), std::string::npos) << e.what();
+        }
+    }
+
+  private:
+    std::filesystem::path directory_;
+};
+
+TEST_F(EmissionFiles, comeBack) {
+    const auto guide = exampleGuide();
+    write(guide);
+    const EmissionFile read = readEmissionFile(path(), kStamp, "learn again");
+    ASSERT_TRUE(read.guide);
+    EXPECT_EQ(read.guide->contentHash(), guide->contentHash());
+    EXPECT_EQ(read.contentHash, guide->contentHash());
+    EXPECT_EQ(read.stamp, kStamp);
+    write(nullptr);
+    EXPECT_FALSE(readEmissionFile(path(), kStamp, "learn again").guide);
+}
+
+TEST_F(EmissionFiles, areRefusedWhereAByteIsWrongOrMissing) {
+    expectRefused("nothing");
+    write(exampleGuide());
+    const std::string good = content();
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] = char(bad[i] ^ 0x10);
+        replace(bad);
+        expectRefused("byte " + std::to_string(i));
+    }
+    for (std::size_t size = 0; size < good.size(); size += 7) {
+        replace(good.substr(0, size));
+        expectRefused("a length of " + std::to_string(size));
+    }
+    replace(good);
+    CacheStamp other = kStamp;
+    other.inputs["scene"] = "another";
+    expectRefused("another scene", other);
+}
+
+/// With a checksum that is right: what a program with a fault may have written.
+TEST_F(EmissionFiles, areRefusedWhereTheirPartsDoNotFit) {
+    const auto refused = [&](const char* what, const auto& spoil) {
+        auto guide = exampleGuide();
+        spoil(*guide);
+        write(guide);
+        expectRefused(what);
+    };
+    refused("no such tree", [](EmissionGuide& g) { g.pointTree[0] = 2; });
+    refused("no such rays", [](EmissionGuide& g) { g.rayTree[0] = 2; });
+    refused("too few leaves", [](EmissionGuide& g) { g.rayTree.pop_back(); });
+    refused("a sum of two", [](EmissionGuide& g) { g.pmf[1] = 1.0; });
+    refused("a light too many", [](EmissionGuide& g) { g.pmf.push_back(0.0); });
+}
+
+}  // namespace
+}  // namespace lacuna::test
