@@ -10,7 +10,9 @@ namespace lacuna {
 namespace {
 /// Of all paths, by round: later ones come by ways that earlier ones have found.
 constexpr double kRounds[] = {0.15, 0.25, 0.6};
-constexpr double kWorthIt = 0.85;  // of plain emission's loss: else look-ups cost more
+// Of plain emission's loss. What gains less pays neither for look-ups nor for the paths that training has
+// not met, which become rarer.
+constexpr double kWorthIt = 0.4;
 constexpr std::uint32_t kIterationsPerRound = 0x1000;
 }  // namespace
 
