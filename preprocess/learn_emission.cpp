@@ -28,6 +28,7 @@ EmissionTraining trainEmission(const Scene& scene, const Camera& camera, double 
                                const WalkLimits& limits, std::uint64_t paths, std::uint64_t seed,
                                const ThreadPool& pool, const std::atomic<bool>& cancel) {
     EmissionTraining result;
+    if (scene.lights().empty()) return result;
     std::shared_ptr<const Lights> lights;
     std::uint32_t first = kEmissionIteration;
     for (const double share : kRounds) {

@@ -81,6 +81,7 @@ GROUPS = [
         Case("many-entries", "twenty million equal weights", "the last is as likely as the first"),
         Case("nonsense-skeletons", "nodes and balls anywhere, a random map", "every mean stays"),
         Case("nonsense-subspaces", "random trees, Q and Gamma", "every mean stays"),
+        Case("nonsense-emission", "light paths that begin anywhere, with any density", "every mean stays"),
         Case("subspace-range", "Q and populations over thirty decades", "every mean stays"),
     ]),
     ("Voxels", [

@@ -241,6 +241,7 @@ double loss(const Lights& lights, const EmissionGuide& guide, std::span<const Sa
 
 LearnedEmission learnEmission(const Lights& lights, const EmissionSamples& train,
                               const EmissionSamples& heldOut, const ThreadPool& pool) {
+    if (lights.empty()) return {};  // there is nothing to choose from
     std::vector<Shape> shapes;
     for (const double plain : {0.1, 0.25}) {
         for (const double virtualSamples : {2.0, 8.0, 32.0, 128.0}) {

@@ -1,5 +1,5 @@
 // Contributions of training's paths as training weighs them: relative to what their pixels show, and
-// without outliers [Su22 7.1].
+// without outliers [Su22 7.1]. (theory.md, "Subspaces")
 #pragma once
 
 #include <cstdint>

@@ -153,6 +153,8 @@ TEST(LearnEmission, LeavesAloneWhatCannotBeBettered) {
         EXPECT_GT(learnEmission(lights, p->train, p->heldOut, pool()).heldOutLoss, 0.9);
     }
     EXPECT_FALSE(learnEmission(lights, {}, {}, pool()).guide);
+    const Lights none({}, {}, {}, nullptr, 4.0f);
+    EXPECT_FALSE(learnEmission(none, {}, {}, pool()).guide);
 }
 
 TEST(LearnEmission, IsTheSameForAnyNumberOfThreads) {

@@ -135,8 +135,9 @@ std::string cheap(const std::string& method) {
     for (const Option& p : row.options) {
         if (p.name == "candidates") text += " --set candidates=100";
     }
-    if (!row.needs.empty()) text += " --prepare --cache @cache";
-    for (const AssetNeed& need : row.needs) {
+    const std::vector<AssetNeed> needs = needsOf(row, resolve(row, {}));
+    if (!needs.empty()) text += " --prepare --cache @cache";
+    for (const AssetNeed& need : needs) {
         if (need.name == "skeleton") text += " --set voxels.resolution=32";
         if (need.name == "subspaces") {
             text += " --set train.paths=2000 --set train.subspaces=20 --set train.light_paths=2000";

@@ -34,9 +34,10 @@ class RenderThreads : public RenderTool, public ::testing::WithParamInterface<st
 
 /// What a method needs to build its caches on our scenes.
 std::string preparing(const std::string& method) {
-    std::string text;
-    for (const AssetNeed& need : findMethod(method).needs) {
-        text = " --prepare --cache @cache" + text;
+    const MethodRow& row = findMethod(method);
+    const std::vector<AssetNeed> needs = needsOf(row, resolve(row, {}));
+    std::string text = needs.empty() ? "" : " --prepare --cache @cache";
+    for (const AssetNeed& need : needs) {
         if (need.name == "subspaces") {
             text +=
                 " --set train.paths=5000 --set train.subspaces=50 --set "

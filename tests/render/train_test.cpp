@@ -144,7 +144,7 @@ TEST_F(TrainTool, SubspacesBelongToTheirEmission) {
     const std::string render =
         scene + shape + "--iterations 1 -o @out.exr --method spcbpt " + std::string(kSameSmall);
     EXPECT_EQ(run(render + " --set emission=plain").exitCode, 0);
-    expectFailure(render, 3, "run lacuna-train --paths 5000");
+    expectFailure(render, 3, "--paths 5000");
 }
 
 TEST_F(TrainTool, ResultDoesNotDependOnThreads) {
