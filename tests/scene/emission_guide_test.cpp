@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -86,20 +87,18 @@ TEST(EmissionGuide, SquaresAreThoseThatPlainEmissionFillsEvenly) {
     }
 }
 
-/// Integrates to one, light by light and ray by ray: the mean over plain draws of guided over plain
-/// density is one.
+/// Guided draws that are weighted by plain over guided density fall as plain ones do: all of them
+/// together, and in each quarter of the rays' square.
 TEST(EmissionGuide, DensitiesAreOnesThatDrawsHave) {
     const AllKinds all;
     const Lights& plain = all.lights;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const Lights guided = plain.guidedBy(randomGuide(plain, seed));
         constexpr int kDraws = 200'000;
-        // By light: how often it is drawn; and the mean of plain over guided density, which is the
-        // share of plain draws that guided ones can make.
         std::vector<std::uint64_t> counts(plain.size());
-        double sum = 0, squares = 0;
-        for (unsigned i = 0; i < kDraws; ++i) {
-            Rng rng(seed, 0, StreamKind::User, i);
+        std::array<double, 5> sums{}, squares{};  // of all rays; by quarter of their square
+        for (unsigned draw = 0; draw < kDraws; ++draw) {
+            Rng rng(seed, 0, StreamKind::User, draw);
             const LightPoint p = guided.samplePoint(rng);
             const auto ray = guided.sampleEmission(p, rng);
             ASSERT_TRUE(ray);
@@ -111,12 +110,17 @@ TEST(EmissionGuide, DensitiesAreOnesThatDrawsHave) {
             const Lights::Emission asPlain = plain.emission(p, ray->direction, x1);
             EXPECT_NEAR(told.pdfW, double(asPlain.pdfW) * pdfs.ray, 1e-5 * told.pdfW);
             const double ratio = 1.0 / (double(pdfs.point) * double(pdfs.ray));
-            sum += ratio;
-            squares += ratio * ratio;
+            const SquarePoint at = plain.raySquare(p, ray->direction, x1);
+            for (const std::size_t i : {0u, 1u + (at[0] < 0.5) + 2u * (at[1] < 0.5)}) {
+                sums[i] += ratio;
+                squares[i] += ratio * ratio;
+            }
         }
-        const double mean = sum / kDraws;
-        const double error = std::sqrt((squares / kDraws - mean * mean) / kDraws);
-        EXPECT_NEAR(mean, 1.0, 5 * error) << "seed " << seed;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const double mean = sums[i] / kDraws;
+            const double error = std::sqrt((squares[i] / kDraws - mean * mean) / kDraws);
+            EXPECT_NEAR(mean, i == 0 ? 1.0 : 0.25, 5 * error) << "seed " << seed << " " << i;
+        }
         std::vector<double> pmf;
         for (std::uint32_t l = 0; l < plain.size(); ++l) pmf.push_back(guided.pmf(l));
         EXPECT_GT(chiSquareSignificance(counts, pmf, kDraws), 1e-6) << "seed " << seed;
