@@ -6,6 +6,7 @@
 #include "preprocess/emission_asset.h"
 #include "preprocess/skeleton_asset.h"
 #include "preprocess/subspace_asset.h"
+#include "preprocess/walk_asset.h"
 
 namespace lacuna {
 
@@ -22,6 +23,7 @@ std::span<const AssetRow> assetRows() {
         {"emission", acquireEmission},
         {"skeleton", acquireSkeleton},
         {"subspaces", acquireSubspaces},
+        {"walks", acquireWalks},
     };
     return rows;
 }

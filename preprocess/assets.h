@@ -12,6 +12,7 @@
 
 #include "libcore/bidir/asset_set.h"
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/method.h"
 #include "libcore/cache/cache_name.h"
 #include "libcore/image/image.h"
 #include "libcore/tool/scene_stage.h"
@@ -34,11 +35,12 @@ class Asset {
 /// What an asset is read or made for.
 struct AssetRequest {
     const SceneStage& stage;
-    const SceneOptions& options;  ///< as the stage was loaded with, for the cache and for messages
-    const Settings& settings;     ///< of the method
-    const std::string& prefix;    ///< of the asset's own options among them: "voxels."
-    const AssetSet& before;       ///< what the method needs and is there already
-    bool build;                   ///< where there is no file of it, or none that can be used
+    const SceneOptions& options;   ///< as the stage was loaded with, for the cache and for messages
+    const Settings& settings;      ///< of the method
+    const Techniques& techniques;  ///< of the method, as its row has them
+    const std::string& prefix;     ///< of the asset's own options among them: "voxels."
+    const AssetSet& before;        ///< what the method needs and is there already
+    bool build;                    ///< where there is no file of it, or none that can be used
     const ThreadPool& pool;
     const std::atomic<bool>& cancel;
     Phases& phases;

@@ -58,7 +58,7 @@ Collected<Set> collect(const Scene& scene, const TrainingView& view, std::uint64
     settings.limits = view.limits;
     settings.seed = seed;
     settings.crop = {0, film.width, 0, film.height};
-    settings.lights = view.lights;
+    settings.guides = view.guides;
     BidirIntegrator integrator(scene, view.camera, row.techniques, *method, settings, pool);
 
     // Only ratios of contributions matter here: in the lights' own unit no sum of them overflows.

@@ -62,7 +62,7 @@ class EmissionAsset final : public Asset {
 
 std::unique_ptr<Asset> acquireEmission(const AssetRequest& r) {
     const EmissionSettings settings = emissionOptions({}).read(r.settings, r.prefix);
-    const std::uint64_t paths = emissionPaths(settings, trainingPaths(r.settings));
+    const std::uint64_t paths = guidePaths(settings.paths, trainingPaths(r.settings));
     const CacheStamp stamp = emissionStamp(sceneInputs(r.stage), r.stage.viewInputs, paths);
     const auto read = [&](const std::string& path, const CacheStamp& expected,
                           const std::string& remedy) {
@@ -97,9 +97,10 @@ EmissionFile emissionFile(const CacheStamp& stamp, const EmissionTraining& train
     return {guide, stamp, guide ? guide->contentHash() : kPlainEmission};
 }
 
-std::shared_ptr<const Lights> guidedLights(const Scene& scene, const AssetSet& assets) {
-    const auto guide = assets.get<EmissionGuide>();
-    return guide ? std::make_shared<const Lights>(scene.lights().guidedBy(guide)) : nullptr;
+Guides guidesOf(const Scene& scene, const AssetSet& assets) {
+    const auto emission = assets.get<EmissionGuide>();
+    return {emission ? std::make_shared<const Lights>(scene.lights().guidedBy(emission)) : nullptr,
+            assets.get<WalkGuide>()};
 }
 
 }  // namespace lacuna

@@ -16,7 +16,7 @@ EmissionFile emissionFile(const CacheStamp& stamp, const EmissionTraining& train
 /// In place of a guide's hash where there is none.
 inline constexpr const char* kPlainEmission = "plain";
 
-/// The lights as the guide among `assets` has them; null where there is none.
-std::shared_ptr<const Lights> guidedLights(const Scene& scene, const AssetSet& assets);
+/// What the guides among `assets` make of the scene's light and walks.
+Guides guidesOf(const Scene& scene, const AssetSet& assets);
 
 }  // namespace lacuna

@@ -35,7 +35,7 @@ EmissionTraining trainEmission(const Scene& scene, const Camera& camera, double 
         const auto wanted =
             std::max<std::uint64_t>(1, std::uint64_t(std::llround(share * double(paths))));
         TrainingView view = trainingView(camera, aspect, limits, wanted);
-        view.lights = lights;
+        view.guides.lights = lights;
         const Lights& used = lights ? *lights : scene.lights();
         Collected<EmissionSamples> found = collect<EmissionSamples>(
             scene, view, wanted, seed, first, pool, cancel,

@@ -6,6 +6,7 @@
 #include "preprocess/number_layer.h"
 #include "preprocess/train.h"
 #include "preprocess/train_command.h"
+#include "preprocess/walk_asset.h"
 
 namespace lacuna {
 namespace {
@@ -48,8 +49,10 @@ class SubspaceAsset final : public Asset {
 std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
     const TrainSettings settings{trainingOptions().read(r.settings, r.prefix)};
     const auto guide = r.before.get<EmissionGuide>();
+    const auto walks = r.before.get<WalkGuide>();
     const CacheStamp stamp = subspaceStamp(sceneInputs(r.stage), r.stage.viewInputs, settings,
-                                           guide ? guide->contentHash() : kPlainEmission);
+                                           guide ? guide->contentHash() : kPlainEmission,
+                                           walks ? walks->contentHash() : kPlainWalks);
     std::optional<SubspaceFile> file;
     r.phases.run("read subspaces", [&] {
         file = readCache<SubspaceFile>(r, stamp, "subspaces", trainRemedy(r), readSubspaceFile);
@@ -59,7 +62,7 @@ std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
         makeCacheDirectory(path);
         TrainingView view =
             trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);
-        view.lights = guidedLights(*r.stage.scene, r.before);
+        view.guides = guidesOf(*r.stage.scene, r.before);
         file = train(*r.stage.scene, view, settings, stamp, r.pool, r.cancel, r.phases).file;
         writeSubspaceFile(path, *file);
         r.built(path);

@@ -146,8 +146,7 @@ void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces
     struct Sums {
         std::vector<double> q, count;
     };
-    const Walker walker(scene, view.lights ? *view.lights : scene.lights(), view.camera,
-                        view.limits);
+    const Walker walker(scene, view.guides, view.camera, view.limits);
     const std::uint64_t tasks = (settings.lightPaths + kLightPathsPerTask - 1) / kLightPathsPerTask;
     subspaces.lightPaths = settings.lightPaths;
     subspaces.q.assign(subspaces.lightCount, 0.0);
@@ -206,11 +205,13 @@ double emptyShareOfEye(const GammaData& data) {
 }  // namespace
 
 CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
-                         const TrainingSettings& settings, const std::string& emission) {
+                         const TrainingSettings& settings, const std::string& emission,
+                         const std::string& walks) {
     CacheStamp stamp{sceneInputs};
     stamp.inputs.insert(viewInputs.begin(), viewInputs.end());
     for (const auto& [name, value] : trainingOptions().values(settings)) stamp.inputs[name] = value;
     stamp.inputs["emission"] = emission;
+    stamp.inputs["walks"] = walks;
     return stamp;
 }
 
@@ -227,7 +228,7 @@ Trained train(const Scene& scene, const TrainingView& view, const TrainSettings&
     CollectedPaths paths;
     run("paths", [&] {
         const auto cells = std::uint32_t(std::lround(kLightShare * settings.subspaces));
-        const Lights& lights = view.lights ? *view.lights : scene.lights();
+        const Lights& lights = view.guides.lights ? *view.guides.lights : scene.lights();
         s.cells = LightCells(lights, std::max(1u, cells));
         paths = collectPaths(scene, view, s.cells, settings.paths, settings.seed, pool, cancel);
         result.trainPaths = paths.train.size();

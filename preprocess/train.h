@@ -14,9 +14,10 @@ struct TrainSettings : TrainingSettings {
     std::uint64_t seed = 1;
 };
 
-/// What subspaces are made of. `emission`: hash of the guide that light subpaths follow.
+/// What subspaces are made of. `emission`, `walks`: hashes of the guides that paths follow.
 CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
-                         const TrainingSettings& settings, const std::string& emission);
+                         const TrainingSettings& settings, const std::string& emission,
+                         const std::string& walks);
 
 /// One of the two trees against the nearest centroid.
 struct TreeReport {

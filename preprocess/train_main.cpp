@@ -12,6 +12,7 @@
 #include "preprocess/emission_asset.h"
 #include "preprocess/tool_stage.h"
 #include "preprocess/train.h"
+#include "preprocess/walk_asset.h"
 
 namespace lacuna {
 namespace {
@@ -57,6 +58,28 @@ void printEmission(const EmissionTraining& t) {
                 l.guide ? "" : ": plain emission is kept");
 }
 
+nlohmann::json walksJson(const WalkTraining& t, const std::string& file) {
+    const LearnedWalks& l = t.learned;
+    return {{"file", file},
+            {"guided", l.guide != nullptr},
+            {"paths", t.trainPaths + t.heldOutPaths},
+            {"held_out_loss",
+             {{"light", l.heldOutLoss[std::size_t(Side::Light)]},
+              {"eye", l.heldOutLoss[std::size_t(Side::Eye)]}}},
+            {"virtual_samples", l.virtualSamples},
+            {"regions", l.guide ? l.guide->regions().size() : 0}};
+}
+
+void printWalks(const WalkTraining& t) {
+    const LearnedWalks& l = t.learned;
+    std::printf(
+        "walks: second moment of light walks %.3g and of eye walks %.3g of those by BSDFs (held "
+        "out), "
+        "by %zu paths%s\n",
+        l.heldOutLoss[std::size_t(Side::Light)], l.heldOutLoss[std::size_t(Side::Eye)],
+        t.trainPaths + t.heldOutPaths, l.guide ? "" : ": they stay as they are");
+}
+
 void print(const std::string& path, const Trained& t, const Phases& phases, double seconds) {
     const Subspaces& s = t.file.subspaces;
     std::printf("%s: %u light subspaces, %u of them on the lights, %u eye subspaces, %.3g s\n",
@@ -91,9 +114,11 @@ int trainTool(int argc, const char* const* argv) {
     addBuildOptions(app, options);
     addViewOptions(app, options);
     const TableOptions<EmissionSettings> emissionTable(app, emissionOptions(Emission::Learned));
+    const TableOptions<WalkSettings> walkTable(app, walkOptions(Walks::Plain));
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
-        "Writes KEY.emission and KEY.subspaces into the scene's cache, for lacuna-render --method\n"
+        "Writes KEY.emission, KEY.walks and KEY.subspaces into the scene's cache, for "
+        "lacuna-render --method\n"
         "spcbpt with the same options of scene, picture and camera: what is learned is of what "
         "they\n"
         "show. Other methods take the former with --set emission=learned.\n"
@@ -105,7 +130,9 @@ int trainTool(int argc, const char* const* argv) {
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     const EmissionSettings emission = emissionTable.read();
     const TrainSettings settings{training.read(), options.common.seed};
-    const std::uint64_t pathsOfEmission = emissionPaths(emission, settings.paths);
+    const WalkSettings walks = walkTable.read();
+    const std::uint64_t pathsOfWalks = guidePaths(walks.paths, settings.paths);
+    const std::uint64_t pathsOfEmission = guidePaths(emission.paths, settings.paths);
     checkBuildOptions(options);
 
     const ThreadPool pool(options.common.threads);
@@ -116,7 +143,8 @@ int trainTool(int argc, const char* const* argv) {
     SceneStage stage;
     EmissionTraining emissionTraining;
     Trained result;
-    std::string path, emissionPath;
+    WalkTraining walkTraining;
+    std::string path, emissionPath, walkPath;
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, Look::Camera, pool, progress); });
         TrainingView view = trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);
@@ -136,16 +164,35 @@ int trainTool(int argc, const char* const* argv) {
             learned = emissionFile(stamp, emissionTraining);
             emissionHash = learned.contentHash;
             if (learned.guide) {
-                view.lights =
+                view.guides.lights =
                     std::make_shared<const Lights>(stage.scene->lights().guidedBy(learned.guide));
             }
         }
+        std::string walkHash = kPlainWalks;
+        WalkFile learnedWalks;
+        if (walks.walks == Walks::Guided) {
+            const Techniques& techniques = findMethod("spcbpt").techniques;
+            const CacheStamp stamp = walkStamp(sceneInputs(stage), stage.viewInputs, pathsOfWalks,
+                                               techniques, emissionHash);
+            walkPath = cacheFile(cacheDirectory(options.scene, options.common.cacheDirectory),
+                                 stamp, "walks");
+            makeCacheDirectory(walkPath);
+            phases.run("walks", [&] {
+                walkTraining = trainWalks(*stage.scene, *stage.camera, stage.aspect, stage.limits,
+                                          view.guides.lights, techniques, pathsOfWalks,
+                                          settings.seed, pool, interrupt.requested());
+            });
+            learnedWalks = walkFile(stamp, walkTraining);
+            walkHash = learnedWalks.contentHash;
+            view.guides.walks = learnedWalks.guide;
+        }
         const CacheStamp stamp =
-            subspaceStamp(sceneInputs(stage), stage.viewInputs, settings, emissionHash);
+            subspaceStamp(sceneInputs(stage), stage.viewInputs, settings, emissionHash, walkHash);
         path = resultFile(options, stamp, "subspaces");
         result = train(*stage.scene, view, settings, stamp, pool, interrupt.requested(), phases);
         phases.run("write", [&] {
             if (!emissionPath.empty()) writeEmissionFile(emissionPath, learned);
+            if (!walkPath.empty()) writeWalkFile(walkPath, learnedWalks);
             writeSubspaceFile(path, result.file);
         });
     });
@@ -156,12 +203,14 @@ int trainTool(int argc, const char* const* argv) {
 
     const double seconds = total.seconds().at("all");
     if (emission.emission == Emission::Learned) printEmission(emissionTraining);
+    if (walks.walks == Walks::Guided) printWalks(walkTraining);
     print(path, result, phases, seconds);
     const GammaResult& g = result.gamma;
     writeReport(options.common,
                 {{"file", path},
                  {"emission", emissionPath.empty() ? nlohmann::json()
                                                    : emissionJson(emissionTraining, emissionPath)},
+                 {"walks", walkPath.empty() ? nlohmann::json() : walksJson(walkTraining, walkPath)},
                  {"light_tree", treeJson(result.lightTree)},
                  {"eye_tree", treeJson(result.eyeTree)},
                  {"gamma",

@@ -12,7 +12,7 @@ namespace lacuna {
 struct TrainingView {
     Camera camera;
     WalkLimits limits;
-    std::shared_ptr<const Lights> lights = nullptr;  ///< guided; null: the scene's own
+    Guides guides = {};
 };
 
 /// The rendered camera with a small film for so many paths. `aspect`: width over height of the
@@ -23,5 +23,6 @@ TrainingView trainingView(const Camera& camera, double aspect, const WalkLimits&
 /// Iterations of training: no render reaches them.
 inline constexpr std::uint32_t kTrainingIteration = 0x80000000u;
 inline constexpr std::uint32_t kEmissionIteration = 0xa0000000u;
+inline constexpr std::uint32_t kWalkIteration = 0xb0000000u;
 
 }  // namespace lacuna

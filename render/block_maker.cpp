@@ -14,7 +14,7 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
       method_(freshMethod()),
       plan_(planOf(options, *method_)) {
     stage.settings.blockIterations = plan_.iterations;
-    stage.settings.lights = guidedLights(*stage.scene, assets_);
+    stage.settings.guides = guidesOf(*stage.scene, assets_);
     integrator_ = std::make_unique<BidirIntegrator>(*stage.scene, *stage.camera, stage.techniques,
                                                     *method_, stage.settings, pool);
     const PixelRect& crop = stage.settings.crop;

@@ -28,9 +28,9 @@ Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Sett
     total.run("all", [&] {
         AssetSet before;
         for (const AssetNeed& need : needs) {
-            caches.assets.push_back(
-                findAsset(need.name).acquire({stage, options, settings, need.prefix, before,
-                                              options.prepare, pool, cancel, phases, built}));
+            caches.assets.push_back(findAsset(need.name).acquire(
+                {stage, options, settings, row.techniques, need.prefix, before, options.prepare,
+                 pool, cancel, phases, built}));
             caches.assets.back()->giveTo(before);
             caches.hashes[need.name] = caches.assets.back()->contentHash();
         }

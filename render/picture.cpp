@@ -85,7 +85,9 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
     std::optional<FirstLook> look;
     const bool loaded = ranks.agree([&] {
         stage = loadStage(options, *row, settings, pool, progress);
-        progress.phase("features");
+        // Nothing is saved of a render that is still to be prepared.
+        const bool prepares = options.method == kAuto || !needsOf(*row, settings).empty();
+        progress.phase("features", prepares ? kNothingWritten : nullptr);
         look.emplace(*stage, pool);
     });
     if (!loaded) return std::nullopt;

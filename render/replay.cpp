@@ -141,7 +141,7 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
         loadCaches(options, row, settings, stage, pool, interrupt.requested(), progress);
     const AssetSet assets = caches.all();
     method->use(assets);
-    whole.lights = guidedLights(*stage.scene, assets);
+    whole.guides = guidesOf(*stage.scene, assets);
     BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 

@@ -123,7 +123,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
                                  const LensEdge& open, FullPath& path) {
     const auto& [edge, projection] = open;
     const PathVertex& y = light.back();
-    const EndValue end = lightEnd(walker.lights(), y, -edge.direction, z0);
+    const EndValue end = lightEnd(walker, y, -edge.direction, z0);
     const Rgb through = transmittance(walker.scene().absorption(), z0, edge.direction, y);
     const Closed closed{y.throughput * end.f * through * (edge.geometry * projection.pdfW), 1,
                         projection.raster};
@@ -161,8 +161,8 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
     const auto& [light, eye, edge, lightAsEye, eyeAsLight] = open;
     const PathVertex& y = light.back();
     const PathVertex& z = eye.back();
-    const EndValue atLight = lightEnd(walker.lights(), y, edge.direction, z);
-    const BsdfEvaluation atEye = z.bsdf.evaluate(z.toPrevious, -edge.direction);
+    const EndValue atLight = lightEnd(walker, y, edge.direction, z);
+    const BsdfEvaluation atEye = walker.scattering(z, z.toPrevious, -edge.direction);
     const Rgb through = transmittance(walker.scene().absorption(), y, edge.direction, z);
     const Closed closed{z.throughput * atEye.f * atLight.f * through * y.throughput * edge.geometry,
                         int(eye.size()),

@@ -29,13 +29,13 @@ struct EndValue {
     float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
 };
 /// That of a light subpath's last vertex; `toEye` is unit, `other` the connection's other end.
-inline EndValue lightEnd(const Lights& lights, const PathVertex& y, const Vec3& toEye,
+inline EndValue lightEnd(const Walker& walker, const PathVertex& y, const Vec3& toEye,
                          const PathVertex& other) {
     if (y.index == 0) {
-        const Lights::Emission e = emissionOf(lights, y, toEye, other.position);
+        const Lights::Emission e = emissionOf(walker.lights(), y, toEye, other.position);
         return {Rgb(e.profile), e.pdfW, 0.0f};
     }
-    const BsdfEvaluation e = y.bsdf.evaluate(toEye, y.toPrevious);
+    const BsdfEvaluation e = walker.scattering(y, toEye, y.toPrevious);
     return {e.f, e.pdfWToEye, e.pdfWToLight};
 }
 

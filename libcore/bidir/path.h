@@ -52,6 +52,8 @@ struct PathVertex {
     /// Of the surface that the vertex lies on, whose body may absorb (absorption.h); y_0 has it
     /// only where something in the scene absorbs.
     std::uint32_t material = kNone;
+    std::uint32_t region =
+        kNone;  ///< of the guide that walks follow here; kNone: none (walk_guide.h)
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
     std::uint8_t index = 0;                     ///< 0 on the light or the lens
@@ -62,7 +64,7 @@ struct PathVertex {
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
-static_assert(sizeof(PathVertex) == 200);  // pools hold millions of them
+static_assert(sizeof(PathVertex) == 208);  // pools hold millions of them
 
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
 /// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either

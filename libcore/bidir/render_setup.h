@@ -24,7 +24,7 @@ struct RenderSettings {
     /// B: what methods learn begins anew with every block of so many iterations.
     std::uint64_t blockIterations = BlockPlan::kEndless;
     Sampling sampling = Sampling::Independent;
-    std::shared_ptr<const Lights> lights = nullptr;  ///< guided; null: the scene's own
+    Guides guides = {};
 };
 
 /// Shared by the passes; all references outlive the render.
@@ -36,8 +36,7 @@ struct RenderSetup {
           techniques(techniques_),
           settings(settings_),
           threads(threads_),
-          walker(scene_, settings.lights ? *settings.lights : scene_.lights(), camera_,
-                 settings_.limits),
+          walker(scene_, settings.guides, camera_, settings_.limits),
           sampler(settings_.sampling, settings_.seed, settings_.blockIterations),
           lightPaths(settings_.lightPaths ? settings_.lightPaths : filmPixels()) {}
 

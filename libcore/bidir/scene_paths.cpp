@@ -17,7 +17,7 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     const auto atEye = [&] { return z.bsdf.evaluate(z.toPrevious, -edge.direction).f; };
     // Whatever scatters at all reflects: only what comes from behind has to ask the material.
     if (leadsBehind(z, -edge.direction) && isBlack(atEye())) return {};
-    const Rgb flow = y.throughput * lightEnd(walker_.lights(), y, edge.direction, z).f;
+    const Rgb flow = y.throughput * lightEnd(walker_, y, edge.direction, z).f;
     const Rgb scattered = throughEye && !isBlack(flow) ? flow * atEye() : Rgb{};
     return {flow, scattered, double(edge.geometry)};
 }

@@ -93,7 +93,11 @@ class Products {
         const auto v = std::size_t(i);
         const bool end = i == split_ - 1 || i == split_;
         event_[v] = end ? ScatterEvent::Smooth : x(i).event;
-        const BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
+        BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
+        if (const WalkGuide* guide = walker_.guide(); guide && x(i).connectable()) {
+            guide->mix(guide->regionAt(WalkGuide::placeOf(x(i))), towardsLens(i),
+                       -towardsLens(i - 1), event_[v], e);
+        }
         scatter_[v] = e.f;
         survival_[v] = double(x(i).bsdf.survivalAlbedo());
         eyePdfA_[v - 1] = double(e.pdfWToLight) * toLight_[v - 1];

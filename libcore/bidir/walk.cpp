@@ -125,6 +125,7 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     v.lightUv = point.barycentric;
     v.material = point.material;
     v.survival = v.bsdf.survivalAlbedo();
+    if (guide() && v.bsdf.connectable()) v.region = guide()->regionAt(WalkGuide::placeOf(v));
     v.throughput = throughput * transmittance(scene_.absorption(), previous, direction, v);
 
     const double cosine = measureCosine(v, direction);
@@ -226,10 +227,7 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
         if (survival < 1.0f && rng.evenUniform() >= survival) return false;
     }
     rng.toDimension(dimension::ofWalk(v.index) + 1);
-    const float uLobe = rng.evenUniform();
-    const Rng::Pair u = rng.evenPair();
-    const std::optional<BsdfSample> sample =
-        v.bsdf.sample(walk.side, v.toPrevious, uLobe, u.u1, u.u2);
+    const std::optional<BsdfSample> sample = sampleDirection(walk.side, v, rng);
     if (!sample) return false;
     const BsdfEvaluation& e = sample->evaluation;
     const float forward = walk.side == Side::Eye ? e.pdfWToLight : e.pdfWToEye;
@@ -247,6 +245,25 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     walk.direction = sample->to;
     walk.pdfW = forward;
     return true;
+}
+
+/// Where the walk goes on to from `v`: by the guide's share as it says, else by the BSDF.
+std::optional<BsdfSample> Walker::sampleDirection(Side side, const PathVertex& v, Rng& rng) const {
+    float uLobe = rng.evenUniform();
+    const Rng::Pair u = rng.evenPair();
+    if (v.region == kNone) return v.bsdf.sample(side, v.toPrevious, uLobe, u.u1, u.u2);
+    const WalkGuide::Region& region = guide()->region(v.region);
+    const float share = region.of(side).share;
+    const auto evaluated = [&](const Vec3& to, ScatterEvent event) {
+        const bool eye = side == Side::Eye;
+        return BsdfSample{to, event,
+                          scattering(v, eye ? v.toPrevious : to, eye ? to : v.toPrevious, event)};
+    };
+    if (uLobe < share) return evaluated(region.sample(side, u.u1, u.u2), ScatterEvent::Smooth);
+    uLobe = std::min((uLobe - share) / (1.0f - share), 0x1.fffffep-1f);
+    std::optional<BsdfSample> sample = v.bsdf.sample(side, v.toPrevious, uLobe, u.u1, u.u2);
+    if (sample) sample = evaluated(sample->to, sample->event);
+    return sample;
 }
 
 }  // namespace lacuna

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/base/rng.h"
+#include "libcore/bidir/guides.h"
 #include "libcore/bidir/method.h"
 #include "libcore/bidir/path.h"
 #include "libcore/scene/scene.h"
@@ -33,14 +34,20 @@ struct Walk {
 
 class Walker final : public LightSampler {
   public:
-    /// `lights`: the scene's, or those guided (Lights::guidedBy). All must outlive it.
-    Walker(const Scene& scene, const Lights& lights, const Camera& camera, WalkLimits limits)
-        : scene_(scene), lights_(lights), camera_(camera), limits_(limits) {}
+    /// Scene and camera must outlive it.
+    Walker(const Scene& scene, const Guides& guides, const Camera& camera, WalkLimits limits)
+        : scene_(scene),
+          guides_(guides),
+          lights_(guides_.lights ? *guides_.lights : scene.lights()),
+          camera_(camera),
+          limits_(limits) {}
     Walker(const Scene& scene, const Camera& camera, WalkLimits limits)
-        : Walker(scene, scene.lights(), camera, limits) {}
+        : Walker(scene, Guides{}, camera, limits) {}
 
     const Scene& scene() const { return scene_; }
+    /// The scene's, or those guided.
     const Lights& lights() const { return lights_; }
+    const WalkGuide* guide() const { return guides_.walks.get(); }
     const Camera& camera() const { return camera_; }
     const WalkLimits& limits() const { return limits_; }
 
@@ -62,6 +69,14 @@ class Walker final : public LightSampler {
     bool sampleLight(Rng& rng, PathVertex& out) const override;
     double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
     double seenSamples(const PathVertex& light, const PathVertex& eye) const override;
+    /// What happens at a surface vertex: the BSDF's value, and the densities that the two walks have
+    /// for it. `event`: of the pair (Bsdf::evaluate).
+    BsdfEvaluation scattering(const PathVertex& v, const Vec3& toEye, const Vec3& toLight,
+                              ScatterEvent event = ScatterEvent::Smooth) const {
+        BsdfEvaluation e = v.bsdf.evaluate(toEye, toLight, event);
+        if (v.region != kNone) guide()->mix(v.region, toEye, toLight, event, e);
+        return e;
+    }
     /// z_0: a point on the lens.
     PathVertex sampleLens(Rng& rng) const;
 
@@ -73,10 +88,12 @@ class Walker final : public LightSampler {
     void finishTogether(std::span<Walk> walks, RayTally& tally) const;
     std::optional<Hit> nextHit(const Walk& walk, RayTally& tally) const;
     bool scatter(Walk& walk, const SurfacePoint& hit) const;
+    std::optional<BsdfSample> sampleDirection(Side side, const PathVertex& v, Rng& rng) const;
     void addSurface(const SurfacePoint& point, const Vec3& direction, float pdfW,
                     const Rgb& throughput, std::vector<PathVertex>& out) const;
 
     const Scene& scene_;
+    const Guides guides_;
     const Lights& lights_;
     const Camera& camera_;
     WalkLimits limits_;

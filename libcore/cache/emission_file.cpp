@@ -4,6 +4,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/cache/section_file.h"
+#include "libcore/cache/square_forest.h"
 
 namespace lacuna {
 
@@ -11,40 +12,13 @@ namespace {
 
 constexpr SectionFormat kFormat = {
     {'L', 'A', 'C', 'U', 'N', 'A', 'E', 'M'}, 1, 9, "learned emission", "lacuna-train"};
-static_assert(sizeof(SquareDensity::Node) == 8);
-
-/// Trees one behind the other.
-struct Forest {
-    std::vector<std::uint32_t> sizes;
-    std::vector<SquareDensity::Node> nodes;
-
-    Forest() = default;
-    explicit Forest(std::span<const SquareDensity> trees) {
-        for (const SquareDensity& t : trees) {
-            sizes.push_back(std::uint32_t(t.nodes().size()));
-            nodes.insert(nodes.end(), t.nodes().begin(), t.nodes().end());
-        }
-    }
-    /// Throws std::invalid_argument.
-    std::vector<SquareDensity> trees() const {
-        std::vector<SquareDensity> trees;
-        std::span<const SquareDensity::Node> rest(nodes);
-        for (const std::uint32_t size : sizes) {
-            if (size > rest.size()) throw std::invalid_argument("sizes of trees");
-            trees.emplace_back(std::vector(rest.begin(), rest.begin() + size));
-            rest = rest.subspan(size);
-        }
-        if (!rest.empty()) throw std::invalid_argument("sizes of trees");
-        return trees;
-    }
-};
 
 /// The sections as arrays.
 struct Arrays {
     std::string inputs, contentHash;
     std::vector<double> pmf;
     std::vector<std::uint32_t> pointTree, rayTree;
-    Forest points, rays;
+    SquareForest points, rays;
 };
 
 /// Calls visit(name, array) for every section in the order of the file: the schema, for both ways.
@@ -72,8 +46,8 @@ void writeEmissionFile(const std::string& path, const EmissionFile& file) {
         a.pmf = g.pmf;
         a.pointTree = g.pointTree;
         a.rayTree = g.rayTree;
-        a.points = Forest(g.points);
-        a.rays = Forest(g.rays);
+        for (const SquareDensity& t : g.points) a.points.add(t);
+        for (const SquareDensity& t : g.rays) a.rays.add(t);
     }
     SectionWriter writer;
     forEachSection(writer, a);

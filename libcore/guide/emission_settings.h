@@ -12,7 +12,7 @@ enum class Emission { Plain, Learned };
 
 struct EmissionSettings {
     Emission emission = Emission::Plain;
-    std::uint64_t paths = 0;  ///< 0: as many as go with the rest (emissionPaths)
+    std::uint64_t paths = 0;  ///< 0: as many as go with the rest (guidePaths)
 };
 
 /// `standard`: what a row does where nobody says anything.
@@ -30,9 +30,10 @@ inline OptionTable<EmissionSettings> emissionOptions(Emission standard) {
         .standardText("half of train.paths");
 }
 
-/// How many paths emission is learned from, beside so many for subspaces (0: none).
-inline std::uint64_t emissionPaths(const EmissionSettings& settings, std::uint64_t trainingPaths) {
-    if (settings.paths > 0) return settings.paths;
+/// How many paths a guide is learned from: so many as are asked for, or (0) what goes with so many for
+/// subspaces (0: none).
+inline std::uint64_t guidePaths(std::uint64_t asked, std::uint64_t trainingPaths) {
+    if (asked > 0) return asked;
     return trainingPaths > 0 ? (trainingPaths + 1) / 2 : 500'000;
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "libcore/base/parallel.h"
+#include "libcore/guide/grow_square.h"
 
 namespace lacuna {
 
@@ -17,7 +18,6 @@ constexpr double kFewestOfLight = 64.0;     // effective samples from which a li
 constexpr double kFewestOfPoints = 2000.0;  // from which a part of a light is halved
 constexpr double kFewestOfRays = 8.0;       // and a part of its rays
 constexpr int kMostPointLevels = 8, kMostRayLevels = 14;
-constexpr double kLeastProbability = 1e-6;  // of either half: rounding must not make it zero
 
 struct Shape {
     double plainShare, virtualSamples;
@@ -34,124 +34,74 @@ struct Moments {
         squares += (m.withRay + m.alone) * (m.withRay + m.alone);
     }
     /// How many samples of one size would know as much.
-    double effective() const {
-        const double sum = withRay + alone;
-        return squares > 0.0 ? sum * sum / squares : 0.0;
-    }
+    double effective() const { return effectiveSamples(withRay + alone, squares); }
 };
 
-/// Grows trees over some samples. A part of a square gets a share in proportion to the root of its
-/// second moment times its size: that is where sum of moment / probability is least.
-class Grower {
+/// For SquareGrower.
+class Samples {
   public:
-    Grower(std::span<const Sample> samples, const Shape& shape)
-        : samples_(samples), shape_(shape) {}
-
-    struct Tree {
-        SquareDensity density;
-        double mass;  // the root of the second moment that is left, all parts together
-        std::vector<Index> rayTree;  // of points: by leaf
-    };
-    Tree rays(std::span<Index> of) {
-        return grow(of, &Sample::ray, kFewestOfRays, kMostRayLevels, {});
-    }
-    /// `levels`: none for a light without an extent.
-    Tree points(std::span<Index> of, int levels, std::vector<SquareDensity>& rayTrees) {
-        return grow(of, &Sample::point, kFewestOfPoints, levels, &rayTrees);
-    }
+    explicit Samples(std::span<const Sample> samples) : samples_(samples) {}
     Moments momentsOf(std::span<const Index> of) const {
         Moments m;
         for (const Index i : of) m.add(samples_[i]);
         return m;
     }
+    double effective(std::span<const Index> of) const { return momentsOf(of).effective(); }
 
-  private:
-    /// A tree whose nodes know masses, before they are made probabilities.
-    struct Part {
-        double mass = 0.0, effective = 0.0;
-        std::uint32_t code = 0;
-    };
-    struct Growth {
-        SquarePoint Sample::*where;
-        double fewest;
-        int mostLevels;
-        std::vector<SquareDensity>* rayTrees;  // null: these are rays
-        std::vector<Part> parts = {};
-        std::vector<Index> rayTree = {};
-        std::uint32_t leaves = 0;
-    };
+  protected:
+    std::span<const Sample> samples_;
+};
 
-    Tree grow(std::span<Index> of, SquarePoint Sample::*where, double fewest, int mostLevels,
-              std::vector<SquareDensity>* rayTrees) {
-        Growth g{where, fewest, mostLevels, rayTrees};
-        g.parts.emplace_back();
-        split(g, 0, of, {0.0, 0.0}, {1.0, 1.0}, 0);
-        std::vector<SquareDensity::Node> nodes(g.parts.size());
-        finish(g, 0, 1.0, 1.0, nodes);
-        return {SquareDensity(std::move(nodes)), g.parts[0].mass, std::move(g.rayTree)};
+class Rays : public Samples {
+  public:
+    using Samples::Samples;
+    SquarePoint pointOf(Index i) const { return samples_[i].ray; }
+    double leafMass(std::span<const Index> of, double size) const {
+        return std::sqrt(momentsOf(of).withRay * size);
     }
+    GrownSquare grow(std::span<Index> of, const Shape& shape) {
+        return SquareGrower(*this,
+                            {kFewestOfRays, kMostRayLevels, shape.virtualSamples, shape.plainShare})
+            .grow(of);
+    }
+};
 
-    void split(Growth& g, std::size_t node, std::span<Index> of, SquarePoint low, SquarePoint size,
-               int level) {
+/// Every leaf with samples enough has a tree of rays.
+class Points : public Samples {
+  public:
+    Points(std::span<const Sample> samples, const Shape& shape,
+           std::vector<SquareDensity>& rayTrees)
+        : Samples(samples), shape_(shape), rays_(samples), rayTrees_(rayTrees) {}
+
+    SquarePoint pointOf(Index i) const { return samples_[i].point; }
+    double leafMass(std::span<Index> of, double size) {
         const Moments m = momentsOf(of);
-        g.parts[node].effective = m.effective();
-        if (level == g.mostLevels || m.effective() < g.fewest) {
-            g.parts[node].code = g.leaves++;
-            g.parts[node].mass = leafMass(g, of, m, size[0] * size[1]);
-            return;
-        }
-        const std::size_t axis = std::size_t(level) % 2;
-        size[axis] *= 0.5;
-        const double middle = low[axis] + size[axis];
-        const auto upper = std::partition(
-            of.begin(), of.end(), [&](Index i) { return (samples_[i].*g.where)[axis] < middle; });
-        const auto count = std::size_t(upper - of.begin());
-        const std::size_t child = g.parts.size();
-        g.parts.resize(child + 2);
-        split(g, child, of.first(count), low, size, level + 1);
-        low[axis] = middle;
-        split(g, child + 1, of.subspan(count), low, size, level + 1);
-        g.parts[node].code = std::uint32_t(child) | SquareDensity::kInner |
-                             (axis == 1 ? SquareDensity::kSecondAxis : 0);
-        g.parts[node].mass = g.parts[child].mass + g.parts[child + 1].mass;
-    }
-
-    double leafMass(Growth& g, std::span<Index> of, const Moments& m, double size) {
-        if (!g.rayTrees) return std::sqrt(m.withRay * size);
         double ofRays = std::sqrt(m.withRay);
         Index tree = kNone;
         if (m.effective() >= kFewestOfLight) {
-            Tree rayTree = rays(of);
-            ofRays = rayTree.mass;
-            tree = Index(g.rayTrees->size());
-            g.rayTrees->push_back(std::move(rayTree.density));
+            GrownSquare grown = rays_.grow(of, shape_);
+            ofRays = grown.mass;
+            tree = Index(rayTrees_.size());
+            rayTrees_.push_back(std::move(grown.density));
         }
-        g.rayTree.push_back(tree);
+        rayTree_.push_back(tree);
         return std::sqrt((m.alone + ofRays * ofRays) * size);
     }
-
-    /// `learned`, `size`: of the node's part, without and with the share of plain emission to come.
-    void finish(const Growth& g, std::size_t node, double learned, double size,
-                std::vector<SquareDensity::Node>& nodes) const {
-        const Part& part = g.parts[node];
-        nodes[node].code = part.code;
-        if (!(part.code & SquareDensity::kInner)) return;
-        const std::size_t child = part.code & ~(SquareDensity::kInner | SquareDensity::kSecondAxis);
-        const double lower = g.parts[child].mass, upper = g.parts[child + 1].mass;
-        const double share = lower + upper > 0.0 ? lower / (lower + upper) : 0.5;
-        const double n = part.effective, v = shape_.virtualSamples;
-        const double learnedLower = learned * (n * share + v * 0.5) / (n + v);
-        const double plain = shape_.plainShare;
-        const double mixed = plain * 0.5 * size + (1.0 - plain) * learnedLower;
-        const double all = plain * size + (1.0 - plain) * learned;
-        nodes[node].lower =
-            float(std::clamp(mixed / all, kLeastProbability, 1.0 - kLeastProbability));
-        finish(g, child, learnedLower, 0.5 * size, nodes);
-        finish(g, child + 1, learned - learnedLower, 0.5 * size, nodes);
+    /// `levels`: none for a light without an extent.
+    GrownSquare grow(std::span<Index> of, int levels) {
+        rayTree_.clear();
+        return SquareGrower(*this,
+                            {kFewestOfPoints, levels, shape_.virtualSamples, shape_.plainShare})
+            .grow(of);
     }
+    /// By leaf of the tree that was grown last.
+    std::span<const Index> rayTree() const { return rayTree_; }
 
-    std::span<const Sample> samples_;
-    Shape shape_;
+  private:
+    const Shape& shape_;
+    Rays rays_;
+    std::vector<SquareDensity>& rayTrees_;
+    std::vector<Index> rayTree_;
 };
 
 /// By light: what speaks for it.
@@ -194,23 +144,24 @@ EmissionGuide learn(const Lights& lights, std::span<const Sample> samples, const
     std::vector<LightMass> masses(lights.size());
     std::vector<double> power(lights.size());
     for (std::uint32_t l = 0; l < lights.size(); ++l) power[l] = lights.powerShare(l);
-    Grower grower(samples, shape);
+    Points points(samples, shape, guide.rays);
     for (std::size_t begin = 0; begin < order.size();) {
         const std::uint32_t light = samples[order[begin]].light;
         std::size_t end = begin;
         while (end < order.size() && samples[order[end]].light == light) ++end;
         const std::span of = std::span(order).subspan(begin, end - begin);
         begin = end;
-        const Moments m = grower.momentsOf(of);
+        const Moments m = points.momentsOf(of);
         double mass = std::sqrt(m.withRay + m.alone);
         if (m.effective() >= kFewestOfLight) {
-            Grower::Tree tree = grower.points(
-                of, isHittable(lights.kind(light)) ? kMostPointLevels : 0, guide.rays);
+            GrownSquare tree =
+                points.grow(of, isHittable(lights.kind(light)) ? kMostPointLevels : 0);
             mass = tree.mass;
             guide.pointTree[light] = Index(guide.points.size());
             guide.firstLeaf.push_back(Index(guide.rayTree.size()));
             guide.points.push_back(std::move(tree.density));
-            guide.rayTree.insert(guide.rayTree.end(), tree.rayTree.begin(), tree.rayTree.end());
+            const std::span<const Index> ofLeaves = points.rayTree();
+            guide.rayTree.insert(guide.rayTree.end(), ofLeaves.begin(), ofLeaves.end());
         }
         masses[light] = {mass * std::sqrt(power[light]), m.effective()};
     }

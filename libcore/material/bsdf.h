@@ -146,6 +146,8 @@ class Bsdf {
     }
     /// Whether light may pass through.
     bool transmits() const { return has(kGlass); }
+    /// Whether there is no lobe that is wide beside others of the same surface.
+    bool isNarrow() const { return !has(kDiffuse) && alpha_ < kNarrowAlpha; }
     bool isBlack() const { return !has(kDiffuse | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;
@@ -156,6 +158,7 @@ class Bsdf {
     Vec3 ns() const { return ns_; }
 
   private:
+    static constexpr float kNarrowAlpha = 0.1f;
     // Which lobes exist. Layers: coat and metal share alpha, half vector and density.
     enum Flag : std::uint8_t {
         kDiffuse = 1,

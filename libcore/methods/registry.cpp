@@ -50,6 +50,11 @@ const OptionTable<SplatOptions>& splatOptions() {
 
 void complete(MethodRow& row, std::vector<Option> own) {
     std::vector<Option>& all = row.options;
+    const auto areGuided = [](const Settings& settings) {
+        return walkOptions({}).read(settings).walks == Walks::Guided;
+    };
+    row.needs.insert(row.needs.begin(),
+                     AssetNeed{"walks", "", walkOptions(row.walks).options(), areGuided});
     if (row.techniques.splats) {
         all = splatOptions().options();
         const auto isLearned = [](const Settings& settings) {

@@ -12,6 +12,7 @@
 #include "libcore/base/options.h"
 #include "libcore/bidir/method.h"
 #include "libcore/guide/emission_settings.h"
+#include "libcore/guide/walk_settings.h"
 
 namespace lacuna {
 
@@ -31,6 +32,7 @@ struct MethodRow {
     std::string summary = {};    ///< one line
     Techniques techniques = {};
     Emission emission = Emission::Plain;           ///< the default, where there are light subpaths
+    Walks walks = Walks::Plain;                    ///< likewise
     std::vector<AssetNeed> needs = {};             ///< in the order in which they are made
     std::vector<std::string> proposalLabels = {};  ///< names of Proposal::label, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
@@ -40,8 +42,8 @@ struct MethodRow {
     std::function<std::unique_ptr<Method>(const Settings&)> create = {};
 };
 
-/// What follows from the rest of a row. Rows that splat trace light subpaths, so that they have
-/// `light_paths` and `emission`; rows that need assets have the options of their making, rows with a
+/// What follows from the rest of a row. All have `walks`. Rows that splat trace light subpaths, so that
+/// they have `light_paths` and `emission`; rows that need assets have the options of their making, rows with a
 /// paper's preset `preset`; then there are the row's own.
 void complete(MethodRow& row, std::vector<Option> own);
 /// The assets that a render with these settings needs.

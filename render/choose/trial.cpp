@@ -75,7 +75,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     const AssetSet assets = caches.all();
     method->use(assets);
     RenderSettings render = stage.settings;
-    render.lights = guidedLights(*stage.scene, assets);
+    render.guides = guidesOf(*stage.scene, assets);
     render.seed = seed;
     render.crop = small.crop;
     const double filmPixels = pixelsOf(stage.camera->film()), smallPixels = pixelsOf(small.film);

@@ -138,6 +138,31 @@ INSTANTIATE_TEST_SUITE_P(Rows, EmissionOfNonsense,
                                          "icbpt", "skelbpt", "spcbpt"),
                          ByParameter());
 
+/// Walks that go on anywhere, so far as their surfaces let them: all rows.
+class WalksOfNonsense : public testing::TestWithParam<std::string> {};
+
+TEST_P(WalksOfNonsense, leaveTheMeanAsItIs) {
+    const MethodRow row = rowNamed(GetParam());
+    for (const NamedScene& named : {underTheSky(), diffuseBox(), instancedEmitters()}) {
+        const auto scene = named.builder.build();
+        Shot shot = quickShot(300);
+        shot.seed = 100;
+        const Picture reference = render(*scene, rowNamed("bpt"), shot);
+        shot.seed = 1;
+        shot.iterations = 150;
+        for (std::uint64_t guide = 1; guide <= 2; ++guide) {
+            shot.walkGuide = guide;
+            expectSame(render(*scene, row, shot), reference, named.name, Judge::BlocksAndMean);
+        }
+    }
+    stabilityCase("nonsense-walks", worstDeviation(), kOfAllowed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, WalksOfNonsense,
+                         testing::Values("pt", "lt", "bpt", "lvcbpt", "pcbpt", "risbpt", "tsrbpt",
+                                         "icbpt", "skelbpt", "spcbpt"),
+                         ByParameter());
+
 /// Q and populations over thirty decades: a Q far too small believes in its subspace, one far too
 /// large does not; neither is more than noise.
 TEST(SubspacesOfNonsense, valuesOfAnyRangeLeaveTheMeanAsItIs) {

@@ -9,6 +9,7 @@
 
 #include "tests/acceptance/scene_caches.h"
 #include "tests/fixtures/random_guide.h"
+#include "tests/fixtures/random_walk_guide.h"
 
 namespace lacuna::test {
 
@@ -155,8 +156,10 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     r.lightPaths = lightPathsOf(settings_);
     if (shot_.guide != 0) {
         const Lights& plain = scene.lights();
-        r.lights = std::make_shared<const Lights>(plain.guidedBy(randomGuide(plain, shot_.guide)));
+        r.guides.lights =
+            std::make_shared<const Lights>(plain.guidedBy(randomGuide(plain, shot_.guide)));
     }
+    if (shot_.walkGuide != 0) r.guides.walks = randomWalkGuide(shot_.walkGuide);
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
     integrator_->delivery().setTechniqueFilm(shot_.techniques);

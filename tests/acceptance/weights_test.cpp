@@ -43,7 +43,7 @@ bool drawable(const FullPath& path, const TechniqueCounts& techniques, int t) {
 struct Case {
     std::string row;
     int scene;
-    std::uint64_t guide = 0;  ///< Shot::guide
+    std::uint64_t guide = 0;  ///< Shot::guide and Shot::walkGuide
 };
 void PrintTo(const Case& c, std::ostream* out) {
     *out << c.row << " in " << weightScenes()[std::size_t(c.scene)].name;
@@ -70,7 +70,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
     const auto scene = named.builder.build();
     const MethodRow row = rowNamed(GetParam().row);
     Shot shot = weightShot();
-    shot.guide = GetParam().guide;
+    shot.guide = shot.walkGuide = GetParam().guide;
     int judged = 0;
     double worstSum = 0, worstProduct = 0, ownDifference = 0;
     std::string worstPath;

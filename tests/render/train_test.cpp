@@ -131,6 +131,39 @@ TEST_F(TrainTool, EmissionIsLearnedFirstAndFollowed) {
     expectFailure(render + "--method pt --set emission=learned", 2, "emission");
 }
 
+/// On the door as well, where eye walks find little by themselves: each row learns for its own
+/// techniques.
+TEST_F(TrainTool, WalksAreLearnedAndFollowed) {
+    const std::string scene = LACUNA_SCENES "/door.glb --cache @cache ";
+    const std::string small = "--width 24 --height 16 --quiet ";
+    const Outcome o = train(scene + small + "--walks guided --walk-paths 20000 --paths 5000 " +
+                            "--subspaces 50 --light-paths 5000 --json @t.json");
+    ASSERT_EQ(o.exitCode, 0) << o.err;
+    const nlohmann::json walks = json("t.json").at("walks");
+    EXPECT_NEAR(walks.at("paths").get<double>(), 20000, 5000);
+    EXPECT_TRUE(walks.at("guided"));
+    EXPECT_LT(walks.at("held_out_loss").at("light"), 0.97);
+    EXPECT_TRUE(std::filesystem::exists(walks.at("file").get<std::string>()));
+    EXPECT_NE(o.out.find("walks: second moment"), std::string::npos) << o.out;
+
+    const std::string render =
+        scene + small + "--iterations 2 -o @out.exr --json @out.json --verify ";
+    const std::string guided = "--set walks=guided --set walk_paths=20000 ";
+    const auto rendered = [&](const std::string& more) {
+        const Outcome r = run(render + guided + more);
+        EXPECT_EQ(r.exitCode, 0) << r.err;
+        EXPECT_LT(json("out.json").at("verify").at("max_difference"), 1e-6);
+        return json("out.json").at("cache_hashes").at("walks").get<std::string>();
+    };
+    rendered(
+        "--method spcbpt --set train.paths=5000 --set train.subspaces=50 "
+        "--set train.light_paths=5000");
+    expectFailure(render + guided + "--method pt", 3, "add --prepare");
+    const std::string ofPt = rendered("--method pt --prepare");
+    EXPECT_NE(rendered("--method bpt --prepare"), ofPt);
+    EXPECT_EQ(rendered("--method pt"), ofPt);
+}
+
 /// Subspaces are trained under one emission, and refused under another.
 TEST_F(TrainTool, SubspacesBelongToTheirEmission) {
     const std::string scene = LACUNA_SCENES "/door.glb --quiet --cache @cache ";

@@ -1,0 +1,32 @@
+// How many samples each kind of technique stands for in the method that a guide is for.
+#pragma once
+
+#include "libcore/bidir/method.h"
+
+namespace lacuna {
+
+struct TechniqueWorth {
+    double hit, direct, connection, splat;  ///< s = 0, s = 1, s >= 2 and t >= 2, t = 1
+
+    /// Of a method's techniques. Connections with a pool choose among many light subpaths, those of
+    /// bpt have one; without splats there are no light subpaths to connect with.
+    static TechniqueWorth of(const Techniques& t) {
+        const double pool = t.ownLightPath ? 1.0 : t.splats ? kOfPool : 0.0;
+        return {t.hits ? 1.0 : 0.0, t.connects ? 1.0 : 0.0, t.connects ? pool : 0.0,
+                t.splats ? 1.0 : 0.0};
+    }
+    /// Of strategy t on a path of so many edges.
+    double operator()(int t, int edges) const {
+        return t == edges + 1 ? hit : t == edges ? direct : t == 1 ? splat : connection;
+    }
+    /// "hits, connections with a pool": what a cache is made for.
+    static const char* name(const Techniques& t) {
+        return t.ownLightPath ? "own light paths"
+               : t.splats     ? "a pool of light paths"
+                              : "no light paths";
+    }
+
+    static constexpr double kOfPool = 100.0;
+};
+
+}  // namespace lacuna

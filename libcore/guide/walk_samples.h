@@ -1,0 +1,68 @@
+// Paths as guided walks see them: at each vertex that scatters smoothly, or may, where either walk goes
+// on to, and how much of the picture's second moment hangs on that. (theory.md, "Guided walks")
+//
+// Paths come from bidirectional path tracing with all its strategies, each sampled path once under
+// p_D = sum_t p_t, with the weights w_t. Where strategy t of the method that is to be guided stands for
+// W_t samples, its paths have the density p_D d, d = sum_t W_t w_t. With g = f / (p_D d), the second
+// moment of those strategies that drew a step is the mean over the paths of g^2 times their W_t w_t.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/bidir/mis.h"
+#include "libcore/bidir/walk.h"
+#include "libcore/bidir/walk_guide.h"
+#include "libcore/guide/technique_worth.h"
+#include "libcore/subspace/relative_contribution.h"
+
+namespace lacuna {
+
+class WalkSamples {
+  public:
+    /// A walk's step away from a vertex.
+    struct Step {
+        WalkGuide::Place place;
+        Vec3 to;       ///< unit
+        float weight;  ///< sum of W_t w_t over the strategies that drew it
+        float
+            pdfBsdf;  ///< per solid angle, of the BSDF alone; of a delta event the generalised one
+        float pdfFound;  ///< that it was found with
+        Side side;       ///< whose walk
+        bool delta;
+    };
+    struct Path {
+        std::uint32_t pixel, first, count;
+        float contribution;  ///< g; relative to the pixel once relate() was called
+    };
+
+    /// Adds a path that bidirectional path tracing made with `walker`, with its weighted contribution
+    /// f / p_D (mean of the channels). Paths without a step are left out, and those that none of the
+    /// method's strategies makes.
+    void add(FullPath& path, const TechniqueCounts& counts, const Walker& walker,
+             const TechniqueWorth& worth, float contribution, std::uint32_t pixel);
+    void append(const WalkSamples& other, std::size_t index);
+    /// A path of these steps.
+    void put(std::uint32_t pixel, float contribution, std::span<const Step> steps);
+    void relate(const PixelScale& scale);
+    float outlierLimit() const;
+    void lowerTo(float limit);
+
+    std::size_t size() const { return paths_.size(); }
+    std::uint32_t pixel(std::size_t index) const { return paths_[index].pixel; }
+    std::span<const Path> paths() const { return paths_; }
+    std::span<const Step> steps(const Path& path) const {
+        return std::span(steps_).subspan(path.first, path.count);
+    }
+
+  private:
+    std::vector<Path> paths_;
+    std::vector<Step> steps_;
+};
+
+/// What the step carries of the second moment had its direction density one per solid angle; divide by
+/// the density that it is to have.
+double momentOf(const WalkSamples::Path& path, const WalkSamples::Step& step);
+
+}  // namespace lacuna

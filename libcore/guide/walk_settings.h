@@ -1,0 +1,31 @@
+// Whether walks go on as BSDFs say or as learned, and how that is learned: one table that rows,
+// lacuna-train and the cache's key share. (theory.md, "Guided walks")
+#pragma once
+
+#include <cstdint>
+
+#include "libcore/base/options.h"
+
+namespace lacuna {
+
+enum class Walks { Plain, Guided };
+
+struct WalkSettings {
+    Walks walks = Walks::Plain;
+    std::uint64_t paths = 0;  ///< 0: as many as go with the rest (guidePaths)
+};
+
+/// `standard`: what a row does where nobody says anything.
+inline OptionTable<WalkSettings> walkOptions(Walks standard) {
+    return OptionTable<WalkSettings>({.walks = standard})
+        .choice<Walks>(
+            "walks", &WalkSettings::walks, {{"plain", Walks::Plain}, {"guided", Walks::Guided}},
+            "walks go on where BSDFs send them, or by a learned share as paths that reached "
+            "the picture taught beforehand")
+        .integer("walk_paths", &WalkSettings::paths, 0, 1e8, "full paths",
+                 "to learn walks from; 0: half as many as train.paths, 500000 where nothing else "
+                 "is trained")
+        .standardText("half of train.paths");
+}
+
+}  // namespace lacuna
