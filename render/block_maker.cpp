@@ -20,7 +20,8 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
     const PixelRect& crop = stage.settings.crop;
     if (options.techniques) {
         techniques_ = std::make_unique<TechniqueFilm>(
-            crop.width(), crop.height(), stage.settings.limits.maxDepth, plan_.sampleIterations());
+            crop.width(), crop.height(), stage.settings.limits.maxDepth, plan_.sampleIterations(),
+            method_->merging().where != Merges::Nowhere);
         integrator_->delivery().setTechniqueFilm(techniques_.get());
         layers_.push_back(techniques_.get());
     }

@@ -23,7 +23,10 @@ std::string listMethods() {
     std::string text = padded(kAuto, width + 2) + kAutoSummary + " (default)\n";
     for (const MethodRow& row : methods()) {
         text += padded(row.name, width + 2) + row.summary + " [" + row.reference + "]" +
-                (row.biased ? " (biased: an experiment)" : "") + "\n";
+                (row.biased                                ? " (biased: an experiment)"
+                 : isConsistentOnly(row, resolve(row, {})) ? " (consistent, not unbiased)"
+                                                           : "") +
+                "\n";
     }
     return text;
 }
@@ -43,6 +46,13 @@ std::string methodHelp(const MethodRow& row) {
     if (t.hits) text += "\n  s = 0          eye paths that run into a light";
     if (t.connects) text += "\n  s >= 1, t >= 2  eye vertices connected with light vertices";
     if (t.splats) text += "\n  t = 1          light paths seen by the lens";
+    const Merges merges = row.create(resolve(row, {}))->merging().where;
+    if (merges != Merges::Nowhere) {
+        text += merges == Merges::FirstFromEye
+                    ? "\n  merges         the first eye vertices with photons around them"
+                    : "\n  merges         eye vertices with photons around them";
+        text += "\nconsistent, not unbiased: what merging blurs goes away as iterations go on";
+    }
     if (row.biased) text += "\nbiased: an experiment of a paper, not for pictures";
     text += "\nparameters (--set NAME=VALUE):\n";
     if (row.options.empty()) text += "  none\n";

@@ -61,6 +61,9 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
         a["fullSize"] = std::to_string(r.filmWidth) + "x" + std::to_string(r.filmHeight);
     }
     if (r.method->biased) a["biased"] = std::string("yes: the method is an experiment of a paper");
+    if (isConsistentOnly(*r.method, r.settings)) {
+        a["consistent"] = std::string("not unbiased: what merging blurs goes away with iterations");
+    }
 }
 
 }  // namespace
@@ -150,6 +153,7 @@ json reportJson(const RenderReport& r) {
     json j{{"method", r.method->name},
            {"parameters", parametersJson(*r.method, r.settings)},
            {"biased", r.method->biased},
+           {"consistent", isConsistentOnly(*r.method, r.settings)},
            {"command_line", r.commandLine},
            {"iterations", r.iterations},
            {"seconds", r.seconds},

@@ -50,15 +50,17 @@ class Printer {
     }
 
     void contribution(const PathEvent& e) {
-        const int k = e.path.edges, s = k + 1 - e.t;
+        const int k = e.path.edges, t = e.technique.t;
         double sum = 0.0;
-        for (int t = 1; t <= k + 1; ++t) sum += misWeight(e.path, e.counts, t);
+        for (int i = 1; i <= k + 1; ++i) sum += misWeight(e.path, e.counts, i);
+        for (int i = 1; i < k; ++i) sum += misWeight(e.path, e.counts, {k + 1 - i, true});
         std::printf(
-            "contribution %d: s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products %.9g, "
+            "contribution %d: %s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products "
+            "%.9g, "
             "sum over strategies %.9g)",
-            ++contributions_, s, e.t, double(e.contribution.r), double(e.contribution.g),
-            double(e.contribution.b), e.weight, misWeightByProducts(walker_, e.path, e.counts, e.t),
-            sum);
+            ++contributions_, e.technique.merges ? "merged at i" : "s", e.technique.firstOfEye(k),
+            t, double(e.contribution.r), double(e.contribution.g), double(e.contribution.b),
+            e.weight, misWeightByProducts(walker_, e.path, e.counts, e.technique), sum);
         if (e.proposal) {
             std::printf(", selector weight %.9g, label %u", e.proposal->weight, e.proposal->label);
         }
@@ -97,11 +99,15 @@ class Printer {
         const PathVertex& v = *e.path.vertex[n];
         const Vec3d p = placeOf(v);
         std::printf(
-            "  x%d %s %s %.9g %.9g %.9g, %s, light pdfA %.9g, eye pdfA %.9g, n r %.9g\n", i,
+            "  x%d %s %s %.9g %.9g %.9g, %s, light pdfA %.9g, eye pdfA %.9g, n r %.9g", i,
             nameOf(v.kind), v.infinite() ? "towards" : "at", p.x, p.y, p.z,
             e.path.delta[n] ? "delta" : "smooth", double(e.path.lightPdfA[n]),
             double(e.path.eyePdfA[n]),
             i <= e.path.edges ? effectiveCount(e.path, e.counts, e.path.edges + 1 - i) : 0.0);
+        if (e.counts.merges != Merges::Nowhere && i > 0 && i < e.path.edges) {
+            std::printf(", merged n %.9g", mergedSamples(e.path, e.counts, i));
+        }
+        std::printf("\n");
     }
 
     const Walker& walker_;

@@ -55,6 +55,7 @@ void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices
     path.edges = int(lightVertices + eyeVertices) - 1;
     path.lightEdges = std::max(0, int(lightVertices) - 1);
     path.eyeEdges = int(eyeVertices) - 1;
+    path.photon = nullptr;
 }
 
 /// Where the path begins; called last, once both walks' densities are there.
@@ -182,6 +183,31 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
     path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
     if (s >= 2) path.eyePdfA[s - 2] = atLight.pdfWToPrevious * y.toPreviousFactor;
     if (s + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
+    return closed;
+}
+
+std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath eye, FullPath& path) {
+    const PathVertex& photon = light.back();
+    const PathVertex& z = eye.back();
+    const BsdfEvaluation at = z.bsdf.evaluate(z.toPrevious, photon.toPrevious);
+    const Closed closed{
+        z.throughput * at.f * photon.throughput, Technique(int(eye.size()), true), {}};
+    if (isBlack(closed.contribution)) return std::nullopt;
+
+    const std::size_t i = light.size() - 1;
+    setEdges(path, i, eye.size());
+    path.lightEdges = int(i);
+    path.photon = &photon;
+    fillLightPart(path, light.first(i));
+    fillEyePart(path, eye);
+    path.delta[i] = false;
+    path.scatter[i] = at.f;
+    path.asEye[i - 1] = kNone;  // both walks know their last vertex by another neighbour
+    path.asLight[i] = kNone;
+    path.lightPdfA[i] = photon.pdfA;
+    path.eyePdfA[i - 1] = at.pdfWToLight * photon.toPreviousFactor;
+    if (int(i) + 1 < path.edges) path.lightPdfA[i + 1] = at.pdfWToEye * z.toPreviousFactor;
     setSource(path, walker.scene(), light[0]);
     return closed;
 }

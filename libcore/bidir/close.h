@@ -1,4 +1,4 @@
-// Full paths from subpaths: the three ways in which a strategy closes a path (hit, splat, connect),
+// Full paths from subpaths: the four ways in which they close a path (hit, splat, connect, merge),
 // each giving the contribution without its weight, and the FullPath that the weight is made from.
 // In the order of what it costs to find out that a path carries nothing: cosines and the light's
 // own profile; visibility, because where light has to find its way most connections are blocked;
@@ -10,15 +10,16 @@
 #include "libcore/bidir/density.h"
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/full_path.h"
+#include "libcore/bidir/mis.h"
 #include "libcore/bidir/walk.h"
 
 namespace lacuna {
 
 /// A closed path. `contribution` is f / (p(y) p(z)) of this strategy, without its MIS weight and
-/// without the selector's weight.
+/// without the selector's weight (merges: without the kernel, per area at the vertex).
 struct Closed {
     Rgb contribution;
-    int t = 0;
+    Technique technique;
     Vec2 raster;  ///< splats: where the lens sees it
 };
 
@@ -63,6 +64,11 @@ std::optional<Edge> connectingEdge(const Walker& walker, const PathVertex& light
 /// Over that edge. Empty where the BSDFs let nothing through. Fills `path`.
 std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
                                       FullPath& path);
+
+/// The eye subpath's last vertex, which must be connectable, taken for the photon that the light
+/// subpath ends with: x_i is the eye's vertex, reached as the photon was (onSameSurface is not asked
+/// here). Empty where its BSDF lets nothing through. Fills `path`.
+std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath eye, FullPath& path);
 
 /// Whether the two vertices see each other.
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,

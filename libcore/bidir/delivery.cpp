@@ -20,11 +20,12 @@ PathObserver Delivery::setObserver(PathObserver observer) {
 
 Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts) const {
     const Lights& lights = setup_.walker.lights();
-    const double weight = misWeight(c.path, counts, c.closed.t);
+    const double weight = misWeight(c.path, counts, c.closed.technique);
     const Rgb scaled = c.closed.contribution * float(c.scale);
     const Rgb value = lights.inFileUnits(scaled * float(weight));
     if (observer_) {
-        observer_({c.path, c.closed.t, weight, value, c.pixel, c.proposal, counts, c.sample});
+        observer_(
+            {c.path, c.closed.technique, weight, value, c.pixel, c.proposal, counts, c.sample});
     }
     return {value, techniqueFilm_ ? lights.inFileUnits(scaled) : Rgb{}};
 }
@@ -44,8 +45,10 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
     if (!isFinite(sum)) return countInvalid(c.sample, result);
     pixel = sum;
     if (techniqueFilm_) {
-        const int s = c.path.edges + 1 - c.closed.t;
-        techniqueFilm_->add({s, c.closed.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted});
+        const Technique made = c.closed.technique;
+        const int s = made.firstOfEye(c.path.edges);
+        techniqueFilm_->add(
+            {s, made.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted, made.merges});
     }
 }
 

@@ -28,7 +28,7 @@ struct Sample {
 /// One weighted path, as observers see it: tests, --verify, --replay.
 struct PathEvent {
     FullPath& path;
-    int t;
+    Technique technique;
     double weight;             ///< MIS
     Rgb contribution;          ///< as it enters the pixel: weights, 1/L, the lights' unit included
     std::uint32_t pixel;       ///< row-major in the crop
@@ -45,7 +45,7 @@ struct Contribution {
     FullPath& path;
     Sample sample;
     std::uint32_t pixel;  ///< row-major in the crop
-    double scale = 1.0;   ///< the proposal's weight; 1/L
+    double scale = 1.0;   ///< the proposal's weight; 1/L; merges: the kernel / n_m
     const Proposal* proposal = nullptr;
 };
 

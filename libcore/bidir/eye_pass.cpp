@@ -47,11 +47,7 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     // One thing after the other for all pixels, and not all things for one pixel: the processor's
     // first cache holds the code of one of them.
     if (setup_.techniques.ownLightPath) {
-        std::array<std::uint64_t, kTile> numbers;
-        std::iota(numbers.begin(), numbers.end(), std::uint64_t(filmIndex));
-        const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
-        lightPass_.trace(std::span(numbers).first(pixels.size()), iteration,
-                         {StreamKind::LightPath, 0, splats}, worker, result);
+        takeOwnLightPaths(iteration, filmIndex, pixels.size(), worker, result);
     }
     result.clock.start();
     worker.rngs.clear();
@@ -75,6 +71,23 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
                pixels[i]},
               iteration, worker, result);
     }
+}
+
+/// The light subpaths of `count` pixels from `first` of the full film on, into worker.light.
+void EyePass::takeOwnLightPaths(const Iteration& iteration, std::uint32_t first, std::size_t count,
+                                Worker& worker, TaskResult& result) const {
+    if (pool_.findsSubpaths()) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Subpath own = pool_.subpath(first + i);
+            worker.light[i].assign(own.begin(), own.end());
+        }
+        return;
+    }
+    std::array<std::uint64_t, kTile> numbers;
+    std::iota(numbers.begin(), numbers.end(), std::uint64_t(first));
+    const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
+    lightPass_.trace(std::span(numbers).first(count), iteration, {StreamKind::LightPath, 0, splats},
+                     worker, result);
 }
 
 void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
@@ -102,6 +115,30 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
             if (closed) deliver(*closed, worker.openedBy[next]);
             clock.lap([&] { return groupOf(open.light.size(), eye); });
         }
+        if (!photons_.empty() && asksForPhotons(eye, iteration.counts.merges)) {
+            merge(paths, eye, iteration, worker, result);
+            clock.lap([&] { return TechniqueGroup::ofMerge(connectionOrder(eye)); });
+        }
+    }
+}
+
+/// An eye subpath's last vertex with the photons around it.
+void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration,
+                    Worker& worker, TaskResult& result) const {
+    const PathVertex& z = eye.back();
+    worker.photons.clear();
+    photons_.find(z.position, worker.photons);
+    for (const std::uint32_t i : worker.photons) prefetch(pool_.vertices()[i]);
+    for (const std::uint32_t i : worker.photons) {
+        const Subpath light = pool_.prefixOf(i);
+        const int edges = int(light.size() + eye.size()) - 2;
+        if (edges > setup_.settings.limits.maxDepth || !onSameSurface(light.back(), z)) continue;
+        const auto closed = closeMerge(setup_.walker, light, eye, worker.fullPath);
+        if (!closed) continue;
+        // By the photons' number and the kernel's area, constant over it.
+        const double scale = 1.0 / iteration.counts.mergeSamples;
+        delivery_.toOwnPixel({*closed, worker.fullPath, paths.sample, paths.pixel, scale, nullptr},
+                             iteration.counts, paths.value, result);
     }
 }
 

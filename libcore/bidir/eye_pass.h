@@ -1,16 +1,22 @@
-// The eye subpaths of an iteration, one per pixel: hits, picks, connections.
+// The eye subpaths of an iteration, one per pixel: hits, picks, connections, merges.
 #pragma once
 
 #include "libcore/bidir/light_pass.h"
+#include "libcore/bidir/photon_grid.h"
 
 namespace lacuna {
 
 class EyePass {
   public:
-    /// All must outlive it.
-    EyePass(const RenderSetup& setup, const LightPass& lightPass, Delivery& delivery,
-            const Workers& workers)
-        : setup_(setup), lightPass_(lightPass), delivery_(delivery), workers_(workers) {}
+    /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged.
+    EyePass(const RenderSetup& setup, const LightPass& lightPass, const LightPool& pool,
+            const PhotonGrid& photons, Delivery& delivery, const Workers& workers)
+        : setup_(setup),
+          lightPass_(lightPass),
+          pool_(pool),
+          photons_(photons),
+          delivery_(delivery),
+          workers_(workers) {}
 
     /// All pixels of the crop. False if cancelled.
     bool run(const Iteration& iteration) const;
@@ -29,6 +35,10 @@ class EyePass {
 
     void close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
+    void takeOwnLightPaths(const Iteration& iteration, std::uint32_t first, std::size_t count,
+                           Worker& worker, TaskResult& result) const;
+    void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
+               TaskResult& result) const;
     void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                 TaskResult& result) const;
     void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
@@ -36,6 +46,8 @@ class EyePass {
 
     const RenderSetup& setup_;
     const LightPass& lightPass_;
+    const LightPool& pool_;
+    const PhotonGrid& photons_;
     Delivery& delivery_;
     const Workers& workers_;
 };

@@ -6,7 +6,7 @@ namespace lacuna {
 
 double FullPath::geometryOf(int i) const {
     // The end that knows the edge as its way back: the farther one of its own walk.
-    const PathVertex* end = i < lightEdges          ? vertex[i + 1]
+    const PathVertex* end = i < lightEdges          ? &lightsEnd(i)
                             : i >= edges - eyeEdges ? vertex[i]
                                                     : nullptr;
     return end ? measureCosine(*end, end->toPrevious) * double(end->toPreviousFactor)
@@ -14,7 +14,7 @@ double FullPath::geometryOf(int i) const {
 }
 
 Vec3 FullPath::directionOf(int i) const {
-    if (i < lightEdges) return -vertex[i + 1]->toPrevious;
+    if (i < lightEdges) return -lightsEnd(i).toPrevious;
     if (i >= edges - eyeEdges) return vertex[i]->toPrevious;
     return edgeBetween(*vertex[i], *vertex[i + 1]).direction;
 }
@@ -27,7 +27,8 @@ void FullPath::fillLightThroughputs(int rouletteDepth) {
         const double pdf = double(lightPdfA[i]) * lightRoulette(i, rouletteDepth);
         beta[i] = pdf > 0.0 ? beta[i - 1] * scatter[i - 1] * float(g / pdf) : Rgb{};
         if (!absorption.empty()) {
-            beta[i] *= transmittance(absorption, *vertex[i - 1], directionOf(i - 1), *vertex[i]);
+            beta[i] *=
+                transmittance(absorption, *vertex[i - 1], directionOf(i - 1), lightsEnd(i - 1));
         }
     }
 }

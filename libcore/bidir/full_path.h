@@ -9,6 +9,7 @@
 #include <bit>
 #include <span>
 
+#include "libcore/bidir/merging.h"
 #include "libcore/bidir/path.h"
 
 namespace lacuna {
@@ -26,7 +27,7 @@ struct FullPath {
     PerVertex<float> lightPdfA;       ///< pL(x_i | x_{i-1}, x_{i-2}), no roulette
     PerVertex<float> eyePdfA;         ///< pE(x_i | x_{i+1}, x_{i+2}), no roulette
     PerVertex<float> survival;        ///< 1 at both ends
-    PerVertex<bool> delta;            ///< of the event at x_i on THIS path; not at ends
+    PerVertex<bool> delta;            ///< of the event at x_i on THIS path; false at ends
     PerVertex<Rgb> scatter;           ///< f at x_i (x_0: emission profile)
     PerVertex<Label> asLight;         ///< label of x_i as the end of a light subpath
     PerVertex<Label> asEye;           ///< and of an eye subpath; kNone: not known
@@ -36,6 +37,9 @@ struct FullPath {
     std::span<const Rgb> absorption;  ///< of the scene, by material (absorption.h)
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;
+    /// Merges: what the light's walk has in the place of its last vertex, x_i with i = lightEdges;
+    /// x_i itself is the eye's. Else null.
+    const PathVertex* photon = nullptr;
 
     /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
     bool exists(int t) const {
@@ -44,6 +48,13 @@ struct FullPath {
         if (edges == 1 && t == 1 && !splattable) return false;
         // The connection's two ends scatter smoothly, as the light's point and the lens always do.
         return !delta[std::size_t(s - 1)] && !delta[std::size_t(s)];
+    }
+    /// Whether a row that merges there merges this path at x_i, 0 < i < edges.
+    bool mergesAt(int i, Merges where) const {
+        const auto n = std::size_t(i);
+        if (delta[n] || where == Merges::Nowhere) return false;
+        if (where == Merges::FirstFromEye) return orderOf(i) == 1;
+        return where != Merges::BetweenDeltas || (delta[n - 1] && delta[n + 1]);
     }
     /// Connection::order where the eye's end is x_i.
     int orderOf(int i) const {
@@ -63,6 +74,10 @@ struct FullPath {
     double geometryOf(int i) const;
     /// Unit, from x_i to x_{i+1}; a walk's edge has the direction that the walk drew.
     Vec3 directionOf(int i) const;
+    /// x_{i+1} as the light's walk has it, which made the edge from x_i.
+    const PathVertex& lightsEnd(int i) const {
+        return photon && i + 1 == lightEdges ? *photon : *vertex[std::size_t(i) + 1];
+    }
 
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     PerVertex<Rgb> beta;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libcore/bidir/footprint.h"
+
 namespace lacuna {
 
 BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techniques techniques,
@@ -11,14 +13,48 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
       method_(&method),
       workers_(threads, settings.limits.maxDepth) {}
 
-TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration) {
+Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,
+                                 IterationStatistics& statistics, const std::atomic<bool>& cancel) {
+    const double radius = radiusOf(number);
+    return {number, *method_, freeze(number, radius), radius, pixels, statistics, cancel};
+}
+
+TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRadius) {
     TechniqueCounts counts;
     counts.hit = setup_.techniques.hits;
     counts.splats = setup_.techniques.splats ? double(setup_.lightPaths) : 0.0;
     const ConnectionDensity& density = method_->freeze(iteration);
     if (setup_.techniques.connects) counts.connectThrough(density, setup_.walker);
+    counts.merges = method_->merging().where;
+    counts.mergeSamples = double(pooledSubpaths()) * mergeArea(mergeRadius);
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;
+}
+
+/// R. Two of a pixel's footprints to begin with: what is blurred by less is not seen.
+double BidirIntegrator::radiusOf(std::uint32_t iteration) {
+    constexpr double kFootprints = 2.0;
+    const Merging merging = method_->merging();
+    if (merging.where == Merges::Nowhere) return 0.0;
+    if (merging.radius > 0.0) return lacuna::mergeRadius(merging.radius, iteration);
+    if (!footprint_) footprint_ = medianFootprint(setup_.walker);
+    return lacuna::mergeRadius(kFootprints * *footprint_, iteration);
+}
+
+/// M.
+std::uint64_t BidirIntegrator::pooledSubpaths() const {
+    const PoolRequest request = method_->pool();
+    return request.perPixel ? setup_.filmPixels() : request.subpaths;
+}
+
+/// Behind the light pass: the pool's photons by place.
+void BidirIntegrator::findPhotons(const Iteration& iteration) {
+    photons_ = {};
+    if (iteration.counts.merges == Merges::Nowhere) return;
+    PhaseTimer timer(iteration.statistics, "photons");
+    photons_ = PhotonGrid(pool_.vertices(), pool_.photons(), iteration.mergeRadius);
+    iteration.statistics.hold("photons", pool_.photons().size());
+    iteration.statistics.hold("photon bytes", photons_.bytes());
 }
 
 IterationContext BidirIntegrator::contextFor(std::uint32_t generation,
@@ -34,7 +70,7 @@ std::uint32_t BidirIntegrator::generationOf(std::uint32_t iteration) const {
 }
 
 LightPass::Purpose BidirIntegrator::poolAlone(StreamKind stream) const {
-    return {stream, method_->pool().subpaths, 0};
+    return {stream, pooledSubpaths(), 0};
 }
 
 bool BidirIntegrator::beginBlock(std::uint64_t block, Method& fresh,
@@ -44,7 +80,7 @@ bool BidirIntegrator::beginBlock(std::uint64_t block, Method& fresh,
     const auto warmups = std::uint64_t(method_->warmupIterations());
     for (std::uint64_t i = 0; i < warmups; ++i) {
         const auto number = std::uint32_t(block * warmups + i);
-        const Iteration iteration{number, *method_, freeze(number), {}, statistics, cancel};
+        const Iteration iteration = begin(number, {}, statistics, cancel);
         if (!lightPass_.run(iteration, poolAlone(StreamKind::Warmup), pool_)) return false;
         IterationContext context =
             contextFor(std::uint32_t(block * setup_.settings.blockIterations) + number, statistics);
@@ -58,7 +94,7 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
                              const std::atomic<bool>& cancel, IterationStatistics& statistics) {
     std::fill(pixels.begin(), pixels.end(), Rgb{});
     const Techniques& techniques = setup_.techniques;
-    const Iteration iteration{number, *method_, freeze(number), pixels, statistics, cancel};
+    const Iteration iteration = begin(number, pixels, statistics, cancel);
     IterationContext context = contextFor(generationOf(number), statistics);
     {
         PhaseTimer timer(statistics, "light paths");
@@ -77,7 +113,9 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
         PhaseTimer timer(statistics, "prepare");
         method_->prepare(pool_, context);
     }
-    if (techniques.hits || techniques.connects) {
+    findPhotons(iteration);
+    const bool merges = iteration.counts.merges != Merges::Nowhere;
+    if (techniques.hits || techniques.connects || merges) {
         PhaseTimer timer(statistics, "eye paths");
         if (!eyePass_.run(iteration)) return false;
     }
@@ -93,10 +131,9 @@ BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t number, i
                                                          const PathObserver& observer) {
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
-    const Iteration iteration{number, *method_, freeze(number), {}, ignored, never};
-    if (method_->pool().subpaths > 0) {
-        lightPass_.run(iteration, poolAlone(StreamKind::LightPath), pool_);
-    }
+    const Iteration iteration = begin(number, {}, ignored, never);
+    if (pooledSubpaths() > 0) lightPass_.run(iteration, poolAlone(StreamKind::LightPath), pool_);
+    findPhotons(iteration);
     IterationContext context = contextFor(generationOf(number), ignored);
     method_->prepare(pool_, context);
     TaskResult result;
@@ -112,7 +149,7 @@ BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t number,
                                                            const PathObserver& observer) {
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
-    const Iteration iteration{number, *method_, freeze(number), {}, ignored, never};
+    const Iteration iteration = begin(number, {}, ignored, never);
     TaskResult result;
     Worker& worker = workers_.own();
     const PathObserver before = delivery_.setObserver(observer);

@@ -1,8 +1,9 @@
-// The one integrator: light paths -> pool -> eye paths -> connections -> weights -> film. It knows
+// The one integrator: light paths -> pool -> eye paths -> connections, merges -> weights -> film. It knows
 // no method by name.
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "libcore/bidir/delivery.h"
@@ -50,7 +51,12 @@ class BidirIntegrator {
     const LightPool& pool() const { return pool_; }
 
   private:
-    TechniqueCounts freeze(std::uint32_t iteration);
+    Iteration begin(std::uint32_t number, std::span<Rgb> pixels, IterationStatistics& statistics,
+                    const std::atomic<bool>& cancel);
+    TechniqueCounts freeze(std::uint32_t iteration, double mergeRadius);
+    double radiusOf(std::uint32_t iteration);
+    std::uint64_t pooledSubpaths() const;
+    void findPhotons(const Iteration& iteration);
     IterationContext contextFor(std::uint32_t generation, IterationStatistics& statistics) const;
     std::uint32_t generationOf(std::uint32_t iteration) const;
     LightPass::Purpose poolAlone(StreamKind stream) const;
@@ -60,8 +66,10 @@ class BidirIntegrator {
     Workers workers_;
     Delivery delivery_{setup_};
     LightPass lightPass_{setup_, delivery_, workers_};
-    EyePass eyePass_{setup_, lightPass_, delivery_, workers_};
     LightPool pool_;
+    PhotonGrid photons_;
+    EyePass eyePass_{setup_, lightPass_, pool_, photons_, delivery_, workers_};
+    std::optional<double> footprint_;  // once a radius comes from it
 };
 
 }  // namespace lacuna

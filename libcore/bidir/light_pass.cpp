@@ -10,7 +10,7 @@ constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of s
 }  // namespace
 
 bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const {
-    pool.reset(purpose.pooled);
+    pool.reset(purpose.pooled, iteration.counts.merges);
     const std::uint64_t total = std::max(purpose.pooled, purpose.splats);
     for (std::uint64_t begin = 0; begin < total; begin += kPathsPerBatch) {
         const std::uint64_t end = std::min(total, begin + kPathsPerBatch);
@@ -23,7 +23,7 @@ bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPoo
             const std::uint64_t last = std::min(end, first + kPathsPerTask);
             std::vector<std::uint64_t> together;
             for (std::uint64_t i = first; i < last; ++i) {
-                if (!tracedByItsPixel(i)) together.push_back(i);
+                if (!tracedByItsPixel(i, purpose)) together.push_back(i);
                 if (together.size() < kTile && i + 1 < last) continue;
                 trace(together, iteration, purpose, worker, results[task]);
                 together.clear();
@@ -31,7 +31,9 @@ bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPoo
         });
         if (iteration.cancel) return false;
 
-        for (const TaskResult& r : results) pool.add(r.pooled, setup_.settings.limits.maxDepth);
+        for (const TaskResult& r : results) {
+            pool.add(r.pooled, setup_.settings.limits.maxDepth, r.pooledLengths);
+        }
         delivery_.collect(results, iteration.statistics);
         delivery_.addSplats(results, iteration);
     }
@@ -39,8 +41,9 @@ bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPoo
 }
 
 /// Where pixels trace light subpaths of their own, those of the crop are left to the eye pass.
-bool LightPass::tracedByItsPixel(std::uint64_t number) const {
+bool LightPass::tracedByItsPixel(std::uint64_t number, const Purpose& purpose) const {
     if (!setup_.techniques.ownLightPath || number >= setup_.filmPixels()) return false;
+    if (number < purpose.pooled) return false;
     const auto width = std::uint64_t(setup_.camera.film().width);
     return setup_.settings.crop.contains(int(number % width), int(number / width));
 }
@@ -65,6 +68,9 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
         const bool kept = pooled || setup_.techniques.ownLightPath;
         if (kept) iteration.counts.labelWalk(path);
         if (pooled) result.pooled.insert(result.pooled.end(), path.begin(), path.end());
+        if (pooled && setup_.techniques.ownLightPath) {
+            result.pooledLengths.push_back(std::uint8_t(path.size()));
+        }
         result.clock.lapOfWalks(kLightWalks);
         if (numbers[i] < purpose.splats) {
             splat(path, kept, numbers[i], worker.rngs[i], iteration, worker, result);

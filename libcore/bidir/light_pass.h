@@ -23,7 +23,7 @@ class LightPass {
     };
 
     /// Replaces the pool, and splats into the iteration's pixels; leaves out the subpaths that
-    /// pixels trace for themselves. False if cancelled.
+    /// pixels trace for themselves (those that are pooled they take from there). False if cancelled.
     bool run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const;
 
     /// Traces subpaths into worker.light, at most kTile of them, labels them where they are kept,
@@ -32,7 +32,7 @@ class LightPass {
                const Purpose& purpose, Worker& worker, TaskResult& result) const;
 
   private:
-    bool tracedByItsPixel(std::uint64_t number) const;
+    bool tracedByItsPixel(std::uint64_t number, const Purpose& purpose) const;
     void splat(std::span<PathVertex> path, bool labelled, std::uint64_t number, Rng& rng,
                const Iteration& iteration, Worker& worker, TaskResult& result) const;
 

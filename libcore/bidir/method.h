@@ -6,6 +6,8 @@
 // A Method lives for a block of iterations (theory.md, "Blocks") and owns what it learns in it. Per
 // iteration:
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
+//
+// Merging needs nothing but to be asked for (merging()): the integrator does it.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,7 @@
 #include "libcore/bidir/asset_set.h"
 #include "libcore/bidir/density.h"
 #include "libcore/bidir/light_sampler.h"
+#include "libcore/bidir/merging.h"
 #include "libcore/bidir/path_space.h"
 #include "libcore/bidir/pool.h"
 
@@ -86,6 +89,9 @@ class Method {
     /// Iterations to run and throw away before the first one of a block that counts.
     virtual int warmupIterations() const { return 0; }
     virtual PoolRequest pool() const { return {}; }
+    /// Which paths are merged with the vertices of the pool, its M subpaths; fixed for the render.
+    /// Wherever it is not Nowhere the picture is consistent, not unbiased.
+    virtual Merging merging() const { return {}; }
 
     /// What the weights believe in the coming iteration: may depend on earlier iterations alone.
     /// Valid until the next call.

@@ -62,20 +62,31 @@ double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t
 
 namespace {
 
-/// The balance heuristic, with n r of each strategy by `countOf`.
-template <class CountOf>
-double sweep(const FullPath& path, const TechniqueCounts& counts, int t, const CountOf& countOf) {
+/// The balance heuristic, with n r of each strategy by `countOf`, and with merges or without any.
+template <bool kMerges, class CountOf>
+double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made,
+             const CountOf& countOf) {
     const int k = path.edges;
-    const double own = countOf(t);
-    if (own <= 0.0) return 0.0;
-    double sum = own;
-
-    // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0.
+    // Ratios are to p_t. A merge at x_i is measured by the strategy whose light part ends with x_i.
+    const int t = made.merges ? made.t - 1 : made.t;
     const int rouletteDepth = counts.rouletteDepth;
+    const auto lightPdf = [&](int i) {
+        return path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth);
+    };
+    const auto eyePdf = [&](int i) { return path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth); };
+    const double ofStrategy = countOf(t);
+    const double own =
+        made.merges ? mergedSamples(path, counts, k - t) * eyePdf(k - t) : ofStrategy;
+    if (own <= 0.0) return 0.0;
+    double sum = ofStrategy;
+
+    // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0. Where it takes over a vertex
+    // that light still makes, the two are merged.
     double ratio = 1.0;
     for (int i = k - t; i >= 0; --i) {
-        ratio *= path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth) /
-                 (path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth));
+        const double eye = eyePdf(i);
+        if (kMerges && i > 0) sum += ratio * eye * mergedSamples(path, counts, i);
+        ratio *= eye / lightPdf(i);
         if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
         sum += ratio * countOf(k - i + 1);
     }
@@ -83,23 +94,31 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, int t, const C
     const int last = counts.onlyDirect() ? 0 : k - 1;
     ratio = 1.0;
     for (int i = k - t + 1; i <= last; ++i) {
-        ratio *= path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth) /
-                 (path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth));
+        const double light = lightPdf(i);
+        if (kMerges && i > 0) sum += ratio * light * mergedSamples(path, counts, i);
+        ratio *= light / eyePdf(i);
         if (!(ratio > 0.0)) break;
         sum += ratio * countOf(k - i);
     }
     return own / sum;
 }
 
+template <class CountOf>
+double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique made,
+                const CountOf& countOf) {
+    return counts.merges == Merges::Nowhere ? sweep<false>(path, counts, made, countOf)
+                                            : sweep<true>(path, counts, made, countOf);
+}
+
 }  // namespace
 
-double misWeight(FullPath& path, const TechniqueCounts& counts, int t) {
+double misWeight(FullPath& path, const TechniqueCounts& counts, Technique made) {
     if (!counts.connections || counts.constants) {
-        return sweep(path, counts, t, CountsByKind(path, counts));
+        return weightBy(path, counts, made, CountsByKind(path, counts));
     }
     path.fillLightThroughputs(counts.rouletteDepth);
-    return sweep(path, counts, t,
-                 [&](int strategy) { return effectiveCount(path, counts, strategy); });
+    return weightBy(path, counts, made,
+                    [&](int strategy) { return effectiveCount(path, counts, strategy); });
 }
 
 }  // namespace lacuna

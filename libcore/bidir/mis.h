@@ -6,7 +6,8 @@
 // Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k
 // + 1. Neighbouring strategies differ in one vertex:  p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so
 // the sum is a sweep of ratios in double, and products of densities, which leave a float's range
-// within ten vertices, never occur.
+// within ten vertices, never occur. A merge at x_i is strategy t = k - i with one vertex more from the
+// eye, so it stands beside it in the sweep.
 #pragma once
 
 #include <optional>
@@ -16,6 +17,17 @@
 #include "libcore/bidir/light_sampler.h"
 
 namespace lacuna {
+
+/// What made a path: the strategy t, or a merge of light's last vertex with that of t from the eye.
+struct Technique {
+    int t;
+    bool merges = false;
+
+    Technique(int t_, bool merges_ = false) : t(t_), merges(merges_) {}
+    /// s: the first vertex of the eye's part (merges: the one that both walks have).
+    int firstOfEye(int edges) const { return edges + 1 - t; }
+    bool operator==(const Technique&) const = default;
+};
 
 /// How many samples each technique has, as seen from every other one: fixed for an iteration.
 struct TechniqueCounts {
@@ -27,11 +39,16 @@ struct TechniqueCounts {
     bool labels = false;  ///< connections->keepsLabels(), likewise
     /// What s = 1 counts times seenSamples of; null: s = 1 draws y_0 as light walks do.
     const LightSampler* seen = nullptr;
+    Merges merges = Merges::Nowhere;  ///< where paths are merged
+    /// Of a merge where there is one: n_m pi R^2, light subpaths times the area around an eye vertex
+    /// in which photons count. Times the densities of both walks at x_i it counts like n r.
+    double mergeSamples = 0;
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
     /// Whether there are none but s = 0 and s = 1.
     bool onlyDirect() const {
-        return splats == 0.0 && (!connections || (constants && constants->indirect == 0.0));
+        return splats == 0.0 && merges == Merges::Nowhere &&
+               (!connections || (constants && constants->indirect == 0.0));
     }
 
     void connectThrough(const ConnectionDensity& density, const LightSampler& lights) {
@@ -57,8 +74,13 @@ struct TechniqueCounts {
 /// density has no constants.
 double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t);
 
-/// Weight of the strategy t that made the path (1 <= t <= edges + 1), in [0, 1]. O(k). Fills
-/// path.beta where the density asks for it.
-double misWeight(FullPath& path, const TechniqueCounts& counts, int t);
+/// n_m pi R^2 of the merge at x_i, 0 < i < edges; zero where it does not exist.
+inline double mergedSamples(const FullPath& path, const TechniqueCounts& counts, int i) {
+    return path.mergesAt(i, counts.merges) ? counts.mergeSamples : 0.0;
+}
+
+/// Weight of the technique that made the path (1 <= t <= edges + 1; merges: 2 <= t <= edges), in
+/// [0, 1]. O(k). Fills path.beta where the density asks for it.
+double misWeight(FullPath& path, const TechniqueCounts& counts, Technique made);
 
 }  // namespace lacuna

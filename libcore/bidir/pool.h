@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "libcore/bidir/merging.h"
 #include "libcore/bidir/path.h"
 
 namespace lacuna {
@@ -12,6 +13,7 @@ namespace lacuna {
 /// Light subpaths that a method wants of an iteration.
 struct PoolRequest {
     std::uint64_t subpaths = 0;  ///< M: stored for selection; 0: no pool
+    bool perPixel = false;       ///< M is the number of the full film's pixels instead
 };
 
 /// The light vertices of this iteration's M subpaths. A subpath's vertices are contiguous, so the
@@ -23,16 +25,30 @@ class LightPool {
         std::uint32_t vertex, count;
     };
 
-    /// Empties the pool for `subpaths` new ones.
-    void reset(std::uint64_t subpaths) {
+    /// Empties the pool for `subpaths` new ones, whose photons are those of rows that merge there.
+    void reset(std::uint64_t subpaths, Merges merges = Merges::Nowhere) {
         vertices_.clear();
         connectable_.clear();
+        begins_.clear();
+        photons_.clear();
         subpaths_ = subpaths;
+        merges_ = merges;
     }
     /// Whole subpaths, one after the other. With maxDepth edges, y_{s-1} can be connected while
-    /// s + t - 1 <= maxDepth for t = 2.
-    void add(std::span<const PathVertex> vertices, int maxDepth) {
+    /// s + t - 1 <= maxDepth for t = 2. `lengths`: of all of them, those without a vertex included,
+    /// where subpath() is to find them.
+    void add(std::span<const PathVertex> vertices, int maxDepth,
+             std::span<const std::uint8_t> lengths = {}) {
+        std::size_t begin = vertices_.size();
+        for (const std::uint8_t length : lengths) {
+            begins_.push_back(begin);
+            begin += length;
+        }
         for (const PathVertex& v : vertices) {
+            if (merges_ != Merges::Nowhere &&
+                isPhoton({&v - v.index, v.index + std::size_t(1)}, merges_)) {
+                photons_.push_back(std::uint32_t(vertices_.size()));
+            }
             if (int(v.index) <= maxDepth - 2 && v.connectable()) {
                 connectable_.push_back({std::uint32_t(vertices_.size()), v.index + 1u});
             }
@@ -44,6 +60,22 @@ class LightPool {
     std::uint64_t subpaths() const { return subpaths_; }
     std::span<const PathVertex> vertices() const { return vertices_; }
     std::span<const Entry> connectable() const { return connectable_; }
+    /// Indices of the vertices that may be merged with.
+    std::span<const std::uint32_t> photons() const { return photons_; }
+    /// Whether subpath() may be asked.
+    bool findsSubpaths() const { return !begins_.empty(); }
+    /// The number-th that was added.
+    Subpath subpath(std::size_t number) const {
+        const std::size_t begin = begins_[number];
+        const std::size_t end =
+            number + 1 < begins_.size() ? begins_[number + 1] : vertices_.size();
+        return {vertices_.data() + begin, end - begin};
+    }
+    /// y_0 .. of vertices()[vertex], which ends it.
+    Subpath prefixOf(std::uint32_t vertex) const {
+        const PathVertex* last = vertices_.data() + vertex;
+        return {last - last->index, last->index + std::size_t(1)};
+    }
 
     /// y_0 .. y_{s-1}. Asks the cache for the last vertex: it will be looked at soon, and lies
     /// anywhere in some hundred megabytes.
@@ -56,7 +88,10 @@ class LightPool {
   private:
     std::vector<PathVertex> vertices_;
     std::vector<Entry> connectable_;
+    std::vector<std::size_t> begins_;  // of subpaths in vertices_, where lengths were given
+    std::vector<std::uint32_t> photons_;
     std::uint64_t subpaths_ = 0;
+    Merges merges_ = Merges::Nowhere;
 };
 
 }  // namespace lacuna

@@ -72,6 +72,7 @@ struct Iteration {
     std::uint32_t number;
     const Method& method;
     TechniqueCounts counts;  ///< frozen for it
+    double mergeRadius;      ///< R; 0 where nothing is merged
     std::span<Rgb> pixels;   ///< of the crop: what it adds up; none in a warm-up
     IterationStatistics& statistics;
     const std::atomic<bool>& cancel;

@@ -28,6 +28,7 @@ struct TaskResult {
     std::vector<TechniqueSample> techniqueSplats;  // where --techniques asks for them
     TechniqueClock clock;                          // likewise
     std::vector<PathVertex> pooled;                // vertices of the subpaths that go into the pool
+    std::vector<std::uint8_t> pooledLengths;       // of each subpath, where pixels look for theirs
     RayTally tally;
     std::vector<RecordedRay> rays;
     std::uint64_t invalidSamples = 0;
@@ -50,6 +51,7 @@ struct Worker {
     std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}
     std::vector<OpenConnection> open;       // of the proposals, those that are seen
     std::vector<const Proposal*> openedBy;  // by open connection
+    std::vector<std::uint32_t> photons;     // around an eye vertex: vertices of the pool
     FullPath fullPath;
 };
 

@@ -14,11 +14,12 @@ bool isZero(float value) {
     return value == 0.0f;
 }
 
-/// visit(s, t) for all techniques of paths of up to `maxDepth` edges.
+/// visit(s, t, merged) for all techniques of paths of up to `maxDepth` edges.
 template <class Visit>
 void forEachTechnique(int maxDepth, const Visit& visit) {
     for (int k = 1; k <= maxDepth; ++k) {
-        for (int s = 0; s <= k; ++s) visit(s, k + 1 - s);
+        for (int s = 0; s <= k; ++s) visit(s, k + 1 - s, false);
+        for (int i = 1; i < k; ++i) visit(i, k + 1 - i, true);
     }
 }
 
@@ -28,23 +29,25 @@ bool TechniqueFilm::Moments::isZero() const {
     return std::ranges::all_of(now, lacuna::isZero) && std::ranges::all_of(sum, lacuna::isZero);
 }
 
-TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations)
+TechniqueFilm::TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations,
+                             bool merges)
     : width_(width), height_(height), maxDepth_(maxDepth), sampleIterations_(sampleIterations) {
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
     techniques_.assign(indexOf(0, maxDepth + 1) + std::size_t(maxDepth) + 1, Technique(pixels));
+    if (merges) merges_ = techniques_;
     groups_.assign(TechniqueGroup::kCount, Moments(pixels));
 }
 
-std::string TechniqueFilm::layerName(int s, int t) {
+std::string TechniqueFilm::layerName(int s, int t, bool merged) {
     char name[32];
-    std::snprintf(name, sizeof name, "s%02dt%02d", s, t);
+    std::snprintf(name, sizeof name, "%c%02dt%02d", merged ? 'm' : 's', s, t);
     return name;
 }
 
 std::vector<std::string> TechniqueFilm::channelNames(int maxDepth) {
     std::vector<std::string> names;
-    forEachTechnique(maxDepth, [&](int s, int t) {
-        const std::string name = layerName(s, t);
+    forEachTechnique(maxDepth, [&](int s, int t, bool merged) {
+        const std::string name = layerName(s, t, merged);
         for (const char* channel : {".R", ".G", ".B"}) {
             names.push_back(kWeighted + name + channel);
             names.push_back(kUnweighted + name + channel);
@@ -67,18 +70,22 @@ std::size_t TechniqueFilm::indexOf(int s, int t) const {
 }
 
 void TechniqueFilm::add(const TechniqueSample& sample) {
-    Technique& technique = techniques_[indexOf(sample.s, sample.t)];
+    Technique& technique = (sample.merged ? merges_ : techniques_)[indexOf(sample.s, sample.t)];
     technique.weighted[sample.pixel] += sample.weighted;
     technique.unweighted[sample.pixel] += sample.unweighted;
     const float value = lacuna::mean(sample.weighted);
     technique.moments.now[sample.pixel] += value;
-    const TechniqueGroup group = TechniqueGroup::of(sample.s, sample.t, sample.order);
+    const TechniqueGroup group = sample.merged
+                                     ? TechniqueGroup::ofMerge(sample.order)
+                                     : TechniqueGroup::of(sample.s, sample.t, sample.order);
     groups_[group.index()].now[sample.pixel] += value;
 }
 
 template <class Visit>
 void TechniqueFilm::forEachMoments(const Visit& visit) {
-    for (Technique& technique : techniques_) visit(technique.moments);
+    for (auto* all : {&techniques_, &merges_}) {
+        for (Technique& technique : *all) visit(technique.moments);
+    }
     for (Moments& group : groups_) visit(group);
 }
 
@@ -124,10 +131,11 @@ std::vector<float> TechniqueFilm::meanSquareOf(const Moments& moments) const {
 
 Layers TechniqueFilm::means() const {
     LayeredImage image(width_, height_);
-    forEachTechnique(maxDepth_, [&](int s, int t) {
-        const Technique& technique = techniques_[indexOf(s, t)];
+    forEachTechnique(maxDepth_, [&](int s, int t, bool merged) {
+        if (merged && merges_.empty()) return;
+        const Technique& technique = (merged ? merges_ : techniques_)[indexOf(s, t)];
         if (std::ranges::all_of(technique.unweighted, isBlack)) return;
-        const std::string name = layerName(s, t);
+        const std::string name = layerName(s, t, merged);
         image.setRgb(kWeighted + name, mean(technique.weighted));
         image.setRgb(kUnweighted + name, mean(technique.unweighted));
         image.channel(kSquare + name) = meanSquareOf(technique.moments);
@@ -142,9 +150,11 @@ Layers TechniqueFilm::means() const {
 }
 
 void TechniqueFilm::clear() {
-    for (Technique& technique : techniques_) {
-        std::ranges::fill(technique.weighted, Rgb{});
-        std::ranges::fill(technique.unweighted, Rgb{});
+    for (auto* all : {&techniques_, &merges_}) {
+        for (Technique& technique : *all) {
+            std::ranges::fill(technique.weighted, Rgb{});
+            std::ranges::fill(technique.unweighted, Rgb{});
+        }
     }
     forEachMoments([](Moments& m) {
         for (auto* plane : {&m.now, &m.sum, &m.squares}) std::ranges::fill(*plane, 0.0f);

@@ -15,20 +15,24 @@ struct TechniqueSample {
     int s, t, order;  ///< Connection::order of the eye's end; t = 1 has none
     std::uint32_t pixel;
     Rgb weighted, unweighted;
+    bool merged = false;  ///< at x_s, the last of t vertices from the eye
 };
 
 /// Summed over a block's iterations: --techniques.
 ///
-/// Layers, of techniques that contributed: weighted.sSStTT and unweighted.sSStTT; weighted.GROUP by
+/// Layers, of techniques that contributed: weighted.sSStTT and unweighted.sSStTT, of merges at x_i
+/// with the last of t vertices from the eye weighted.mIItTT likewise; weighted.GROUP by
 /// group of techniques, the mean of the channels; and for both square.NAME, the mean square of the
 /// mean of the channels over independent samples, which variances are made of.
 class TechniqueFilm final : public BlockLayers {
   public:
     /// `sampleIterations`: BlockPlan's.
-    TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations = 1);
+    /// With layers for merges where the row has any.
+    TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations = 1,
+                  bool merges = false);
 
-    /// "s02t03"
-    static std::string layerName(int s, int t);
+    /// "s02t03", "m02t03"
+    static std::string layerName(int s, int t, bool merged = false);
     /// Of all channels that a film of this depth may come to have in an image (setVariances).
     static std::vector<std::string> channelNames(int maxDepth);
     /// Different pixels may be added to at the same time.
@@ -36,8 +40,12 @@ class TechniqueFilm final : public BlockLayers {
     void countIteration();
     Layers means() const override;
     void clear() override;
-    Image weighted(int s, int t) const { return mean(techniques_[indexOf(s, t)].weighted); }
-    Image unweighted(int s, int t) const { return mean(techniques_[indexOf(s, t)].unweighted); }
+    Image weighted(int s, int t, bool merged = false) const {
+        return mean((merged ? merges_ : techniques_)[indexOf(s, t)].weighted);
+    }
+    Image unweighted(int s, int t, bool merged = false) const {
+        return mean((merged ? merges_ : techniques_)[indexOf(s, t)].unweighted);
+    }
 
   private:
     /// Of a value per pixel: its sum over the sample under way, and over those before sums of it and
@@ -65,6 +73,7 @@ class TechniqueFilm final : public BlockLayers {
     std::uint64_t sampleIterations_;
     std::uint64_t iterations_ = 0, inSample_ = 0;
     std::vector<Technique> techniques_;
+    std::vector<Technique> merges_;  // none where the row has none
     std::vector<Moments> groups_;
 };
 

@@ -12,13 +12,14 @@ enum class TechniqueKind : std::uint8_t {
     Hits,         ///< s = 0
     Direct,       ///< s = 1, t >= 2: next event, or a pick of a light's own point
     Connections,  ///< s >= 2, t >= 2
+    Merges,       ///< with photons
 };
 
 /// A kind and, but for splats, the order of the eye subpath's last vertex before the connection or
-/// the light that was hit (Connection::order); the last of kOrders stands for all that follow.
+/// the light that was hit, or of the merged one (Connection::order); the last of kOrders stands for all that follow.
 struct TechniqueGroup {
     static constexpr int kOrders = 3;
-    static constexpr std::size_t kCount = 1 + 3 * std::size_t(kOrders);
+    static constexpr std::size_t kCount = 1 + 4 * std::size_t(kOrders);
 
     TechniqueKind kind = TechniqueKind::Splats;
     int order = 1;
@@ -29,6 +30,9 @@ struct TechniqueGroup {
                                    : s == 1 ? TechniqueKind::Direct
                                             : TechniqueKind::Connections;
         return {kind, std::min(order, kOrders)};
+    }
+    static TechniqueGroup ofMerge(int order) {
+        return {TechniqueKind::Merges, std::min(order, kOrders)};
     }
     /// Splats first.
     static TechniqueGroup at(std::size_t index) {
@@ -41,7 +45,7 @@ struct TechniqueGroup {
         return (std::size_t(kind) - 1) * kOrders + std::size_t(order);
     }
     const char* kindName() const {
-        constexpr const char* kNames[] = {"splats", "hits", "direct", "connections"};
+        constexpr const char* kNames[] = {"splats", "hits", "direct", "connections", "merges"};
         return kNames[std::size_t(kind)];
     }
     /// Of its layers: "splats", "direct2".

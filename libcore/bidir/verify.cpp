@@ -18,16 +18,18 @@ double logOf(double density) {
     return density == 0.0 ? kNever : std::log(density);
 }
 
-/// One full path seen afresh. Vertices by x_0 (light) .. x_k (lens); `made` is the strategy that
+/// One full path seen afresh. Vertices by x_0 (light) .. x_k (lens); `made` is the technique that
 /// the path came from.
 class Products {
   public:
-    Products(const Walker& walker, const FullPath& path, const TechniqueCounts& counts, int made)
+    Products(const Walker& walker, const FullPath& path, const TechniqueCounts& counts,
+             Technique made)
         : walker_(walker),
           path_(path),
           counts_(counts),
           k_(path.edges),
-          split_(path.edges + 1 - made),
+          made_(made),
+          split_(made.firstOfEye(path.edges)),
           lights_(walker.lights()),
           source_(lightPointOf(lights_, *path.vertex[0])) {
         for (int i = 0; i < k_; ++i) setEdge(i);
@@ -38,25 +40,31 @@ class Products {
         if (counts_.connections && !counts_.connections->constants()) setThroughputs();
     }
 
-    double weight(int t) const {
-        const double own = logTerm(t);
+    double weight() const {
+        const double own = made_.merges ? logMerge(split_) : logTerm(made_.t);
         if (own == kNever) return 0.0;
         double sum = 0.0;
         for (int i = 1; i <= k_ + 1; ++i) sum += std::exp(logTerm(i) - own);
+        for (int i = 1; i < k_; ++i) sum += std::exp(logMerge(i) - own);
         return 1.0 / sum;
     }
 
   private:
     const PathVertex& x(int i) const { return *path_.vertex[std::size_t(i)]; }
+    /// x_{i+1} as an edge from x_i ends there: a merged vertex has two places, that of the light's
+    /// walk (the photon) and that of the eye's, where all other things are asked.
+    const PathVertex& endOfEdge(int i) const {
+        return made_.merges && i + 1 == split_ ? *path_.photon : x(i + 1);
+    }
     /// Towards the lens, from x_i to x_{i+1}.
     Vec3 towardsLens(int i) const { return direction_[std::size_t(i)]; }
 
     /// Edge x_i -> x_{i+1}: its direction as the walk that made it had it, and the factors that
     /// turn a density per solid angle at one end into the measure of the other.
     void setEdge(int i) {
-        const PathVertex &a = x(i), &b = x(i + 1);
+        const PathVertex &a = x(i), &b = endOfEdge(i);
         const auto e = std::size_t(i);
-        if (i + 1 < split_) {
+        if (i + 1 < split_ + int(made_.merges)) {
             direction_[e] = -b.toPrevious;  // light walk: b's previous is a
         } else if (i >= split_) {
             direction_[e] = a.toPrevious;  // eye walk: a's previous is b
@@ -80,7 +88,8 @@ class Products {
 
     /// p(x_0), p(x_1 | x_0).
     void setLightSource() {
-        const Lights::Emission emission = lights_.emission(source_, towardsLens(0), x(1).position);
+        const Lights::Emission emission =
+            lights_.emission(source_, towardsLens(0), endOfEdge(0).position);
         lightPdfA_[0] = double(source_.pdf);
         if (k_ > 1) lightPdfA_[1] = double(emission.pdfW) * toLens_[0];
         scatter_[0] = Rgb(emission.profile);
@@ -88,10 +97,10 @@ class Products {
     }
 
     /// At x_i: what the eye's walk has for x_{i-1} and the light's for x_{i+1}. The connection's
-    /// two ends scatter smoothly; every other vertex did what its walk says.
+    /// two ends, or the merged vertex, scatter smoothly; every other one did what its walk says.
     void setScatter(int i) {
         const auto v = std::size_t(i);
-        const bool end = i == split_ - 1 || i == split_;
+        const bool end = i == split_ || (i == split_ - 1 && !made_.merges);
         event_[v] = end ? ScatterEvent::Smooth : x(i).event;
         BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
         if (const WalkGuide* guide = walker_.guide(); guide && x(i).connectable()) {
@@ -146,16 +155,23 @@ class Products {
             const double pdf = lightPdfA_[v] * lightRoulette(i);
             beta_[v] =
                 pdf > 0.0 ? beta_[v - 1] * scatter_[v - 1] * float(geometry_[v - 1] / pdf) : Rgb{};
-            beta_[v] *=
-                transmittance(walker_.scene().absorption(), x(i - 1), towardsLens(i - 1), x(i));
+            beta_[v] *= transmittance(walker_.scene().absorption(), x(i - 1), towardsLens(i - 1),
+                                      endOfEdge(i - 1));
         }
+    }
+
+    bool smooth(int i) const { return !isDelta(event_[std::size_t(i)]); }
+    /// Connection::order of x_i.
+    int orderOf(int i) const {
+        int order = 1;
+        for (int j = i + 1; j < k_; ++j) order += smooth(j);
+        return order;
     }
 
     /// n_t r_t, from events and vertices.
     double count(int t) const {
         const int s = k_ + 1 - t;
         if (s == 0) return counts_.hit && isHittable(source_.kind) ? 1.0 : 0.0;
-        const auto smooth = [&](int i) { return !isDelta(event_[std::size_t(i)]); };
         if (s >= 2 && !smooth(s - 1)) return 0.0;
         if (t >= 2 && !smooth(s)) return 0.0;
         if (t == 1) {
@@ -168,14 +184,12 @@ class Products {
             return s == 1 ? c->direct * ofLamp : c->indirect;
         }
         const auto v = std::size_t(s);
-        int order = 1;
-        for (int i = s + 1; i < k_; ++i) order += smooth(i);
         return ofLamp * counts_.connections->effectiveSamples(
                             {.eye = {&x(s), &x(s + 1), t, scatter_[v]},
                              .light = {&x(s - 1), s >= 2 ? &x(s - 2) : nullptr, s, scatter_[v - 1]},
                              .beta = beta_[v - 1],
                              .geometry = geometry_[v - 1],
-                             .order = order});
+                             .order = orderOf(s)});
     }
 
     /// log(n_t r_t p_t).
@@ -191,6 +205,33 @@ class Products {
         return sum;
     }
 
+    /// log(n_m pi R^2 p) of the merge at x_i, which both walks make.
+    double logMerge(int i) const {
+        if (!merges(i)) return kNever;
+        double sum = logOf(counts_.mergeSamples);
+        for (int j = 0; j <= i; ++j) {
+            sum += logOf(lightPdfA_[std::size_t(j)]) + logOf(lightRoulette(j));
+        }
+        for (int j = i; j < k_; ++j) {
+            sum += logOf(eyePdfA_[std::size_t(j)]) + logOf(eyeRoulette(j));
+        }
+        return sum;
+    }
+    bool merges(int i) const {
+        if (!smooth(i)) return false;
+        switch (counts_.merges) {
+            case Merges::Nowhere:
+                return false;
+            case Merges::Everywhere:
+                return true;
+            case Merges::FirstFromEye:
+                return orderOf(i) == 1;
+            case Merges::BetweenDeltas:
+                return i > 1 && i < k_ - 1 && !smooth(i - 1) && !smooth(i + 1);
+        }
+        return false;
+    }
+
     template <class T>
     using PerVertex = std::array<T, std::size_t(kMaxEdges) + 1>;
 
@@ -198,7 +239,8 @@ class Products {
     const FullPath& path_;
     const TechniqueCounts& counts_;
     const int k_;
-    const int split_;  // x_0 .. x_{split-1} were made by the light's walk
+    const Technique made_;
+    const int split_;  // x_0 .. x_{split-1} were made by the light's walk; merges: x_split by both
     const Lights& lights_;
     const LightPoint source_;
     // By edge (that of x_i and x_{i+1}).
@@ -213,8 +255,8 @@ class Products {
 }  // namespace
 
 double misWeightByProducts(const Walker& walker, const FullPath& path,
-                           const TechniqueCounts& counts, int t) {
-    return Products(walker, path, counts, t).weight(t);
+                           const TechniqueCounts& counts, Technique made) {
+    return Products(walker, path, counts, made).weight();
 }
 
 WeightVerifier::WeightVerifier(const Walker& walker, const ThreadPool& pool)
@@ -232,7 +274,7 @@ bool WeightVerifier::Worst::worseThan(const Worst& other) const {
 void WeightVerifier::check(const PathEvent& event) {
     Slot& slot = slots_[std::size_t(pool_.workerIndex())];
     ++slot.paths;
-    const double again = misWeightByProducts(walker_, event.path, event.counts, event.t);
+    const double again = misWeightByProducts(walker_, event.path, event.counts, event.technique);
     double difference = std::fabs(again - event.weight);
     if (std::isnan(difference)) {
         ++slot.notNumbers;

@@ -15,11 +15,11 @@
 
 namespace lacuna {
 
-/// Weight of strategy t on this path, t being the strategy that made it (its connection's ends are
-/// where events are smooth and where the edge has no stored direction). May be NaN only where a
-/// density is.
+/// Weight of the technique that made this path (a connection's ends, or the merged vertex, are where
+/// events are smooth; the connection's edge has no stored direction). May be NaN only where a density
+/// is.
 double misWeightByProducts(const Walker& walker, const FullPath& path,
-                           const TechniqueCounts& counts, int t);
+                           const TechniqueCounts& counts, Technique made);
 
 /// Compares the weight of every path it is shown; called from many threads at once.
 class WeightVerifier {

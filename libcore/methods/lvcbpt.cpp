@@ -6,6 +6,7 @@
 //             from a warm-up that is thrown away, never from the pool that it weighs
 //   s = 1     from the pool (y_0 is stored), or from next event: then y_0 is in neither Y nor Vbar
 #include "libcore/methods/registry.h"
+#include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/picks.h"
 
 namespace lacuna {
@@ -17,6 +18,7 @@ struct Options {
     PickOptions picks = {.connections = 3};
     bool nextEvent = false;
     Lamps lamps = Lamps::Seen;
+    MergeOptions merging = {};
 };
 
 class LightVertexCache final : public Method {
@@ -26,10 +28,12 @@ class LightVertexCache final : public Method {
           picks_(options.picks.picks()),
           nextEvent_(options.nextEvent),
           lamps_(options.lamps),
+          merging_(options.merging.merging()),
           density_(picks_, nextEvent_, lamps_, 1.0) {}
 
     int warmupIterations() const override { return 1; }
     PoolRequest pool() const override { return {subpaths_}; }
+    Merging merging() const override { return merging_; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
         density_ = PicksDensity(picks_, nextEvent_, lamps_, double(subpaths_) / expected_.value());
@@ -65,6 +69,7 @@ class LightVertexCache final : public Method {
     Picks picks_;
     bool nextEvent_;
     Lamps lamps_;
+    Merging merging_;
     bool warm_ = false;
     ExpectedVertices expected_;
     PicksDensity density_;
@@ -79,6 +84,7 @@ MethodRow lvcbptRow() {
     table.integer("candidates", &Options::subpaths, 1, 1e8, "light subpaths", "in the pool, M");
     table.include("", &Options::picks, pickOptions(Options{}.picks));
     addNextEvent(table, &Options::nextEvent, &Options::lamps);
+    table.include("", &Options::merging, mergeOptions());
     return methodRow(
         {.name = "lvcbpt",
          .reference = "Davidovic14",

@@ -9,13 +9,14 @@ namespace lacuna {
 
 // Each is defined in the file that bears the method's name.
 MethodRow ptRow(), ltRow(), bptRow(), lvcbptRow(), pcbptRow(), risbptRow(), risbptCurrentRow(),
-    tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow();
+    tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow(), vcmRow(), ppmRow();
 
 std::span<const MethodRow> methods() {
     static const std::vector<MethodRow> rows = {
         ptRow(),    ltRow(),      bptRow(),           lvcbptRow(),
         pcbptRow(), risbptRow(),  risbptCurrentRow(), tsrbptRow(),
-        icbptRow(), skelbptRow(), spcbptRow(),        spcbptFifoRow()};
+        icbptRow(), skelbptRow(), spcbptRow(),        spcbptFifoRow(),
+        vcmRow(),   ppmRow()};
     return rows;
 }
 
@@ -99,6 +100,10 @@ Settings resolve(const MethodRow& row, std::span<const std::string> assignments,
     }
     all.insert(all.end(), assignments.begin(), assignments.end());
     return resolveOptions(row.options, all, "method " + row.name, title);
+}
+
+bool isConsistentOnly(const MethodRow& row, const Settings& settings) {
+    return row.create(settings)->merging().where != Merges::Nowhere;
 }
 
 std::uint64_t lightPathsOf(const Settings& settings) {

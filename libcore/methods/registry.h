@@ -67,6 +67,8 @@ const MethodRow& findMethod(const std::string& name, const std::string& title = 
 /// the option, its range and what was found; `title` ("--set ") stands before names.
 Settings resolve(const MethodRow& row, std::span<const std::string> assignments,
                  const std::string& title = {});
+/// Whether pictures with these settings are consistent but not unbiased, because they merge.
+bool isConsistentOnly(const MethodRow& row, const Settings& settings);
 /// L, the light subpaths per iteration that splat; 0: one per pixel, or none splat.
 std::uint64_t lightPathsOf(const Settings& settings);
 

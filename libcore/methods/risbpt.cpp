@@ -15,6 +15,7 @@ MethodRow risbptRow() {
     OptionTable<Options> table =
         awareResamplingOptions({.subpaths = 200, .weights = Options::Weights::Ris});
     addEarlierIterations(table, &Options::earlierIterations);
+    table.include("", &Options::merging, mergeOptions());
     table.choice<Options::Weights>(
         "weights", &Options::weights,
         {{"ris", Options::Weights::Ris}, {"plain", Options::Weights::Plain}},

@@ -35,6 +35,7 @@
 #include "libcore/base/alias_table.h"
 #include "libcore/base/parallel.h"
 #include "libcore/methods/registry.h"
+#include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/picks.h"
 #include "libcore/subspace/subspaces.h"
 #include "libcore/subspace/training_settings.h"
@@ -54,6 +55,7 @@ struct Options {
     Weights weights = Weights::Ris;
     std::uint64_t reuse = 0;  ///< M_0, 0: none
     bool queue = false;       ///< keep M_0 vertices, not whole iterations: biased
+    MergeOptions merging = {};
 };
 
 /// Subspaces made ready to draw from and to label with.
@@ -240,6 +242,7 @@ class SubspaceConnections final : public Method {
     }
     int warmupIterations() const override { return tables_.measured() ? 0 : 1; }
     PoolRequest pool() const override { return {options_.subpaths}; }
+    Merging merging() const override { return options_.merging.merging(); }
 
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
 
@@ -424,6 +427,7 @@ MethodRow spcbptRow() {
     OptionTable<Options> table = subspaceOptions({});
     table.integer("reuse", &Options::reuse, 0, 1e6, "light vertices",
                   "kept per subspace across iterations, M_0; 0: none");
+    table.include("", &Options::merging, mergeOptions());
     return subspaceRow("spcbpt",
                        "light vertices resampled in two stages, by trained subspaces of light "
                        "subpaths",

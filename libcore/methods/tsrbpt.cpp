@@ -32,6 +32,7 @@
 #include "libcore/resampling/cache_points.h"
 #include "libcore/resampling/cache_resampling.h"
 #include "libcore/resampling/light_tree.h"
+#include "libcore/resampling/merge_options.h"
 
 namespace lacuna {
 
@@ -58,6 +59,7 @@ struct Options {
     double eyeShare = 0.1;
     bool nextEvent = true;
     Lamps lamps = Lamps::Seen;
+    MergeOptions merging = {};
 };
 
 class TwoStageDensity final : public ConnectionDensity {
@@ -141,6 +143,7 @@ class TwoStageResampling final : public Method {
     // The first leaves cache points, the second finds their Q.
     int warmupIterations() const override { return 2; }
     PoolRequest pool() const override { return {options_.subpaths}; }
+    Merging merging() const override { return options_.merging.merging(); }
     bool learns() const override { return true; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {
@@ -387,6 +390,7 @@ MethodRow tsrbptRow() {
     addEarlierIterations(table, &Options::earlierIterations);
     addEyeShare(table, &Options::eyeShare);
     addNextEvent(table, &Options::nextEvent, &Options::lamps);
+    table.include("", &Options::merging, mergeOptions());
     return methodRow(
         {.name = "tsrbpt",
          .reference = "Nabata20b",

@@ -67,6 +67,7 @@ class CacheResampling final : public Method {
     // them.
     int warmupIterations() const override { return 2; }
     PoolRequest pool() const override { return {options_.subpaths}; }
+    Merging merging() const override { return options_.merging.merging(); }
     bool learns() const override { return true; }
 
     const ConnectionDensity& freeze(std::uint32_t) override {

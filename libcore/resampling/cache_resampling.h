@@ -20,6 +20,7 @@
 #include <memory>
 
 #include "libcore/resampling/cache_pmfs.h"
+#include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/picks.h"
 
 namespace lacuna {
@@ -34,6 +35,7 @@ struct CacheResamplingOptions {
     CacheTarget target = CacheTarget::Flow;
     bool nextEvent = true;
     Lamps lamps = Lamps::Seen;
+    MergeOptions merging = {};
     Weights weights = Weights::Plain;  ///< the rest is read where they are Ris
     int earlierIterations = 16;        ///< whose Q are averaged
     double clamp = 1e-3;

@@ -16,13 +16,15 @@ std::string layerOf(const std::string& channel) {
     return part ? channel.substr(0, dot) : channel;
 }
 
-/// "weighted.sSStTT" of "weighted.s02t03", "variance.GROUP" of "variance.hits1".
+/// "weighted.sSStTT" of "weighted.s02t03", "weighted.mIItTT" of "weighted.m02t03", "variance.GROUP" of "variance.hits1".
 std::string forMany(const std::string& layer) {
     const std::size_t dot = layer.rfind('.');
     if (dot == layer.npos) return layer;
     const std::string_view name = std::string_view(layer).substr(dot + 1);
-    const bool technique = name.size() == 6 && name[0] == 's' && name[3] == 't';
-    if (technique) return layer.substr(0, dot) + ".sSStTT";
+    if (name.size() == 6 && name[3] == 't') {
+        if (name[0] == 's') return layer.substr(0, dot) + ".sSStTT";
+        if (name[0] == 'm') return layer.substr(0, dot) + ".mIItTT";
+    }
     for (std::size_t i = 0; i < TechniqueGroup::kCount; ++i) {
         if (name == TechniqueGroup::at(i).name()) return layer.substr(0, dot) + ".GROUP";
     }

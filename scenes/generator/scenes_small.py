@@ -5,8 +5,8 @@ from __future__ import annotations
 from . import materials as m
 from .building import SUNK
 from .glb import SceneFile
-from .mesh import band_ring, box, box_at, flat_shaded, merged, quad, sphere
-from .vector import about, about_y, about_z, towards
+from .mesh import band_ring, box, box_at, flat_shaded, merged, quad, sphere, torus
+from .vector import about, about_x, about_y, about_z, towards
 
 
 def cornell_box() -> SceneFile:
@@ -57,6 +57,22 @@ def ring_caustic() -> SceneFile:
     s.add("ball", sphere(0.22, 32, 64), glass, at=(0.52, 0.2205, 0.12))
     s.add("light", quad((-0.03, 0.0, -0.03), (0.06, 0, 0), (0, 0, 0.06)), lamp, at=(1.5, 1.5, -0.9), turned=about_z(-42))
     s.camera((0.12, 1.15, 1.75), (0.05, 0.08, 0.0), 38.0)
+    return s
+
+
+def torus_in_glass() -> SceneFile:
+    """The torus floats inside the block, so that no edge of L S D S E has an end that light or lens can be joined to. A
+    sun cannot be hit either: no path of bpt shows the torus lit directly."""
+    s = SceneFile("torus-in-glass", "Diffuse torus inside a block of smooth glass under a small sun", 480, 360)
+    floor = s.material(m.lambert("floor", (0.62, 0.60, 0.56)))
+    red = s.material(m.lambert("red", (0.75, 0.28, 0.16)))
+    glass = s.material(m.glass("glass"))
+    s.add("floor", quad((-3, 0, 3), (6, 0, 0), (0, 0, -6)), floor)
+    s.add("back wall", quad((-3, -SUNK, -1.5), (6, 0, 0), (0, 3, 0)), floor)
+    s.add("block", box((-0.45, -0.3, -0.45), (0.45, 0.3, 0.45)), glass, at=(0.0, 0.3005, 0.0), turned=about_y(24))
+    s.add("torus", torus(0.2, 0.075, 24, 12), red, at=(0.0, 0.31, 0.0), turned=about_x(62))
+    s.light("sun", "directional", 3.0, (1.0, 0.95, 0.85), turned=towards((-0.55, -1.0, -0.45)))
+    s.camera((0.5, 1.25, 2.3), (0.0, 0.26, 0.0), 32.0)
     return s
 
 
@@ -137,5 +153,5 @@ def light_mesh_instanced() -> SceneFile:
     return s
 
 
-SCENES = [cornell_box, furnace, ring_caustic, light_quad, light_sphere, light_two_sided, light_point, light_spot,
+SCENES = [cornell_box, furnace, ring_caustic, torus_in_glass, light_quad, light_sphere, light_two_sided, light_point, light_spot,
           light_directional, light_environment, light_mesh_instanced]

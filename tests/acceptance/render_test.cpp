@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "libcore/base/number_text.h"
 #include "tests/acceptance/scene_caches.h"
 #include "tests/fixtures/random_guide.h"
 #include "tests/fixtures/random_walk_guide.h"
@@ -26,6 +27,7 @@ Settings settingsOf(const MethodRow& row, const Shot& shot) {
             const int pool = shot.candidates ? shot.candidates : shot.width * shot.height;
             assignments.push_back("candidates=" + std::to_string(pool));
         }
+        if (p.name == "radius") assignments.push_back("radius=" + numberText(shot.radius));
         if (p.name == "light_paths" && shot.lightPaths) {
             assignments.push_back("light_paths=" + std::to_string(shot.lightPaths));
         }
@@ -36,6 +38,9 @@ Settings settingsOf(const MethodRow& row, const Shot& shot) {
 double threshold(double tests, std::uint64_t samples) {
     return allowedErrors(kFalseAlarm, tests, double(samples) - 1.0);
 }
+
+/// Rows that are tested as they are, and their weights with merging as well.
+constexpr const char* kOtherMerging[] = {"risbpt", "tsrbpt", "spcbpt"};
 
 float channel(const Rgb& c, int i) {
     return i == 0 ? c.r : i == 1 ? c.g : c.b;
@@ -248,11 +253,24 @@ double worstDeviation() {
 
 std::vector<std::string> rowNames() {
     std::vector<std::string> names;
+    for (const MethodRow& row : allRows()) {
+        const Merging merging = row.create(resolve(row, {}))->merging();
+        if (merging.where != Merges::FirstFromEye) names.push_back(row.name);
+    }
+    return names;
+}
+
+std::vector<std::string> rowNamesOfWeights() {
+    std::vector<std::string> names;
     for (const MethodRow& row : allRows()) names.push_back(row.name);
+    for (const char* name : kOtherMerging) names.push_back(name + kMergingSuffix);
     return names;
 }
 
 MethodRow rowNamed(const std::string& name) {
+    for (const char* other : kOtherMerging) {
+        if (name == other + kMergingSuffix) return mergingRow(other);
+    }
     for (const MethodRow& row : allRows()) {
         if (row.name == name) return row;
     }
@@ -281,8 +299,9 @@ Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row) {
 
 bool walksFromLights(const MethodRow& row) {
     if (row.techniques.splats) return true;
-    if (!row.techniques.connects) return false;
     const auto method = row.create(resolve(row, smallSettings(row, 4)));
+    if (method->merging().where != Merges::Nowhere) return true;
+    if (!row.techniques.connects) return false;
     const auto constants = method->freeze(0).constants();
     return !constants || constants->indirect > 0;
 }

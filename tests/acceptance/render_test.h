@@ -36,6 +36,7 @@ struct Shot {
     std::uint64_t lightPaths = 0;  ///< where the row has that parameter; 0: one per pixel
     float gain = 1;                ///< what pixels are multiplied by before they are judged
     int candidates = 0;            ///< likewise; 0: one light subpath per pixel
+    double radius = 0.01;          ///< likewise: what merging then blurs no test here can see
     std::vector<std::string> settings = {};
     const ThreadPool* threads = nullptr;  ///< null: the shared pool
     std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
@@ -111,7 +112,11 @@ inline constexpr const char* kOfAllowed = "of the deviation allowed";
 // Rows
 // ----------------------------------------------------------------------------------------------
 
+/// Those that every test of pictures is for: photon mapping alone is left out. What few photons in a
+/// small radius give is too noisy to judge, and merging_test.cpp is for the rest.
 std::vector<std::string> rowNames();
+/// With photon mapping, and all that merge as they are set: for tests of weights.
+std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);
 std::string testName(const std::string& text);
 /// For INSTANTIATE_TEST_SUITE_P: names a test after its parameter, as PrintTo writes it.

@@ -40,6 +40,13 @@ bool drawable(const FullPath& path, const TechniqueCounts& techniques, int t) {
     return true;
 }
 
+/// Likewise for the merge at x_i.
+bool mergeable(const FullPath& path, const TechniqueCounts& techniques, int i) {
+    const double eye = path.eyePdfA[i] * path.eyeRoulette(i, techniques.rouletteDepth);
+    return mergedSamples(path, techniques, i) * eye > 0.0 &&
+           drawable(path, techniques, path.edges - i);
+}
+
 struct Case {
     std::string row;
     int scene;
@@ -51,7 +58,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 }
 std::vector<Case> allCases() {
     std::vector<Case> cases;
-    for (const std::string& row : rowNames()) {
+    for (const std::string& row : rowNamesOfWeights()) {
         for (int i = 0; i < int(weightScenes().size()); ++i) {
             cases.push_back({row, i});
             // Of all rows in some scenes, and in all scenes of some rows.
@@ -85,10 +92,21 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
             if (!(effectiveCount(path, event.counts, t) > 0)) continue;
             const double w = misWeight(path, event.counts, t);
             sum += w;
-            if (t == event.t) ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
+            if (event.technique == Technique(t)) {
+                ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
+            }
+        }
+        for (int i = 1; i < path.edges; ++i) {
+            if (!mergeable(path, event.counts, i)) continue;
+            const Technique merge(path.edges + 1 - i, true);
+            const double w = misWeight(path, event.counts, merge);
+            sum += w;
+            if (event.technique == merge) {
+                ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
+            }
         }
         worstSum = std::max(worstSum, std::fabs(sum - 1));
-        const double again = misWeightByProducts(*walker, path, event.counts, event.t);
+        const double again = misWeightByProducts(*walker, path, event.counts, event.technique);
         double difference = std::fabs(again - event.weight);
         // Throughputs are kept in floats: one rounding per edge.
         if (row.techniques.connects && !event.counts.constants) {
@@ -102,11 +120,12 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
                 shortest = std::min(
                     shortest, length(path.vertex[i]->position - path.vertex[i + 1]->position));
             }
-            worstPath = "shortest edge " + std::to_string(shortest) + ", " +
-                        std::to_string(path.edges) + " edges, t = " + std::to_string(event.t) +
-                        ", weight " + std::to_string(event.weight) + ", sample " +
-                        std::to_string(event.sample.number) + " of iteration " +
-                        std::to_string(event.sample.iteration);
+            worstPath =
+                "shortest edge " + std::to_string(shortest) + ", " + std::to_string(path.edges) +
+                " edges, t = " + std::to_string(event.technique.t) +
+                (event.technique.merges ? " merged" : "") + ", weight " +
+                std::to_string(event.weight) + ", sample " + std::to_string(event.sample.number) +
+                " of iteration " + std::to_string(event.sample.iteration);
         }
     };
     Render render(*scene, row, shot);
@@ -130,6 +149,7 @@ class Frozen final : public Method {
     Frozen(Method& method) : method_(method) {}
     int warmupIterations() const override { return method_.warmupIterations(); }
     PoolRequest pool() const override { return method_.pool(); }
+    Merging merging() const override { return method_.merging(); }
     const ConnectionDensity& freeze(std::uint32_t iteration) override {
         if (!warm_) return method_.freeze(iteration);
         if (!density_) density_ = &method_.freeze(iteration);
@@ -156,7 +176,7 @@ class Frozen final : public Method {
 struct KeptPath {
     std::vector<PathVertex> vertices;
     FullPath path;
-    int t;
+    Technique technique;
     double weight;
 };
 
@@ -166,11 +186,11 @@ struct PathKeeper {
 
     void keep(const PathEvent& event) {
         if (kept.size() >= 2000 || event.sample.number % 5 != 0) return;
-        auto k = std::make_unique<KeptPath>();
-        k->path = event.path;
-        k->t = event.t;
-        k->weight = event.weight;
+        auto k =
+            std::make_unique<KeptPath>(KeptPath{{}, event.path, event.technique, event.weight});
         for (int i = 0; i <= event.path.edges; ++i) k->vertices.push_back(*event.path.vertex[i]);
+        if (event.path.photon) k->vertices.push_back(*event.path.photon);
+        if (event.path.photon) k->path.photon = &k->vertices.back();
         for (int i = 0; i <= event.path.edges; ++i) {
             k->path.vertex[i] = &k->vertices[std::size_t(i)];
         }
@@ -203,14 +223,16 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     std::size_t judged = 0;
     const auto judge = [&](const TechniqueCounts& techniques) {
         for (const auto& k : keeper.kept) {
-            worst = std::max(worst, std::fabs(misWeight(k->path, techniques, k->t) - k->weight));
+            worst = std::max(worst,
+                             std::fabs(misWeight(k->path, techniques, k->technique) - k->weight));
             ++judged;
         }
     };
     ASSERT_GT(keeper.kept.size(), 20u);
     bool done = false;
     shot.observer = [&](const PathEvent& event) {
-        if (event.t == 1 || done) return;  // the pool is complete once the eye's pass has begun
+        if (event.technique.t == 1 || done)
+            return;  // the pool is complete once the eye's pass has begun
         done = true;
         judge(event.counts);
     };
@@ -233,12 +255,18 @@ TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
     double worst = 0;
     std::size_t judged = 0;
     bool keeping = true;
+    double mergeSamples = 0;
     Shot shot = weightShot();
     shot.observer = [&](const PathEvent& event) {
-        if (keeping) return keeper.keep(event);
+        if (keeping) {
+            mergeSamples = event.counts.mergeSamples;
+            return keeper.keep(event);
+        }
         if (++judged % 500 != 1) return;  // the same for all events of an iteration
+        TechniqueCounts counts = event.counts;
+        counts.mergeSamples = mergeSamples;  // radii shrink
         for (const auto& k : keeper.kept) {
-            const double now = misWeight(k->path, event.counts, k->t);
+            const double now = misWeight(k->path, counts, k->technique);
             worst = std::max(worst, std::fabs(now - k->weight));
         }
     };
@@ -252,7 +280,7 @@ TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
     EXPECT_EQ(worst, 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PathOnly, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, PathOnly, testing::ValuesIn(rowNamesOfWeights()), ByParameter());
 
 }  // namespace
 }  // namespace lacuna::test

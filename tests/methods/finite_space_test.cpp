@@ -24,9 +24,15 @@ std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
     return settings;
 }
 
+/// Rows that merge between deltas alone do so where there are some.
+FiniteSpace spaceFor(const MethodRow& row, const std::vector<std::string>& settings) {
+    const Merging merging = row.create(resolve(row, settings))->merging();
+    return merging.where == Merges::BetweenDeltas ? FiniteSpace::ofMirrors() : FiniteSpace(3);
+}
+
 void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
                  double relativeError) {
-    const FiniteSpace space(3);
+    const FiniteSpace space = spaceFor(row, settings);
     const FiniteEstimate e = estimate(space, row, settings, 11, relativeError);
     ASSERT_GT(e.truth, 0.0) << row.name;
     EXPECT_LT(e.standardError, 1.01 * relativeError * e.truth)
@@ -34,6 +40,13 @@ void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
     EXPECT_NEAR(e.mean / e.truth, 1.0, kStandardErrors * e.standardError / e.truth)
         << row.name << ": mean " << e.mean << ", truth " << e.truth << ", standard error "
         << e.standardError << ", " << e.iterations << " iterations";
+    // The weights' n_m is the number of photons that there are: a count that is wrong everywhere
+    // keeps every mean.
+    if (e.trueMergeSquares == 0.0) return;
+    EXPECT_LT(e.mergeSquaresError, 0.0201 * e.trueMergeSquares)
+        << row.name << ": too noisy to judge";
+    EXPECT_NEAR(e.mergeSquares, e.trueMergeSquares, kStandardErrors * e.mergeSquaresError)
+        << row.name << ": squares of merges";
 }
 
 /// A row and the settings under which it meets the truth; one test each, so that they run in
@@ -78,6 +91,7 @@ std::vector<Case> everyRow() {
                 if (choice != p.standard) add(p.name + "=" + choice);
             }
             if (p.name == "connections") add("connections=2");
+            if (p.name == "merge") add("merge=on");
             if (p.name == "cache_density") add("cache_density=2");
             if (p.name == "cache_points") add("cache_points=1");
             if (p.name == "second_candidates") add("second_candidates=3");
@@ -90,6 +104,20 @@ std::vector<Case> everyRow() {
                     cases.back().settings.push_back(more);
                 }
             }
+        }
+    }
+    return cases;
+}
+
+/// Every row as it is, and with merging where it is a switch.
+std::vector<Case> withMerging() {
+    std::vector<Case> cases;
+    for (const MethodRow& row : allRows()) {
+        cases.push_back({row, settingsOf(row, 4)});
+        for (const Option& p : row.options) {
+            if (p.name != "merge") continue;
+            cases.push_back({row, settingsOf(row, 4)});
+            cases.back().settings.push_back("merge=on");
         }
     }
     return cases;
@@ -135,14 +163,17 @@ TEST(FiniteSpaceBiased, qOfTheCurrentPoolIsSeen) {
 
 /// The method's density as it stands after its warm-up, on random paths of the space.
 TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
-    const FiniteSpace space(3);
     double worst = 0.0;
-    for (const MethodRow& row : allRows()) {
-        const auto method = row.create(resolve(row, settingsOf(row, 4)));
+    for (const Case& c : withMerging()) {
+        const MethodRow& row = c.row;
+        const FiniteSpace space = spaceFor(row, c.settings);
+        const auto method = row.create(resolve(row, c.settings));
         TechniqueCounts counts;
         counts.hit = row.techniques.hits;
         counts.splats = row.techniques.splats ? 5.0 : 0.0;
         if (row.techniques.connects) counts.connectThrough(method->freeze(0), space);
+        counts.merges = method->merging().where;
+        counts.mergeSamples = 7.0;
         counts.rouletteDepth = FiniteSpace::kRouletteDepth;
 
         Rng rng(5, 0, StreamKind::User, 0);
@@ -174,6 +205,17 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
                 }
                 sum += product[t] = p;
             }
+            std::vector<double> merged(std::size_t(k) + 1, 0.0);
+            for (int i = 1; i < k; ++i) {
+                double p = mergedSamples(path, counts, i);
+                for (int j = 0; j <= i; ++j) {
+                    p *= double(path.lightPdfA[j]) * path.lightRoulette(j, counts.rouletteDepth);
+                }
+                for (int j = i; j <= k; ++j) {
+                    p *= double(path.eyePdfA[j]) * path.eyeRoulette(j, counts.rouletteDepth);
+                }
+                sum += merged[i] = p;
+            }
             if (sum <= 0.0) continue;
             ++judged;
             double weights = 0.0;
@@ -181,6 +223,12 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
                 if (product[t] <= 0.0) continue;
                 const double w = misWeight(path, counts, t);
                 EXPECT_NEAR(w, product[t] / sum, 1e-9) << row.name << " k " << k << " t " << t;
+                weights += w;
+            }
+            for (int i = 1; i < k; ++i) {
+                if (merged[i] <= 0.0) continue;
+                const double w = misWeight(path, counts, {k + 1 - i, true});
+                EXPECT_NEAR(w, merged[i] / sum, 1e-9) << row.name << " k " << k << " x_" << i;
                 weights += w;
             }
             EXPECT_NEAR(weights, 1.0, 1e-9) << row.name;

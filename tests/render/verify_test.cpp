@@ -100,9 +100,9 @@ TEST_F(RenderVerify, ReadsNoStoredDensity) {
             spoilt.survival[n] *= 0.5f;
             spoilt.scatter[n] *= 2.0f;
         }
-        const double again = misWeightByProducts(walker, spoilt, e.counts, e.t);
+        const double again = misWeightByProducts(walker, spoilt, e.counts, e.technique);
         worst = std::max(worst, std::fabs(again - e.weight));
-        noticed += std::fabs(misWeight(spoilt, e.counts, e.t) - e.weight) > 1e-4;
+        noticed += std::fabs(misWeight(spoilt, e.counts, e.technique) - e.weight) > 1e-4;
         ++paths;
     });
     const std::atomic<bool> never{false};

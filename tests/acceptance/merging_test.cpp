@@ -1,0 +1,210 @@
+// Merging on real paths: consistent is not unbiased, so pictures are compared at small radii, and the
+// bias of large ones is seen to be there and to go away.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "libcore/bidir/verify.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A floor below a pane of smooth glass, seen through it.
+SceneBuilder underGlass() {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.7f, 0.6f, 0.5f));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(box({-1.5f, 0.3f, -1.5f}, {1.5f, 0.4f, 1.5f}, b.add(glass())));
+    b.add(lookAt({0, 1.6, 1.2}, {0, 0, 0}, 30));
+    return b;
+}
+
+/// 24 x 24 pixels that see what lies between two chains of glass.
+Shot glassShot(int iterations) {
+    Shot shot = quickShot(iterations);
+    shot.maxDepth = 7;
+    shot.candidates = 20'000;
+    return shot;
+}
+
+/// A smooth ball over a floor, under a lamp of some size: hits find its caustic, and merges do.
+SceneBuilder ballCaustic() {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(quad({-1.5f, 0, 1.5f}, {3, 0, 0}, {0, 0, -3}));
+    b.add(sphere({0, 0.55f, 0}, 0.4f, 24, b.add(glass()), true));
+    b.add(quad({-0.5f, 2.2f, -0.5f}, {1, 0, 0}, {0, 0, 1}, b.add(emitter(Rgb(5.0f)))));
+    b.add(lookAt({0.4, 1.2, 2.2}, {0, 0.15, 0}, 40));
+    return b;
+}
+
+TEST(Merging, vcmMeetsBptOnACaustic) {
+    const auto scene = ballCaustic().build();
+    Shot shot = quickShot(150);
+    shot.maxDepth = 6;
+    const Picture merged = render(*scene, rowNamed("vcm"), shot);
+    shot.seed = 101;
+    shot.iterations = 400;
+    expectSame(merged, render(*scene, rowNamed("bpt"), shot), "vcm on a caustic",
+               Judge::BlocksAndMean);
+}
+
+/// Photon mapping has no other technique for this than merges, and hits of the lamp.
+TEST(MergingSlow, photonMappingMeetsBpt) {
+    const auto scene = ballCaustic().build();
+    Shot shot = quickShot(300);
+    shot.maxDepth = 4;
+    shot.radius = 0.02;
+    shot.settings = {"photons=20000"};
+    const Picture photons = render(*scene, rowNamed("ppm"), shot);
+    shot.seed = 101;
+    shot.settings = {};
+    expectSame(photons, render(*scene, rowNamed("bpt"), shot), "photon mapping",
+               Judge::BlocksAndMean);
+}
+
+/// Rows that merge on demand make what hits make of a lamp that has a size.
+TEST(Merging, onDemandMeetsPathTracingUnderGlass) {
+    SceneBuilder b = underGlass();
+    b.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, b.add(emitter(Rgb(2.0f)))));
+    const auto scene = b.build();
+    Shot shot = glassShot(100);
+    const Picture merged = render(*scene, mergingRow("lvcbpt"), shot);
+    shot.seed = 101;
+    shot.iterations = 600;
+    expectSame(merged, render(*scene, pathTracer(), shot), "lvcbpt merge=on", Judge::BlocksAndMean);
+}
+
+/// Under a sun no connection, hit or splat makes the floor's light: bpt is black there. Whatever
+/// merges agrees.
+TEST(Merging, makesWhatNothingElseDoes) {
+    SceneBuilder b = underGlass();
+    b.add(directionalLight({0.2, -1, 0.1}, Rgb(3.0f)));
+    const auto scene = b.build();
+    Shot shot = glassShot(40);
+    shot.maxDepth = 6;
+    const Picture bpt = render(*scene, rowNamed("bpt"), shot);
+    shot.settings = {"photons=20000"};
+    const Picture photons = render(*scene, rowNamed("ppm"), shot);
+    shot.settings = {};
+    EXPECT_LT(bpt.mean(), 0.05 * photons.mean());
+    for (const char* row : {"lvcbpt", "risbpt", "tsrbpt", "spcbpt"}) {
+        ++shot.seed;
+        expectSame(render(*scene, mergingRow(row), shot), photons, row, Judge::MeanOnly);
+    }
+}
+
+/// Nothing is kept, asked or changed where no subpath has a delta event.
+TEST(Merging, onDemandIsNothingWithoutDeltas) {
+    const auto scene = glossyBox().builder.build();
+    for (const char* name : {"lvcbpt", "risbpt", "tsrbpt", "spcbpt"}) {
+        Shot shot = quickShot(3);
+        const Picture plain = render(*scene, rowNamed(name), shot);
+        const Picture merging = render(*scene, mergingRow(name), shot);
+        EXPECT_EQ(merging.statistics.held.at("photons"), 0u) << name;
+        const Image a = plain.pixels.image(), b = merging.pixels.image();
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            EXPECT_EQ(a.pixels[i], b.pixels[i]) << name << " " << i;
+        }
+    }
+}
+
+/// The bright half of a floor leaks into the dark one by the radius, and no further: the bias of the
+/// dark half's mean is in proportion to the radius.
+TEST(Merging, theBiasFallsWithTheRadius) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.8f));
+    const auto black = b.add(matte(Rgb(0.0f)));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    // A screen over the half x > 0 keeps the sun away, and the camera looks under it.
+    b.add(quad({0, 1, -2}, {2, 0, 0}, {0, 0, 4}, black));
+    b.add(directionalLight({0, -1, 0}, Rgb(1.0f)));
+    b.add(lookAt({0.4, 0.9, 0}, {0.4, 0, 0}, 40, {0, 0, -1}));
+    const auto scene = b.build();
+    std::vector<double> means;
+    for (const double radius : {0.4, 0.2, 0.1}) {
+        Shot shot = quickShot(1);
+        shot.maxDepth = 2;
+        shot.radius = radius;
+        shot.settings = {"photons=4000000"};
+        means.push_back(render(*scene, rowNamed("ppm"), shot).mean());
+    }
+    std::printf("    dark half's mean by radius: %.5f %.5f %.5f\n", means[0], means[1], means[2]);
+    EXPECT_GT(means[0], 1e-3);
+    EXPECT_LT(means[1], 0.75 * means[0]);
+    EXPECT_LT(means[2], 0.75 * means[1]);
+}
+
+/// The radius is that of the render's iterations, whichever block they are in, and so is the picture.
+TEST(Merging, theRadiusOfAnIterationIsTheSameInEveryBlock) {
+    const auto scene = ballCaustic().build();
+    const MethodRow row = rowNamed("vcm");
+    std::vector<double> samples;
+    Shot shot = quickShot(1);
+    shot.observer = [&](const PathEvent& event) { samples.push_back(event.counts.mergeSamples); };
+    static const ThreadPool one(1);
+    shot.threads = &one;
+    Render render(*scene, row, shot);
+    render.warmUp();
+    for (const std::uint32_t iteration : {0u, 255u, 0u}) {
+        samples.clear();
+        render.iterate(iteration);
+        ASSERT_FALSE(samples.empty());
+        const double shrunk = iteration == 255 ? 0.25 : 1.0;  // R halves, the area quarters
+        EXPECT_NEAR(samples.front(), 144 * mergeArea(shot.radius) * shrunk, 1e-9);
+    }
+}
+
+/// Without a radius of its own it is two of the pixels' footprints, here of a floor of known distance.
+TEST(Merging, theRadiusComesFromThePixels) {
+    SceneBuilder b;
+    b.add(quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}));
+    b.add(quad({-1, 8, -1}, {2, 0, 0}, {0, 0, 2}, b.add(emitter(Rgb(2.0f)))));
+    b.add(lookAt({0, 4, 0}, {0, 0, 0}, 10, {0, 0, -1}));
+    const auto scene = b.build();
+    const double footprint = 2 * 4 * std::tan(5 * std::numbers::pi / 180) / 12;
+    double samples = 0;
+    Shot shot = quickShot(1);
+    shot.radius = 0;
+    shot.observer = [&](const PathEvent& event) { samples = event.counts.mergeSamples; };
+    static const ThreadPool one(1);
+    shot.threads = &one;
+    render(*scene, rowNamed("vcm"), shot);
+    EXPECT_NEAR(samples, 144 * mergeArea(2 * footprint), 0.02 * samples);
+}
+
+/// A photon right under a light, x_1, under lights of every kind: weights meet full products
+/// (weights_test.cpp has all else).
+TEST(Merging, pathsOfTwoEdgesAreMergedAtTheirOnlyVertex) {
+    for (int light = 0; light < kLightChoices; ++light) {
+        SceneBuilder b = stage();
+        addLight(b, LightChoice(light));
+        const auto scene = b.build();
+        Shot shot = quickShot(2);
+        shot.maxDepth = 2;
+        shot.radius = 0.2;
+        std::atomic<int> merged = 0;
+        std::atomic<bool> same = true;
+        const Walker* walker = nullptr;
+        shot.observer = [&](const PathEvent& event) {
+            if (!event.technique.merges) return;
+            ++merged;
+            const double again =
+                misWeightByProducts(*walker, event.path, event.counts, event.technique);
+            if (!(std::fabs(again - event.weight) < 1e-6)) same = false;
+        };
+        Render render(*scene, rowNamed("vcm"), shot);
+        walker = &render.integrator().walker();
+        render.warmUp();
+        for (std::uint32_t i = 0; i < 2; ++i) render.iterate(i);
+        EXPECT_GT(merged, 10) << nameOf(LightChoice(light));
+        EXPECT_TRUE(same) << nameOf(LightChoice(light));
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
