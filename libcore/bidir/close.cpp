@@ -190,7 +190,7 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
 std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath eye, FullPath& path) {
     const PathVertex& photon = light.back();
     const PathVertex& z = eye.back();
-    const BsdfEvaluation at = z.bsdf.evaluate(z.toPrevious, photon.toPrevious);
+    const BsdfEvaluation at = walker.scattering(z, z.toPrevious, photon.toPrevious);
     const Closed closed{
         z.throughput * at.f * photon.throughput, Technique(int(eye.size()), true), {}};
     if (isBlack(closed.contribution)) return std::nullopt;
