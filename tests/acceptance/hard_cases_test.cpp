@@ -174,6 +174,7 @@ TEST_P(HardCases, scaleFromAThousandthToAThousand) {
     shot.seed = 2;
     for (const double scale : {1e-3, 1e3}) {
         shot.gain = float(scale * scale);
+        shot.radius = 0.01 * scale;
         expectSame(render(*scaled(scale).build(), row(), shot), reference,
                    row().name + ", scaled by " + std::to_string(scale));
     }

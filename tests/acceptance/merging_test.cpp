@@ -130,13 +130,30 @@ TEST(Merging, theBiasFallsWithTheRadius) {
         Shot shot = quickShot(1);
         shot.maxDepth = 2;
         shot.radius = radius;
-        shot.settings = {"photons=4000000"};
+        shot.settings = {"photons=100000"};
         means.push_back(render(*scene, rowNamed("ppm"), shot).mean());
     }
     std::printf("    dark half's mean by radius: %.5f %.5f %.5f\n", means[0], means[1], means[2]);
     EXPECT_GT(means[0], 1e-3);
     EXPECT_LT(means[1], 0.75 * means[0]);
     EXPECT_LT(means[2], 0.75 * means[1]);
+}
+
+/// Photons on one face of a thin sheet are nearer than the radius to eye vertices on the other.
+TEST(Merging, theOtherSideOfAThinSheetStaysDark) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.8f));
+    b.add(box({-1, 0, -1}, {1, 0.01f, 1}));
+    b.add(directionalLight({0, -1, 0}, Rgb(1.0f)));
+    Shot shot = quickShot(2);
+    shot.radius = 0.1;
+    shot.settings = {"photons=20000"};
+    for (const double y : {-1.0, 1.0}) {
+        b.d.cameras.clear();
+        b.add(lookAt({0, y, 0}, {0, 0, 0}, 40, {0, 0, -1}));
+        const double mean = render(*b.build(), rowNamed("ppm"), shot).mean();
+        EXPECT_EQ(mean > 0, y > 0) << mean;
+    }
 }
 
 /// The radius is that of the render's iterations, whichever block they are in, and so is the picture.

@@ -25,6 +25,7 @@ Shot weightShot() {
     shot.rouletteDepth = 2;
     shot.threads = &oneThread();
     shot.lightPaths = 512;
+    shot.radius = 0.2;  // no mean is looked at, and there must be merges
     return shot;
 }
 
