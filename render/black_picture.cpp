@@ -139,8 +139,7 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
     add(!hittable && e.lightMeets > 0 && e.lightRough == 0 && e.eyeMeets > 0 && e.eyeRough == 0,
         "the lamps have no size, and there are mirrors or smooth glass before them and before the "
         "camera, so that no connection can join the two: use vcm, or small emissive spheres, or "
-        "make "
-        "the glass a little rough");
+        "make the glass a little rough");
     if (!text.empty()) return text;
     return "light meets surfaces (" + paths(e.lightMeets) +
            " light paths) and the camera sees some (" + paths(e.eyeMeets) +

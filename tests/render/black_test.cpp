@@ -173,7 +173,7 @@ TEST_F(RenderBlack, PointLightBehindSmoothGlass) {
 
 TEST_F(RenderBlack, PointLightsAndMirrorsAlone) {
     for (const char* method : {"pt", "bpt"}) {
-        expectCause("no method can join", withPoint(), makeMirrors,
+        expectCause("no connection can join", withPoint(), makeMirrors,
                     std::string("--method ") + method);
     }
 }
