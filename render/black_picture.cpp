@@ -138,8 +138,8 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
         "round or make its material doubleSided");
     add(!hittable && e.lightMeets > 0 && e.lightRough == 0 && e.eyeMeets > 0 && e.eyeRough == 0,
         "the lamps have no size, and there are mirrors or smooth glass before them and before the "
-        "camera, so that no connection can join the two: use vcm, or small emissive spheres, or "
-        "make the glass a little rough");
+        "camera, so that no connection can join the two: use vcm if anything else lies between "
+        "them, or small emissive spheres, or make the glass a little rough");
     if (!text.empty()) return text;
     return "light meets surfaces (" + paths(e.lightMeets) +
            " light paths) and the camera sees some (" + paths(e.eyeMeets) +

@@ -56,7 +56,7 @@ class RenderBlack : public RenderTool {
              {"black, which is no light", "joins surfaces with the camera alone",
               "where a shadow ray of", "found no light, a test", "raise --max-depth",
               "sees no surface", "no light meets a surface", "seen from behind",
-              "no method can join", "is the light shut in?"}) {
+              "no connection can join", "is the light shut in?"}) {
             if (part.find(other) != std::string::npos) continue;
             EXPECT_EQ(warning.find(other), std::string::npos) << warning;
         }
