@@ -19,7 +19,7 @@ struct TechniqueWorth {
     double operator()(int t, int edges) const {
         return t == edges + 1 ? hit : t == edges ? direct : t == 1 ? splat : connection;
     }
-    /// "hits, connections with a pool": what a cache is made for.
+    /// Which of the three kinds a method is: a guide learned for one does another harm.
     static const char* name(const Techniques& t) {
         return t.ownLightPath ? "own light paths"
                : t.splats     ? "a pool of light paths"
