@@ -46,8 +46,13 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     const std::uint32_t filmIndex = setup_.filmIndex(x0, y);
     // One thing after the other for all pixels, and not all things for one pixel: the processor's
     // first cache holds the code of one of them.
-    if (setup_.techniques.ownLightPath) {
-        takeOwnLightPaths(iteration, filmIndex, pixels.size(), worker, result);
+    const bool traced = setup_.techniques.ownLightPath && !pool_.findsSubpaths();
+    if (traced) {
+        std::array<std::uint64_t, kTile> numbers;
+        std::iota(numbers.begin(), numbers.end(), std::uint64_t(filmIndex));
+        const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
+        lightPass_.trace(std::span(numbers).first(pixels.size()), iteration,
+                         {StreamKind::LightPath, 0, splats}, worker, result);
     }
     result.clock.start();
     worker.rngs.clear();
@@ -63,7 +68,9 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     for (std::uint32_t i = 0; i < pixels.size(); ++i) iteration.counts.labelWalk(worker.eye[i]);
     result.clock.lapOfWalks(kEyeWalks);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
-        const Subpath own = setup_.techniques.ownLightPath ? worker.light[i] : Subpath{};
+        const Subpath own = traced                  ? worker.light[i]
+                            : pool_.findsSubpaths() ? pool_.subpath(filmIndex + i)
+                                                    : Subpath{};
         close({worker.eye[i],
                own,
                {iteration.number, false, filmIndex + i},
@@ -71,23 +78,6 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
                pixels[i]},
               iteration, worker, result);
     }
-}
-
-/// The light subpaths of `count` pixels from `first` of the full film on, into worker.light.
-void EyePass::takeOwnLightPaths(const Iteration& iteration, std::uint32_t first, std::size_t count,
-                                Worker& worker, TaskResult& result) const {
-    if (pool_.findsSubpaths()) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const Subpath own = pool_.subpath(first + i);
-            worker.light[i].assign(own.begin(), own.end());
-        }
-        return;
-    }
-    std::array<std::uint64_t, kTile> numbers;
-    std::iota(numbers.begin(), numbers.end(), std::uint64_t(first));
-    const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
-    lightPass_.trace(std::span(numbers).first(count), iteration, {StreamKind::LightPath, 0, splats},
-                     worker, result);
 }
 
 void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,

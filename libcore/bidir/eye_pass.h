@@ -35,8 +35,6 @@ class EyePass {
 
     void close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
-    void takeOwnLightPaths(const Iteration& iteration, std::uint32_t first, std::size_t count,
-                           Worker& worker, TaskResult& result) const;
     void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
     void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,

@@ -254,15 +254,19 @@ std::optional<BsdfSample> Walker::sampleDirection(Side side, const PathVertex& v
     if (v.region == kNone) return v.bsdf.sample(side, v.toPrevious, uLobe, u.u1, u.u2);
     const WalkGuide::Region& region = guide()->region(v.region);
     const float share = region.of(side).share;
-    const auto evaluated = [&](const Vec3& to, ScatterEvent event) {
-        const bool eye = side == Side::Eye;
-        return BsdfSample{to, event,
-                          scattering(v, eye ? v.toPrevious : to, eye ? to : v.toPrevious, event)};
-    };
-    if (uLobe < share) return evaluated(region.sample(side, u.u1, u.u2), ScatterEvent::Smooth);
+    const bool eye = side == Side::Eye;
+    if (uLobe < share) {
+        const Vec3 to = region.sample(side, u.u1, u.u2);
+        return BsdfSample{to, ScatterEvent::Smooth,
+                          scattering(v, eye ? v.toPrevious : to, eye ? to : v.toPrevious)};
+    }
     uLobe = std::min((uLobe - share) / (1.0f - share), 0x1.fffffep-1f);
     std::optional<BsdfSample> sample = v.bsdf.sample(side, v.toPrevious, uLobe, u.u1, u.u2);
-    if (sample) sample = evaluated(sample->to, sample->event);
+    if (sample) {
+        const Vec3& to = sample->to;
+        guide()->mix(v.region, eye ? v.toPrevious : to, eye ? to : v.toPrevious, sample->event,
+                     sample->evaluation);
+    }
     return sample;
 }
 
