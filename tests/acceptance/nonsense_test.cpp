@@ -112,24 +112,32 @@ TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
     stabilityCase("nonsense-skeletons", worstDeviation(), kOfAllowed);
 }
 
+/// Renders scenes with two guides each, random by what `seed` of the shot says.
+void expectTheSameMeanGuided(const std::string& row, std::initializer_list<NamedScene> scenes,
+                             int maxDepth, std::uint64_t Shot::*seed) {
+    for (const NamedScene& named : scenes) {
+        const auto scene = named.builder.build();
+        Shot shot = quickShot(300);
+        shot.seed = 100;
+        shot.maxDepth = maxDepth;
+        const Picture reference = render(*scene, rowNamed("bpt"), shot);
+        shot.seed = 1;
+        shot.iterations = 150;
+        for (std::uint64_t guide = 1; guide <= 2; ++guide) {
+            shot.*seed = guide;
+            expectSame(render(*scene, rowNamed(row), shot), reference, named.name,
+                       Judge::BlocksAndMean);
+        }
+    }
+}
+
 /// Light paths that begin anywhere, with any density that is positive: all rows, under lights of
 /// all kinds.
 class EmissionOfNonsense : public testing::TestWithParam<std::string> {};
 
 TEST_P(EmissionOfNonsense, leavesTheMeanAsItIs) {
-    const MethodRow row = rowNamed(GetParam());
-    for (const NamedScene& named : {underTheSky(), punctualLights(), instancedEmitters()}) {
-        const auto scene = named.builder.build();
-        Shot shot = quickShot(300);
-        shot.seed = 100;
-        const Picture reference = render(*scene, rowNamed("bpt"), shot);
-        shot.seed = 1;
-        shot.iterations = 150;
-        for (std::uint64_t guide = 1; guide <= 2; ++guide) {
-            shot.guide = guide;
-            expectSame(render(*scene, row, shot), reference, named.name, Judge::BlocksAndMean);
-        }
-    }
+    expectTheSameMeanGuided(GetParam(), {underTheSky(), punctualLights(), instancedEmitters()}, 3,
+                            &Shot::guide);
     stabilityCase("nonsense-emission", worstDeviation(), kOfAllowed);
 }
 
@@ -142,20 +150,9 @@ INSTANTIATE_TEST_SUITE_P(Rows, EmissionOfNonsense,
 class WalksOfNonsense : public testing::TestWithParam<std::string> {};
 
 TEST_P(WalksOfNonsense, leaveTheMeanAsItIs) {
-    const MethodRow row = rowNamed(GetParam());
-    for (const NamedScene& named : {underTheSky(), diffuseBox(), instancedEmitters()}) {
-        const auto scene = named.builder.build();
-        Shot shot = quickShot(300);
-        shot.seed = 100;
-        shot.maxDepth = 5;  // next event finds most light of shorter ones, wherever walks go
-        const Picture reference = render(*scene, rowNamed("bpt"), shot);
-        shot.seed = 1;
-        shot.iterations = 150;
-        for (std::uint64_t guide = 1; guide <= 2; ++guide) {
-            shot.walkGuide = guide;
-            expectSame(render(*scene, row, shot), reference, named.name, Judge::BlocksAndMean);
-        }
-    }
+    // Next event finds most light of shorter paths, wherever walks go.
+    expectTheSameMeanGuided(GetParam(), {underTheSky(), diffuseBox(), instancedEmitters()}, 5,
+                            &Shot::walkGuide);
     stabilityCase("nonsense-walks", worstDeviation(), kOfAllowed);
 }
 

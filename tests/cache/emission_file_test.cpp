@@ -4,13 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "libcore/base/error.h"
 #include "tests/base/random_density.h"
 #include "tests/cache/example_subspaces.h"
+#include "tests/cache/file_test.h"
 
 namespace lacuna::test {
 namespace {
@@ -28,39 +24,15 @@ std::shared_ptr<EmissionGuide> exampleGuide() {
     return guide;
 }
 
-class EmissionFiles : public testing::Test {
+class EmissionFiles : public CacheFileTest {
   protected:
-    void SetUp() override {
-        directory_ = std::filesystem::temp_directory_path() /
-                     (std::string("lacuna-emission-test-") +
-                      testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(directory_);
-    }
-    void TearDown() override { std::filesystem::remove_all(directory_); }
-
-    std::string path() const { return (directory_ / "e.emission").string(); }
-    std::string content() const {
-        std::ostringstream bytes;
-        bytes << std::ifstream(path(), std::ios::binary).rdbuf();
-        return bytes.str();
-    }
-    void replace(const std::string& bytes) const {
-        std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
-    }
     void write(std::shared_ptr<const EmissionGuide> guide) const {
         writeEmissionFile(path(), {guide, kStamp, guide ? guide->contentHash() : "plain"});
     }
     void expectRefused(const std::string& what, const CacheStamp& expected = kStamp) const {
-        try {
-            readEmissionFile(path(), expected, "learn again");
-            ADD_FAILURE() << what << " was accepted";
-        } catch (const InputError& e) {
-            EXPECT_NE(std::string(e.what()).find("learn again"), std::string::npos) << e.what();
-        }
+        expectRefusal(what, "learn again",
+                      [&] { readEmissionFile(path(), expected, "learn again"); });
     }
-
-  private:
-    std::filesystem::path directory_;
 };
 
 TEST_F(EmissionFiles, comeBack) {

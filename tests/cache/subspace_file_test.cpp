@@ -4,48 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "libcore/base/error.h"
 #include "libcore/base/rng.h"
 #include "tests/cache/example_subspaces.h"
+#include "tests/cache/file_test.h"
 
 namespace lacuna::test {
 namespace {
 
-class SubspaceFiles : public testing::Test {
+class SubspaceFiles : public CacheFileTest {
   protected:
-    void SetUp() override {
-        directory_ = std::filesystem::temp_directory_path() /
-                     (std::string("lacuna-subspaces-test-") +
-                      testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(directory_);
-    }
-    void TearDown() override { std::filesystem::remove_all(directory_); }
-
-    std::string path() const { return (directory_ / "s.subspaces").string(); }
-    std::string content() const {
-        std::ostringstream bytes;
-        bytes << std::ifstream(path(), std::ios::binary).rdbuf();
-        return bytes.str();
-    }
-    void replace(const std::string& bytes) const {
-        std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
-    }
     void expectRefused(const std::string& what, const CacheStamp& expected = kStamp) const {
-        try {
-            readSubspaceFile(path(), expected, "train again");
-            ADD_FAILURE() << what << " was accepted";
-        } catch (const InputError& e) {
-            EXPECT_NE(std::string(e.what()).find("train again"), std::string::npos) << e.what();
-            EXPECT_EQ(e.exitCode(), 3);
-        }
+        expectRefusal(what, "train again",
+                      [&] { readSubspaceFile(path(), expected, "train again"); });
     }
-
-  private:
-    std::filesystem::path directory_;
 };
 
 TEST_F(SubspaceFiles, comeBack) {
