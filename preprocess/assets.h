@@ -71,6 +71,13 @@ std::optional<File> readCache(const AssetRequest& request, const CacheStamp& sta
                               const std::string& kind, const std::string& remedy,
                               const ReadFile& readFile);
 
+/// For rows whose asset is one file: readCache, in a phase of its own, or else what `make` () gives,
+/// written by `write` (path, file).
+template <class File, class ReadFile, class WriteFile, class Make>
+File readOrMake(const AssetRequest& request, const CacheStamp& stamp, const std::string& kind,
+                const std::string& remedy, const ReadFile& readFile, const WriteFile& write,
+                const Make& make);
+
 }  // namespace lacuna
 
 #include "preprocess/assets_inl.h"

@@ -50,4 +50,20 @@ std::optional<File> readCache(const AssetRequest& request, const CacheStamp& sta
     return file;
 }
 
+template <class File, class ReadFile, class WriteFile, class Make>
+File readOrMake(const AssetRequest& request, const CacheStamp& stamp, const std::string& kind,
+                const std::string& remedy, const ReadFile& readFile, const WriteFile& write,
+                const Make& make) {
+    std::optional<File> file;
+    request.phases.run("read " + kind,
+                       [&] { file = readCache<File>(request, stamp, kind, remedy, readFile); });
+    if (file) return std::move(*file);
+    const std::string path = request.file(stamp, kind);
+    makeCacheDirectory(path);
+    file = make();
+    write(path, *file);
+    request.built(path);
+    return std::move(*file);
+}
+
 }  // namespace lacuna

@@ -74,22 +74,16 @@ std::unique_ptr<Asset> acquireEmission(const AssetRequest& r) {
         }
         return found;
     };
-    std::optional<EmissionFile> file;
-    r.phases.run("read emission", [&] {
-        file = readCache<EmissionFile>(r, stamp, "emission", trainRemedy(r), read);
-    });
-    if (!file) {
-        const std::string path = r.file(stamp, "emission");
-        makeCacheDirectory(path);
-        r.phases.run("emission", [&] {
-            file = emissionFile(stamp, trainEmission(*r.stage.scene, *r.stage.camera,
-                                                     r.stage.aspect, r.stage.limits, paths,
-                                                     r.options.common.seed, r.pool, r.cancel));
-        });
-        writeEmissionFile(path, *file);
-        r.built(path);
-    }
-    return std::make_unique<EmissionAsset>(std::move(*file));
+    return std::make_unique<EmissionAsset>(readOrMake<EmissionFile>(
+        r, stamp, "emission", trainRemedy(r), read, writeEmissionFile, [&] {
+            EmissionFile file;
+            r.phases.run("emission", [&] {
+                file = emissionFile(stamp, trainEmission(*r.stage.scene, *r.stage.camera,
+                                                         r.stage.aspect, r.stage.limits, paths,
+                                                         r.options.common.seed, r.pool, r.cancel));
+            });
+            return file;
+        }));
 }
 
 EmissionFile emissionFile(const CacheStamp& stamp, const EmissionTraining& training) {

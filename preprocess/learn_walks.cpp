@@ -1,16 +1,12 @@
 #include "preprocess/learn_walks.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 
-#include "preprocess/collect_inl.h"
+#include "preprocess/rounds_inl.h"
 
 namespace lacuna {
 
 namespace {
-/// Of all paths, by round: later ones come by ways that earlier ones have found.
-constexpr double kRounds[] = {0.15, 0.25, 0.6};
-constexpr std::uint32_t kIterationsPerRound = 0x1000;
 /// Of the loss without a guide, from which a walk goes without one: less does not pay for look-ups.
 constexpr double kWorthIt = 0.97;
 }  // namespace
@@ -32,24 +28,15 @@ WalkTraining trainWalks(const Scene& scene, const Camera& camera, double aspect,
     WalkTraining result;
     if (scene.lights().empty()) return result;
     const TechniqueWorth worth = TechniqueWorth::of(techniques);
-    std::uint32_t first = kWalkIteration;
-    for (const double share : kRounds) {
-        const auto wanted =
-            std::max<std::uint64_t>(1, std::uint64_t(std::llround(share * double(paths))));
-        TrainingView view = trainingView(camera, aspect, limits, wanted);
+    for (const Round& round : roundsOf(paths, kWalkIteration)) {
+        TrainingView view = trainingView(camera, aspect, limits, round.paths);
         view.guides = {lights, result.learned.guide};
         const Walker walker(scene, view.guides, view.camera, limits);
-        Collected<WalkSamples> found = collect<WalkSamples>(
-            scene, view, wanted, seed, first, pool, cancel,
+        const auto found = collectRound<WalkSamples>(
+            scene, view, round, seed, pool, cancel, result,
             [&](WalkSamples& set, const PathEvent& event, float contribution) {
                 set.add(event.path, event.counts, walker, worth, contribution, event.pixel);
             });
-        first += kIterationsPerRound;
-        const float limit = found.train.outlierLimit();
-        found.train.lowerTo(limit);
-        found.heldOut.lowerTo(limit);
-        result.trainPaths += found.train.size();
-        result.heldOutPaths += found.heldOut.size();
         result.learned = learnWalks(found.train, found.heldOut, pool);
     }
     LearnedWalks& learned = result.learned;

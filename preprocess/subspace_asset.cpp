@@ -53,21 +53,13 @@ std::unique_ptr<Asset> acquireSubspaces(const AssetRequest& r) {
     const CacheStamp stamp = subspaceStamp(sceneInputs(r.stage), r.stage.viewInputs, settings,
                                            guide ? guide->contentHash() : kPlainEmission,
                                            walks ? walks->contentHash() : kPlainWalks);
-    std::optional<SubspaceFile> file;
-    r.phases.run("read subspaces", [&] {
-        file = readCache<SubspaceFile>(r, stamp, "subspaces", trainRemedy(r), readSubspaceFile);
-    });
-    if (!file) {
-        const std::string path = r.file(stamp, "subspaces");
-        makeCacheDirectory(path);
-        TrainingView view =
-            trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);
-        view.guides = guidesOf(*r.stage.scene, r.before);
-        file = train(*r.stage.scene, view, settings, stamp, r.pool, r.cancel, r.phases).file;
-        writeSubspaceFile(path, *file);
-        r.built(path);
-    }
-    return std::make_unique<SubspaceAsset>(std::move(*file));
+    return std::make_unique<SubspaceAsset>(readOrMake<SubspaceFile>(
+        r, stamp, "subspaces", trainRemedy(r), readSubspaceFile, writeSubspaceFile, [&] {
+            TrainingView view =
+                trainingView(*r.stage.camera, r.stage.aspect, r.stage.limits, settings.paths);
+            view.guides = guidesOf(*r.stage.scene, r.before);
+            return train(*r.stage.scene, view, settings, stamp, r.pool, r.cancel, r.phases).file;
+        }));
 }
 
 }  // namespace lacuna

@@ -23,9 +23,9 @@ class WalkAsset final : public Asset {
               const ThreadPool& pool) const override {
         Image layer(crop.width(), crop.height());
         if (file_.guide) {
+            const WalkGuide& guide = *file_.guide;
+            const Walker walker(scene, {nullptr, file_.guide}, camera, {});
             pool.forEach(std::size_t(crop.height()), [&](std::size_t row) {
-                const WalkGuide& guide = *file_.guide;
-                const Walker walker(scene, {nullptr, file_.guide}, camera, {});
                 RayTally tally;
                 std::vector<PathVertex> path;
                 for (int x = crop.x0; x < crop.x1; ++x) {
@@ -54,27 +54,22 @@ class WalkAsset final : public Asset {
 std::unique_ptr<Asset> acquireWalks(const AssetRequest& r) {
     const WalkSettings settings = walkOptions({}).read(r.settings, r.prefix);
     const std::uint64_t paths = guidePaths(settings.paths, trainingPaths(r.settings));
-    const Guides before = guidesOf(*r.stage.scene, r.before);
     const auto emission = r.before.get<EmissionGuide>();
     const CacheStamp stamp =
         walkStamp(sceneInputs(r.stage), r.stage.viewInputs, paths, r.techniques,
                   emission ? emission->contentHash() : kPlainEmission);
-    std::optional<WalkFile> file;
-    r.phases.run("read walks", [&] {
-        file = readCache<WalkFile>(r, stamp, "walks", trainRemedy(r), readWalkFile);
-    });
-    if (!file) {
-        const std::string path = r.file(stamp, "walks");
-        makeCacheDirectory(path);
-        r.phases.run("walks", [&] {
-            file = walkFile(stamp, trainWalks(*r.stage.scene, *r.stage.camera, r.stage.aspect,
-                                              r.stage.limits, before.lights, r.techniques, paths,
-                                              r.options.common.seed, r.pool, r.cancel));
-        });
-        writeWalkFile(path, *file);
-        r.built(path);
-    }
-    return std::make_unique<WalkAsset>(std::move(*file));
+    return std::make_unique<WalkAsset>(
+        readOrMake<WalkFile>(r, stamp, "walks", trainRemedy(r), readWalkFile, writeWalkFile, [&] {
+            WalkFile file;
+            r.phases.run("walks", [&] {
+                file = walkFile(
+                    stamp,
+                    trainWalks(*r.stage.scene, *r.stage.camera, r.stage.aspect, r.stage.limits,
+                               guidesOf(*r.stage.scene, r.before).lights, r.techniques, paths,
+                               r.options.common.seed, r.pool, r.cancel));
+            });
+            return file;
+        }));
 }
 
 WalkFile walkFile(const CacheStamp& stamp, const WalkTraining& training) {

@@ -133,7 +133,7 @@ Layers TechniqueFilm::means() const {
     LayeredImage image(width_, height_);
     forEachTechnique(maxDepth_, [&](int s, int t, bool merged) {
         if (merged && merges_.empty()) return;
-        const Technique& technique = (merged ? merges_ : techniques_)[indexOf(s, t)];
+        const Technique& technique = of(s, t, merged);
         if (std::ranges::all_of(technique.unweighted, isBlack)) return;
         const std::string name = layerName(s, t, merged);
         image.setRgb(kWeighted + name, mean(technique.weighted));

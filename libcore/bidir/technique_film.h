@@ -26,8 +26,7 @@ struct TechniqueSample {
 /// mean of the channels over independent samples, which variances are made of.
 class TechniqueFilm final : public BlockLayers {
   public:
-    /// `sampleIterations`: BlockPlan's.
-    /// With layers for merges where the row has any.
+    /// `sampleIterations`: BlockPlan's. `merges`: with layers for them.
     TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations = 1,
                   bool merges = false);
 
@@ -41,10 +40,10 @@ class TechniqueFilm final : public BlockLayers {
     Layers means() const override;
     void clear() override;
     Image weighted(int s, int t, bool merged = false) const {
-        return mean((merged ? merges_ : techniques_)[indexOf(s, t)].weighted);
+        return mean(of(s, t, merged).weighted);
     }
     Image unweighted(int s, int t, bool merged = false) const {
-        return mean((merged ? merges_ : techniques_)[indexOf(s, t)].unweighted);
+        return mean(of(s, t, merged).unweighted);
     }
 
   private:
@@ -63,6 +62,9 @@ class TechniqueFilm final : public BlockLayers {
     };
 
     std::size_t indexOf(int s, int t) const;
+    const Technique& of(int s, int t, bool merged) const {
+        return (merged ? merges_ : techniques_)[indexOf(s, t)];
+    }
     Image mean(const std::vector<Rgb>& sum) const;
     std::vector<float> meanOf(const Moments& moments) const;
     std::vector<float> meanSquareOf(const Moments& moments) const;

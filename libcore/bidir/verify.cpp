@@ -195,11 +195,15 @@ class Products {
     /// log(n_t r_t p_t).
     double logTerm(int t) const {
         const int s = k_ + 1 - t;
-        double sum = logOf(count(t));
-        for (int i = 0; i < s; ++i) {
+        return logOf(count(t)) + logDensities(s, s);
+    }
+    /// Of the light's walk over its first `byLight` vertices, and of the eye's from x_first on.
+    double logDensities(int byLight, int first) const {
+        double sum = 0.0;
+        for (int i = 0; i < byLight; ++i) {
             sum += logOf(lightPdfA_[std::size_t(i)]) + logOf(lightRoulette(i));
         }
-        for (int i = s; i < k_; ++i) {
+        for (int i = first; i < k_; ++i) {
             sum += logOf(eyePdfA_[std::size_t(i)]) + logOf(eyeRoulette(i));
         }
         return sum;
@@ -208,14 +212,7 @@ class Products {
     /// log(n_m pi R^2 p) of the merge at x_i, which both walks make.
     double logMerge(int i) const {
         if (!merges(i)) return kNever;
-        double sum = logOf(counts_.mergeSamples);
-        for (int j = 0; j <= i; ++j) {
-            sum += logOf(lightPdfA_[std::size_t(j)]) + logOf(lightRoulette(j));
-        }
-        for (int j = i; j < k_; ++j) {
-            sum += logOf(eyePdfA_[std::size_t(j)]) + logOf(eyeRoulette(j));
-        }
-        return sum;
+        return logOf(counts_.mergeSamples) + logDensities(i + 1, i);
     }
     bool merges(int i) const {
         if (!smooth(i)) return false;

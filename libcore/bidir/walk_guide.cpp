@@ -34,7 +34,7 @@ WalkGuide::Place WalkGuide::placeOf(const PathVertex& v) {
     const Vec3 side = scatteringSide(v);
     const bool passes = lengthSquared(side) == 0.0f;
     const Vec3 n = passes ? v.ng : side;
-    return {(passes ? 1u : 0u) | (v.bsdf.isNarrow() ? 2u : 0u),
+    return {(passes ? kPasses : 0u) | (v.bsdf.isNarrow() ? kNarrow : 0u),
             {v.position.x, v.position.y, v.position.z, n.x, n.y, n.z}};
 }
 

@@ -86,7 +86,7 @@ class WalkGuide {
         std::array<float, 6> numbers;
     };
     /// Surfaces that let light pass are regions of their own, and those whose every lobe is narrow.
-    static constexpr std::uint32_t kKinds = 4;
+    static constexpr std::uint32_t kPasses = 1, kNarrow = 2, kKinds = 4;
     static Place placeOf(const PathVertex& surface);
 
     WalkGuide() = default;

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/guide/technique_worth.h"
+
 namespace lacuna {
 
 namespace {
 /// W. The guide serves methods whose light subpaths stand for many samples each; by bpt's own count
 /// of one, what they bring looks too small to be worth going for. (8 is worse than 32 and 128, which
 /// are alike.)
-constexpr double kWorth = 100.0;
+constexpr double kWorth = TechniqueWorth::kOfPool;
 }  // namespace
 
 void EmissionSamples::add(FullPath& path, const TechniqueCounts& counts, const Lights& lights,

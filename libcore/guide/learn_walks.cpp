@@ -18,9 +18,8 @@ constexpr std::size_t kSides = 2;
 constexpr double kFewestOfDirections = 8.0;  // effective samples from which a part is halved
 constexpr int kMostDirectionLevels = 12;
 constexpr int kMostRegionLevels = 20;
-constexpr double kNormalsApart =
-    0.25;  // standard deviation from which a region is halved by normals
-constexpr std::array<float, 5> kShares = {0.0f, 0.25f, 0.5f, 0.75f, 0.9f};
+constexpr double kNormalsApart = 0.25;  // standard deviation of them from which a region is halved
+constexpr std::array<float, 5> kShares = {0.0f, 0.25f, 0.5f, 0.75f, WalkGuide::kMostShare};
 constexpr double kKindSamples = 8.0;  // that speak for the share that is best for the whole kind
 constexpr Index kOnePathIn = 4;       // chooses shares, the others directions
 
@@ -51,8 +50,16 @@ struct Sums {
     double effective() const { return effectiveSamples(sum, squares); }
 };
 
+/// Where the BSDF cannot go the share says nothing.
+bool countsBySharing(const Record& r) {
+    return r.step->pdfBsdf > 0.0f;
+}
+/// What the step carries where the guide's density has this share.
+double sharedMoment(const Record& r, double share, double guidePdf) {
+    return r.moment / ((1.0 - share) * double(r.step->pdfBsdf) + share * guidePdf);
+}
 double plainMoment(const Record& r) {
-    return r.step->pdfBsdf > 0.0f ? r.moment / double(r.step->pdfBsdf) : 0.0;
+    return countsBySharing(r) ? r.moment / double(r.step->pdfBsdf) : 0.0;
 }
 
 /// Steps of one side in one region, on its square.
@@ -100,13 +107,11 @@ struct ShareCurve {
     Sums plain;
 
     void add(const Record& r, double guidePdf) {
-        const double own = double(r.step->pdfBsdf);
-        if (!(own > 0.0)) return;
+        if (!countsBySharing(r)) return;
         for (std::size_t c = 0; c < kShares.size(); ++c) {
-            const double share = double(kShares[c]);
-            moment[c] += r.moment / ((1.0 - share) * own + share * guidePdf);
+            moment[c] += sharedMoment(r, double(kShares[c]), guidePdf);
         }
-        plain.add(r.moment / own);
+        plain.add(plainMoment(r));
     }
     /// Relative to no guide.
     double at(std::size_t c) const { return moment[0] > 0.0 ? moment[c] / moment[0] : 1.0; }
@@ -133,7 +138,7 @@ class Learner {
             const auto end = std::find_if(
                 begin, all.end(), [&](Index i) { return records_[i].step->place.kind != kind; });
             const std::size_t first = regions_.size();
-            split(kind, std::span(begin, end), (kind & 1u) != 0, 0);
+            split(kind, std::span(begin, end), (kind & WalkGuide::kPasses) != 0, 0);
             setShares(first);
             begin = end;
         }
@@ -272,12 +277,10 @@ std::array<double, kSides> lossOf(const WalkGuide& guide, std::span<const Record
     for (const Record& r : records) {
         const Step& s = *r.step;
         const auto side = std::size_t(s.side);
-        if (!(s.pdfBsdf > 0.0f)) continue;
+        if (!countsBySharing(r)) continue;
         const WalkGuide::Region& region = guide.region(guide.regionAt(s.place));
-        const double share = double(region.of(s.side).share);
-        plain[side] += r.moment / double(s.pdfBsdf);
-        guided[side] +=
-            r.moment / ((1.0 - share) * double(s.pdfBsdf) + share * guidePdf(region, s));
+        plain[side] += plainMoment(r);
+        guided[side] += sharedMoment(r, double(region.of(s.side).share), guidePdf(region, s));
     }
     std::array<double, kSides> loss{1.0, 1.0};
     for (std::size_t i = 0; i < kSides; ++i) {

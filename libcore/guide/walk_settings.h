@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "libcore/base/options.h"
+#include "libcore/guide/guide_paths.h"
 
 namespace lacuna {
 
@@ -17,15 +17,13 @@ struct WalkSettings {
 
 /// `standard`: what a row does where nobody says anything.
 inline OptionTable<WalkSettings> walkOptions(Walks standard) {
-    return OptionTable<WalkSettings>({.walks = standard})
-        .choice<Walks>(
-            "walks", &WalkSettings::walks, {{"plain", Walks::Plain}, {"guided", Walks::Guided}},
-            "walks go on where BSDFs send them, or by a learned share as paths that reached "
-            "the picture taught beforehand")
-        .integer("walk_paths", &WalkSettings::paths, 0, 1e8, "full paths",
-                 "to learn walks from; 0: half as many as train.paths, 500000 where nothing else "
-                 "is trained")
-        .standardText("half of train.paths");
+    return withGuidePaths(
+        OptionTable<WalkSettings>({.walks = standard})
+            .choice<Walks>("walks", &WalkSettings::walks,
+                           {{"plain", Walks::Plain}, {"guided", Walks::Guided}},
+                           "walks go on where BSDFs send them, or by a learned share as paths that "
+                           "reached the picture taught beforehand"),
+        "walk_paths", &WalkSettings::paths, "walks");
 }
 
 }  // namespace lacuna
