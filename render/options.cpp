@@ -31,6 +31,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
     app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
         ->type_name("NAME");
+    app.add_flag("--allow-bias", o.allowBias,
+                 "auto may choose methods that are consistent, not unbiased: merging");
     app.add_option("--set", o.assignments, "Set a parameter of the method; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
@@ -53,6 +55,9 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(picture);
     app.add_option("--png-bits", o.pngBits, "8 or 16 bits per channel; for .png only (default: 8)")
         ->type_name("N")
+        ->group(picture);
+    app.add_flag("--light-groups", o.lightGroups,
+                 "A layer of the .exr for each group of lights; together they are the picture")
         ->group(picture);
     app.add_option("--sheet", o.sheet, "All layers of the .exr as a page of small pictures as well")
         ->type_name("FILE.png")
@@ -174,6 +179,7 @@ void checkAccuracy(const RenderOptions& o) {
                               : o.replay              ? "--replay"
                               : o.verify              ? "--verify"
                               : o.techniques          ? "--techniques"
+                              : o.lightGroups         ? "--light-groups"
                               : !o.log.empty()        ? "--log"
                               : !o.reference.empty()  ? "--reference"
                               : o.displayServer       ? "--display-server"
@@ -368,10 +374,14 @@ void checkOptions(RenderOptions& o) {
     if (o.effects) return;
     checkMethod(o);
     if (o.output.empty() && !o.replay && !o.estimate && !o.inMemory) nameOutput(o);
-    if (o.techniques && !o.replay && o.sheet.empty() && !o.output.empty() &&
+    const char* const layers = o.techniques    ? "--techniques"
+                               : o.lightGroups ? "--light-groups"
+                                               : nullptr;
+    if (layers && !o.replay && o.sheet.empty() && !o.output.empty() &&
         endingOf(o.output) != ".exr") {
-        throw UsageError("--techniques: expected an .exr or a --sheet to hold the layers, found '" +
-                         o.output + "'");
+        throw UsageError(std::string(layers) +
+                         ": expected an .exr or a --sheet to hold the layers, found '" + o.output +
+                         "'");
     }
 }
 

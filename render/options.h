@@ -44,6 +44,8 @@ struct RenderOptions : SceneOptions {
     bool countSetup = false, estimate = false;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false, denoise = false;
+    bool lightGroups = false;
+    bool allowBias = false;  ///< `auto` may choose rows that merge
     bool listMethods = false, effects = false;
     std::string helpMethod;
     std::string displayServerText, displayLayersText, writeEveryText;

@@ -46,6 +46,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
                     std::to_string(crop.y0) + "," + std::to_string(crop.y1));
     add("technique layers", options.techniques ? "yes" : "no");
+    add("layers of light groups", options.lightGroups ? "yes" : "no");
     add("iterations of a block", std::to_string(plan.iterations));
     return stamp;
 }

@@ -36,10 +36,13 @@ Image cropped(const Image& image, const PixelRect& rect) {
 
 /// Checks what the picture alone needs against what the machine has: better an error now than being
 /// killed by the system after hours.
-Film makeFilm(const RenderOptions& options, const RenderSettings& settings, BlockPlan plan) {
+Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) {
+    const RenderSettings& settings = stage.settings;
     const PixelRect& crop = settings.crop;
     const double depth = settings.limits.maxDepth;
-    const double layers = options.techniques ? depth * (depth + 3.0) : 0.0;
+    const double groups =
+        options.lightGroups ? double(stage.scene->lightGroups().names.size()) : 0.0;
+    const double layers = (options.techniques ? depth * (depth + 3.0) : 0.0) + groups;
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
@@ -52,7 +55,8 @@ Film makeFilm(const RenderOptions& options, const RenderSettings& settings, Bloc
                        " GB for the picture, found a machine of " +
                        std::to_string(std::lround(available * 1e-9)) +
                        " GB; use a smaller picture, --crop" +
-                       (options.techniques ? " or a smaller --max-depth" : ""));
+                       (options.techniques ? " or a smaller --max-depth" : "") +
+                       (options.lightGroups ? " or fewer light groups" : ""));
     }
     return Film(crop.width(), crop.height(), plan, options.blocks ? options.blocks->begin : 0);
 }
@@ -72,7 +76,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
       look_(look),
       maker_(maker),
       plan_(maker.plan()),
-      film_(makeFilm(options, stage_.settings, plan_)),
+      film_(makeFilm(options, stage_, plan_)),
       end_(endOf(options, plan_)) {
     RenderReport& r = report_;
     r.commandLine = options.commandLine;
@@ -255,8 +259,7 @@ void Session::keep() {
     if (checkpoint_) saveCheckpoint();
     if (refresh_) refreshOutput();
     if (live_ && live_->wants()) showLive();
-    progress_.picture(
-        [this] { return film_.sum(idlePool()).image(film_.width(), film_.height()); });
+    progress_.picture([this] { return film_.image(idlePool()); });
 }
 
 void Session::render() {
@@ -290,7 +293,7 @@ void Session::estimateErrorNow() {
     double seconds = 0.0;
     {
         const Stopwatch watch(seconds);
-        report_.estimate = estimateError(film_.sum(idlePool()), look_.meter, idlePool());
+        report_.estimate = estimateError(film_.pictureSum(idlePool()), look_.meter, idlePool());
     }
     if (!together_) totals_.seconds += seconds;  // else others have gone on meanwhile
     estimateSeconds_ = totals_.seconds;
@@ -352,6 +355,11 @@ std::vector<std::string> Session::channelNames() {
     };
     addRgb("variance");
     for (const auto& [name, plane] : still().channels()) names.push_back(name);
+    if (options_.lightGroups) {
+        for (const std::string& group : stage_.scene->lightGroups().names) {
+            addRgb(LightGroupFilm::layerName(group));
+        }
+    }
     if (!options_.techniques) return names;
     for (const std::string& label : report_.method->proposalLabels) addRgb("part." + label);
     const std::vector<std::string> ofTechniques =
@@ -457,8 +465,7 @@ void Session::measure() {
     if (!reference_) return;
     const Stopwatch watch(report_.phaseSeconds["compare"]);
     try {
-        report_.error = reference_->compare(
-            film_.sum(idlePool()).image(film_.width(), film_.height()), pictureName());
+        report_.error = reference_->compare(film_.image(idlePool()), pictureName());
     } catch (const InputError& e) {
         report_.error.reset();
         failure_ = e.what();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libcore/bidir/close.h"
+#include "libcore/bidir/light_group_film.h"
 #include "libcore/bidir/render_setup.h"
 #include "libcore/bidir/task.h"
 #include "libcore/bidir/technique_film.h"
@@ -55,6 +56,8 @@ class Delivery {
 
     /// Per-technique layers to fill as well, or null.
     void setTechniqueFilm(TechniqueFilm* film) { techniqueFilm_ = film; }
+    /// Layers of light groups to fill as well, or null.
+    void setLightGroupFilm(LightGroupFilm* film) { lightGroupFilm_ = film; }
     /// Returns the one before.
     PathObserver setObserver(PathObserver observer);
     /// Records every ray of the following tasks in the order in which a task traces them.
@@ -78,6 +81,7 @@ class Delivery {
     void addSplats(std::span<TaskResult> results, const Iteration& iteration) const;
     void countIteration() const {
         if (techniqueFilm_) techniqueFilm_->countIteration();
+        if (lightGroupFilm_) lightGroupFilm_->countIteration(setup_.threads);
     }
 
   private:
@@ -86,10 +90,14 @@ class Delivery {
         Rgb value, unweighted;
     };
     Weighed weigh(const Contribution& c, const TechniqueCounts& counts) const;
+    std::uint32_t groupOf(const FullPath& path) const {
+        return lightGroupFilm_->groupOf(path.vertex[0]->light);
+    }
     void countInvalid(const Sample& sample, TaskResult& result) const;
 
     const RenderSetup& setup_;
     TechniqueFilm* techniqueFilm_ = nullptr;
+    LightGroupFilm* lightGroupFilm_ = nullptr;
     PathObserver observer_;
     bool recording_ = false;
     std::vector<RecordedRay> recorded_;

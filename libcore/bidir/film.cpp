@@ -75,10 +75,15 @@ FilmSum Film::openSum(const ThreadPool* threads) const {
     return sumOfBlock(open_, layers_, threads);
 }
 
-FilmSum Film::sum(const ThreadPool* threads) const {
+FilmSum Film::sum(const ThreadPool* threads, Layered layered) const {
     FilmSum sum;
-    blocks_.addTo(sum, threads);
-    if (!open_.empty()) join(sum, openSum(threads), false, threads);
+    blocks_.addTo(sum, threads, layered);
+    if (open_.empty()) return sum;
+    if (layered == Layered::Yes) {
+        join(sum, openSum(threads), false, threads);
+    } else {
+        join(sum, sumOfBlock(open_, {}, threads), false, threads, layered);
+    }
     return sum;
 }
 

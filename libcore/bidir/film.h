@@ -90,10 +90,16 @@ class Film {
     std::uint64_t inBlock() const { return inBlock_; }
 
     /// Everything that there is. `threads` may be null.
-    FilmSum sum(const ThreadPool* threads = nullptr) const;
-    Image image() const { return sum().image(width_, height_); }
-    Image variance() const { return sum().variance(width_, height_); }
-    FilmSum::MeanColour meanColour() const { return sum().meanColour(); }
+    FilmSum sum(const ThreadPool* threads = nullptr, Layered layered = Layered::Yes) const;
+    /// Likewise without layers.
+    FilmSum pictureSum(const ThreadPool* threads = nullptr) const {
+        return sum(threads, Layered::No);
+    }
+    Image image(const ThreadPool* threads = nullptr) const {
+        return pictureSum(threads).image(width_, height_);
+    }
+    Image variance() const { return pictureSum().variance(width_, height_); }
+    FilmSum::MeanColour meanColour() const { return pictureSum().meanColour(); }
 
     /// Sums that a film goes on from; a copy is a snapshot.
     struct State {

@@ -53,6 +53,13 @@ struct Joint {
     const double between;  ///< weight of the squared distance of the two means
 };
 
+/// All of it, or what there is beside its layers.
+FilmSum copyOf(const FilmSum& sum, Layered layered) {
+    if (layered == Layered::Yes) return sum;
+    return {sum.iterations, sum.samples,      sum.mean, sum.spread,
+            sum.wholeMean,  sum.wholeSquares, {},       sum.differences};
+}
+
 void joinLayers(FilmSum& left, const FilmSum& right, const Joint& joint) {
     const std::size_t pixels = left.mean.size();
     for (const auto& [name, plane] : right.layers) left.layers[name].resize(pixels);
@@ -128,10 +135,11 @@ FilmSum::MeanColour FilmSum::meanColour() const {
     return m;
 }
 
-void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads) {
+void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads,
+          Layered layered) {
     if (right.iterations == 0) return;
     if (left.iterations == 0) {
-        left = right;
+        left = copyOf(right, layered);
         return;
     }
     const Joint joint(left, right, oneSample);
@@ -150,7 +158,7 @@ void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool*
                                              right.wholeMean[c] - left.wholeMean[c]);
         left.wholeMean[c] = joint.mean(left.wholeMean[c], right.wholeMean[c]);
     }
-    joinLayers(left, right, joint);
+    if (layered == Layered::Yes) joinLayers(left, right, joint);
     for (const HalfDifference& d : right.differences) addDifference(left.differences, d);
     left.iterations += right.iterations;
     left.samples = oneSample ? 1 : left.samples + right.samples;
@@ -193,14 +201,14 @@ void SumTree::joinLast(const ThreadPool* threads) {
     nodes_.pop_back();
 }
 
-void SumTree::addTo(FilmSum& sum, const ThreadPool* threads) const {
+void SumTree::addTo(FilmSum& sum, const ThreadPool* threads, Layered layered) const {
     // The last ones, smaller than a sample, are one that is not whole.
     FilmSum last;
     for (const Node& node : nodes_) {
         const bool whole = node.size >= sampleItems_;
-        join(whole ? sum : last, *node.sum, !whole, threads);
+        join(whole ? sum : last, *node.sum, !whole, threads, layered);
     }
-    join(sum, last, false, threads);
+    join(sum, last, false, threads, layered);
 }
 
 }  // namespace lacuna

@@ -59,9 +59,13 @@ struct FilmSum {
     MeanColour meanColour() const;
 };
 
+/// Whether sums hold their layers or the picture alone, which is quicker.
+enum class Layered { Yes, No };
+
 /// Adds `right` to `left` [Chan83]. `oneSample`: they are parts of one sample,
 /// so that nothing is known of its spread. `threads` may be null.
-void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads);
+void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads,
+          Layered layered = Layered::Yes);
 
 /// Sums of items that come one after the other: item i is a leaf of the binary tree whose nodes
 /// are [k 2^l, (k+1) 2^l), and of the tree only the largest whole nodes are kept. Two trees of
@@ -86,7 +90,7 @@ class SumTree {
     bool empty() const { return nodes_.empty(); }
     void clear() { nodes_.clear(); }
     /// Adds all nodes to `sum`, the first one first. `threads` may be null.
-    void addTo(FilmSum& sum, const ThreadPool* threads) const;
+    void addTo(FilmSum& sum, const ThreadPool* threads, Layered layered = Layered::Yes) const;
 
   private:
     void joinLast(const ThreadPool* threads);

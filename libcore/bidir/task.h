@@ -25,6 +25,7 @@ inline constexpr int kTile = 16;
 struct TaskResult {
     std::vector<Splat> splats;
     std::vector<std::uint64_t> splatPaths;         // by splat: its light subpath
+    std::vector<std::uint32_t> splatGroups;        // by splat, where light groups are asked for
     std::vector<TechniqueSample> techniqueSplats;  // where --techniques asks for them
     TechniqueClock clock;                          // likewise
     std::vector<PathVertex> pooled;                // vertices of the subpaths that go into the pool

@@ -69,7 +69,7 @@ void addCamera(const Document& document, std::size_t node, const Affine& toWorld
 }
 
 void addLight(const Document& document, std::size_t node, const Affine& toWorld,
-              SceneDescription& scene, Warnings& warnings) {
+              const std::string& group, SceneDescription& scene, Warnings& warnings) {
     const tinygltf::Light* source = lightOf(document, node);
     if (!source) return;
     const std::string place =
@@ -110,6 +110,8 @@ void addLight(const Document& document, std::size_t node, const Affine& toWorld,
         }
         light.direction = normalize(axis);
     }
+    const std::string& nodeName = document.model.nodes[node].name;
+    light.group = !group.empty() ? group : !nodeName.empty() ? nodeName : source->name;
     scene.lights.push_back(light);
 }
 

@@ -16,9 +16,10 @@ void addCamera(const Document& document, std::size_t node, const Affine& toWorld
 /// The KHR_lights_punctual light that `node` carries, or null.
 const tinygltf::Light* lightOf(const Document& document, std::size_t node);
 
-/// Adds the KHR_lights_punctual light that `node` carries, if any, to scene.lights. The node's
-/// scale does not change the light. Throws InputError for impossible values.
+/// Adds the KHR_lights_punctual light that `node` carries, if any, to scene.lights; `group`: what the
+/// node calls its group, or nothing. The node's scale does not change the light. Throws InputError for
+/// impossible values.
 void addLight(const Document& document, std::size_t node, const Affine& toWorld,
-              SceneDescription& scene, Warnings& warnings);
+              const std::string& group, SceneDescription& scene, Warnings& warnings);
 
 }  // namespace lacuna::gltf

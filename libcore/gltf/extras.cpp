@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kCorrect = "correct scene.extras";
+constexpr const char* kCorrectOwn = "correct its extras";
 
 /// A member of an extras object, by name, with its place for messages.
 class Members {
@@ -61,13 +62,13 @@ class Members {
 
 /// What `text` says as JSON. Custom properties that are typed into Blender arrive as texts.
 json parseText(const Document& document, const std::string& place, const std::string& text,
-               const std::string& expected) {
+               const std::string& expected, const char* remedy = kCorrect) {
     checkJsonDepth(document.file, text);
     try {
         return json::parse(text);
     } catch (const json::exception& error) {
         refuse(document.file, place, expected,
-               '"' + printable(text, 60) + "\" (" + error.what() + ")", kCorrect);
+               '"' + printable(text, 60) + "\" (" + error.what() + ")", remedy);
     }
 }
 
@@ -152,6 +153,52 @@ void readExtras(Document& document, SceneDescription& scene, Warnings& warnings)
     if (extras == source.end() || !extras->is_object()) return;
     readPicture(document, *extras, scene, warnings);
     readEnvironment(document, *extras, scene, warnings);
+}
+
+json lacunaExtras(const Document& document, const json& extras, const std::string& place) {
+    const auto found = extras.is_object() ? extras.find("lacuna") : extras.end();
+    if (found == extras.end()) return json::object();
+    const std::string at = place + ".extras.lacuna", expected = "a JSON object, or its text";
+    const json lacuna =
+        found->is_string()
+            ? parseText(document, at, found->get_ref<const std::string&>(), expected, kCorrectOwn)
+            : *found;
+    if (!lacuna.is_object()) {
+        refuse(document.file, at, expected, printable(lacuna.dump(), 60), kCorrectOwn);
+    }
+    return lacuna;
+}
+
+std::string lightGroupOf(const Document& document, const json& lacuna, const std::string& place) {
+    const auto group = lacuna.find("light_group");
+    if (group == lacuna.end()) return {};
+    if (!group->is_string() || group->get_ref<const std::string&>().empty()) {
+        refuse(document.file, place + ".extras.lacuna.light_group", "a name",
+               printable(group->dump(), 60), kCorrectOwn);
+    }
+    return group->get<std::string>();
+}
+
+std::string nodeGroup(const Document& document, std::size_t node) {
+    const tinygltf::Value& extras = document.model.nodes[node].extras;
+    if (!extras.IsObject() || !extras.Has("lacuna")) return {};
+    // Nodes are not kept as JSON: there may be a million.
+    json members;
+    const tinygltf::Value& lacuna = extras.Get("lacuna");
+    if (lacuna.IsString()) {
+        members["lacuna"] = lacuna.Get<std::string>();
+    } else if (lacuna.IsObject()) {
+        members["lacuna"] = json::object();
+        if (lacuna.Has("light_group")) {
+            const tinygltf::Value& group = lacuna.Get("light_group");
+            members["lacuna"]["light_group"] =
+                group.IsString() ? json(group.Get<std::string>()) : json("");
+        }
+    } else {
+        members["lacuna"] = nullptr;
+    }
+    const std::string place = "nodes[" + std::to_string(node) + "]";
+    return lightGroupOf(document, lacunaExtras(document, members, place), place);
 }
 
 }  // namespace lacuna::gltf

@@ -44,6 +44,11 @@ void addInstances(const Document& document, const Placement& placement, const Me
     const std::string place = "nodes[" + std::to_string(placement.node) + "]";
     warnings.add("skins are not rendered: the mesh keeps its own pose",
                  document.model.nodes[placement.node].skin >= 0, place);
+    std::uint32_t group = Instance::kNoGroup;
+    if (const std::string name = nodeGroup(document, placement.node); !name.empty()) {
+        group = std::uint32_t(scene.nodeGroups.size());
+        scene.nodeGroups.push_back(name);
+    }
     for (const Affine& copy : meshCopies(document, placement.node)) {
         const Affine toWorld = placement.toWorld * copy;
         const double determinant = toWorld.determinant();
@@ -62,7 +67,7 @@ void addInstances(const Document& document, const Placement& placement, const Me
                        "at most " + std::to_string(Limits::kInstances) + " instances", "more",
                        "simplify the scene");
             }
-            scene.instances.push_back({index, toWorld});
+            scene.instances.push_back({index, toWorld, group});
         }
     }
 }
@@ -109,7 +114,8 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
     for (const Placement& placement : placements) {
         addInstances(document, placement, table, scene, warnings);
         addCamera(document, placement.node, placement.toWorld, scene, warnings);
-        addLight(document, placement.node, placement.toWorld, scene, warnings);
+        addLight(document, placement.node, placement.toWorld, nodeGroup(document, placement.node),
+                 scene, warnings);
     }
     addDefaultMaterial(scene);
     scene.fromBlender = isFromBlender(document);

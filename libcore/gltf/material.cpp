@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libcore/base/number_text.h"
+#include "libcore/gltf/extras.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -164,9 +165,10 @@ class Reader {
 
     void readExtras() {
         const json* extras = member(*json_, "extras");
-        const json* lacuna = extras && extras->is_object() ? member(*extras, "lacuna") : nullptr;
-        if (!lacuna || !lacuna->is_object()) return;
-        const json* hidden = member(*lacuna, "hidden_from_camera");
+        if (!extras) return;
+        const json lacuna = lacunaExtras(document_, *extras, place_);
+        material_.lightGroup = lightGroupOf(document_, lacuna, place_);
+        const json* hidden = member(lacuna, "hidden_from_camera");
         if (!hidden) return;
         if (!hidden->is_boolean()) {
             refuse(document_.file, place_ + ".extras.lacuna.hidden_from_camera", "true or false",

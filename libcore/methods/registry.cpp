@@ -12,21 +12,11 @@ MethodRow ptRow(), ltRow(), bptRow(), lvcbptRow(), pcbptRow(), risbptRow(), risb
     tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow(), vcmRow(), ppmRow();
 
 std::span<const MethodRow> methods() {
-    static const std::vector<MethodRow> rows = {ptRow(),
-                                                ltRow(),
-                                                bptRow(),
-                                                lvcbptRow(),
-                                                pcbptRow(),
-                                                risbptRow(),
-                                                risbptCurrentRow(),
-                                                tsrbptRow(),
-                                                icbptRow(),
-                                                skelbptRow(),
-                                                spcbptRow(),
-                                                spcbptFifoRow(),
-                                                eabptRow(),
-                                                vcmRow(),
-                                                ppmRow()};
+    static const std::vector<MethodRow> rows = {
+        ptRow(),    ltRow(),      bptRow(),           lvcbptRow(),
+        pcbptRow(), risbptRow(),  risbptCurrentRow(), tsrbptRow(),
+        icbptRow(), skelbptRow(), spcbptRow(),        spcbptFifoRow(),
+        vcmRow(),   ppmRow()};
     return rows;
 }
 

@@ -143,6 +143,7 @@ std::vector<MeshUse> countUses(SceneDescription& d) {
 SceneObject place(const Instance& instance, const Mesh& mesh, const Vec3d& centre, MeshUse& use) {
     SceneObject object;
     object.mesh = instance.mesh;
+    object.lightGroup = instance.lightGroup;
     object.mirrored = instance.toWorld.determinant() < 0.0;
     Affine toWorld = instance.toWorld;
     if (use.instances == 1) {

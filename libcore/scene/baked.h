@@ -44,9 +44,10 @@ struct SceneObject {
     std::uint32_t mesh = 0;
     bool instanced = false;  ///< else the mesh is in world space
     bool mirrored = false;
-    std::array<Vec3, 4> toWorld;          // columns and translation
-    std::array<Vec3, 3> normal;           // of the transform of normals
-    std::uint32_t firstLight = kNoLight;  ///< that of its first triangle, where it emits
+    std::array<Vec3, 4> toWorld;                    // columns and translation
+    std::array<Vec3, 3> normal;                     // of the transform of normals
+    std::uint32_t firstLight = kNoLight;            ///< that of its first triangle, where it emits
+    std::uint32_t lightGroup = Instance::kNoGroup;  ///< that of its instance
 
     static constexpr std::uint32_t kNoLight = 0xffffffffu;
 

@@ -33,6 +33,8 @@ struct Mesh {
 struct Instance {
     std::uint32_t mesh = 0;
     Affine toWorld;
+    static constexpr std::uint32_t kNoGroup = 0xffffffffu;
+    std::uint32_t lightGroup = kNoGroup;  ///< among SceneDescription::nodeGroups
 };
 
 /// glTF perspective camera: looks along -Z of its own frame, +Y up.
@@ -56,6 +58,7 @@ struct PunctualLight {
     Vec3d direction{0, 0, -1};      ///< unit, the way the light travels (spot, directional)
     double innerConeAngle = 0.0;    ///< radians from the axis (spot)
     double outerConeAngle = 0.785;  ///< radians from the axis (spot)
+    std::string group;              ///< what its node calls its group, else its name
 };
 
 struct EnvironmentDescription {
@@ -70,6 +73,7 @@ struct SceneDescription {
     bool fromBlender = false;  ///< asset.generator says so
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
+    std::vector<std::string> nodeGroups;  ///< names of light groups that nodes with meshes have
     std::vector<Material>
         materials;  ///< never empty: glTF's default material is added where needed
     std::vector<Texture> textures;

@@ -70,8 +70,9 @@ struct Material {
     Alpha alphaMode = Alpha::Opaque;
     float alphaCutoff = 0.5f;
     bool hiddenFromCamera =
-        false;        ///< only the edge at the lens passes it, as if it were not there
-    LobeSet without;  ///< lobes to leave out, whatever the rest says
+        false;                    ///< only the edge at the lens passes it, as if it were not there
+    std::string lightGroup = {};  ///< of what emits by it; empty: its name
+    LobeSet without;              ///< lobes to leave out, whatever the rest says
 };
 
 /// The textures that a BSDF is made of, the base colour first. (Normal maps and emission are not.)

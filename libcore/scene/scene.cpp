@@ -81,6 +81,10 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
 
 Scene::~Scene() = default;
 
+LightGroups Scene::lightGroups() const {
+    return lacuna::lightGroups(description_, baked_, environment_ != nullptr);
+}
+
 Camera Scene::makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const {
     const auto& cameras = description_.cameras;
     if (cameras.empty()) {

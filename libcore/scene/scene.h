@@ -15,6 +15,7 @@
 #include "libcore/scene/description.h"
 #include "libcore/scene/environment.h"
 #include "libcore/scene/light.h"
+#include "libcore/scene/light_groups.h"
 #include "libcore/scene/ray.h"
 #include "libcore/scene/shading.h"
 #include "libcore/scene/surfaces.h"
@@ -42,6 +43,8 @@ class Scene {
     const SceneDescription& description() const { return description_; }
     const Lights& lights() const { return *lights_; }
     const Environment* environment() const { return environment_.get(); }
+    /// Made anew at each call.
+    LightGroups lightGroups() const;
     const Accel& accel() const { return *accel_; }
     /// Middle of the file's bounding box: file coordinates = ours + centre().
     Vec3d centre() const { return baked_.centre; }

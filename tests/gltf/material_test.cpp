@@ -78,6 +78,17 @@ TEST(Material, MayBeHiddenFromTheCamera) {
         loadMaterial({{"extras", {{"lacuna", {{"hidden_from_camera", true}}}}}}).hiddenFromCamera);
 }
 
+TEST(Material, ExtrasMayBeATextAndNameALightGroup) {
+    const auto with = [](const json& lacuna) {
+        return loadMaterial({{"extras", {{"lacuna", lacuna}}}});
+    };
+    EXPECT_EQ(loadMaterial(json::object()).lightGroup, "");
+    EXPECT_EQ(with({{"light_group", "key"}}).lightGroup, "key");
+    const Material m = with(R"({"light_group": "rim", "hidden_from_camera": true})");
+    EXPECT_EQ(m.lightGroup, "rim");
+    EXPECT_TRUE(m.hiddenFromCamera);
+}
+
 TEST(Material, TransmissionIorVolumeSpecular) {
     const Material m = loadMaterial({{"extensions",
                                       {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},

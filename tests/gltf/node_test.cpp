@@ -294,6 +294,46 @@ TEST(Light, PointSpotDirectional) {
     expectNear(scene.lights[0].direction, {-1, 0, 0});
 }
 
+TEST(Light, GroupOfItsNodeElseItsName) {
+    const json point = {{"type", "point"}, {"name", "Light.001"}};
+    const auto groupUnder = [&](const json& node) {
+        const SceneDescription scene = withLight(point, node).load();
+        return scene.lights.at(0).group;
+    };
+    EXPECT_EQ(groupUnder(json::object()), "Light.001");
+    EXPECT_EQ(groupUnder({{"name", "bulb"}}), "bulb");
+    json node = {{"name", "bulb"}};
+    node["extras"]["lacuna"]["light_group"] = "key";
+    EXPECT_EQ(groupUnder(node), "key");
+    // As Blender writes a property that was typed in.
+    node["extras"]["lacuna"] = R"({"light_group": "rim"})";
+    EXPECT_EQ(groupUnder(node), "rim");
+    node["extras"] = {{"lacuna", json::object()}, {"other", 1}};
+    EXPECT_EQ(groupUnder(node), "bulb");
+}
+
+TEST(Node, LightGroupOfAMesh) {
+    const json extras = {{"lacuna", {{"light_group", "key"}}}};
+    const SceneDescription scene = withNode({{"extras", extras}}).load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    ASSERT_LT(scene.instances[0].lightGroup, scene.nodeGroups.size());
+    EXPECT_EQ(scene.nodeGroups[scene.instances[0].lightGroup], "key");
+    EXPECT_EQ(withNode(json::object()).load().instances.at(0).lightGroup, Instance::kNoGroup);
+}
+
+TEST(Node, LightGroupsAreNames) {
+    const auto refused = [](const json& lacuna, const std::string& part) {
+        expectRefused(withNode({{"extras", {{"lacuna", lacuna}}}}),
+                      {"nodes[0].extras.lacuna", part});
+    };
+    refused({{"light_group", 7}}, "a name");
+    refused({{"light_group", ""}}, "a name");
+    refused({{"light_group", json::array({"key"})}}, "a name");
+    refused("{light_group: key}", "a JSON object");
+    refused("7", "a JSON object");
+    refused(true, "a JSON object");
+}
+
 TEST(Light, DefaultsOfASpot) {
     const SceneDescription scene = withLight({{"type", "spot"}, {"spot", json::object()}}).load();
     EXPECT_EQ(scene.lights[0].innerConeAngle, 0.0);

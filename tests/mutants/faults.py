@@ -311,6 +311,16 @@ FAULTS = [
           "c.path.orderOf(s)", "c.closed.t - 1",
           {"render": "RenderOutput.GroupsOfTechniques*"}),
 
+    # --light-groups
+    Fault("splats-of-the-first-group", "what the lens sees of light paths counts for the first group of lights",
+          "libcore/bidir/delivery.cpp",
+          "result.splatGroups.push_back(groupOf(c.path));", "result.splatGroups.push_back(0);",
+          {"acceptance": "*LightGroupsOf.*bpt*"}),
+    Fault("light-groups-outlive-their-block", "layers of light groups hold the blocks before as well",
+          "libcore/bidir/light_group_film.cpp",
+          "for (auto* planes : {&now_, &sums_}) {", "for (auto* planes : {&now_, &now_}) {",
+          {"render": "*RenderPiecesOf.mergedPartsAreThePicture*bpt*"}),
+
     # Live view
     Fault("live-view-goes-on-with-the-old", "an older picture is sent to its end before the last one",
           "render/live/live_view.cpp",
@@ -420,12 +430,12 @@ FAULTS = [
           "pick.weight * share * double(around.size()) / picks",
           {"methods": "*FiniteSpaceRow.*tsrbpt*weighted*"}),
     Fault("spcbpt-unbounded", "a belief beyond the number of light subpaths",
-          "libcore/methods/spcbpt.cpp",
+          "libcore/resampling/two_stages.h",
           "(m - 1.0) * q + (n - 1.0) * gamma * beta);", "(m - 1.0) * q);",
           {"methods": "Beliefs.*"}),
     Fault("spcbpt-windows-forgotten", "weights forget the iterations that vertices are kept for",
           "libcore/methods/spcbpt.cpp",
-          "const double m = subpaths_ * tables_.window(i);", "const double m = subpaths_;",
+          "twoStageSamples(subpaths_ * tables_.windows[i], n,", "twoStageSamples(subpaths_, n,",
           {"methods": "Beliefs.neverExceedTheLightSubpathsThatAreKept"}),
 
     # Subspaces

@@ -241,6 +241,33 @@ TEST_F(RenderOutput, TechniqueLayersAddUpToThePicture) {
     }
 }
 
+TEST_F(RenderOutput, LightGroupsAddUpToThePicture) {
+    TinyScene scene;
+    scene.pointLight = true;  // has no name
+    nlohmann::json root = nlohmann::json::parse(scene.text());
+    root["materials"][4]["name"] = "lamp";
+    write("room.gltf", root.dump());
+    ASSERT_EQ(run(quick("bpt", "--quiet --light-groups --iterations 6")).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    const Image picture = image.rgb();
+    std::vector<double> sum(picture.pixels.size(), 0.0);
+    int layers = 0;
+    for (const auto& [name, values] : image.channels()) {
+        if (!name.starts_with("light.") || name.back() != 'G') continue;
+        ++layers;
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += double(values[i]);
+    }
+    EXPECT_EQ(layers, 2);
+    EXPECT_TRUE(image.hasRgb("light.lamp"));
+    EXPECT_TRUE(image.hasRgb("light.unnamed"));
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        EXPECT_NEAR(sum[i], picture.pixels[i].g, 1e-6 * (1.0 + picture.pixels[i].g)) << i;
+    }
+    std::string png = quick("bpt", "--quiet --light-groups");
+    png.replace(png.find("out.exr"), 7, "out.png");
+    expectFailure(png, 2, "--light-groups: expected an .exr or a --sheet to hold the layers");
+}
+
 // A group's layer is what its techniques add; the JSON and the table are about the same layers.
 TEST_F(RenderOutput, GroupsOfTechniquesHaveEnergyNoiseAndTime) {
     const Outcome o = run(quick("bpt", "--techniques --iterations 32 --json @o.json"));

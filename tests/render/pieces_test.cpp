@@ -34,9 +34,10 @@ class RenderPiecesOf : public RenderPieces, public ::testing::WithParamInterface
 
 TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
     // Ten iterations: the last block is not whole.
-    const std::string common = quick(GetParam(),
-                                     "--quiet --techniques --iterations 10 --sampler sobol "
-                                     "--block-iterations 4");
+    const std::string common =
+        quick(GetParam(),
+              "--quiet --techniques --light-groups --iterations 10 --sampler sobol "
+              "--block-iterations 4");
     const auto to = [&](const std::string& name) {
         std::string text = common;
         return text.replace(text.find("@out.exr"), 8, "@" + name);
@@ -184,6 +185,7 @@ TEST_F(RenderPieces, otherCommandsAreRefused) {
         {" --set candidates=101", "candidates"},
         {" --crop 0,8,0,8", "crop"},
         {" --techniques", "technique layers"},
+        {" --light-groups", "layers of light groups"},
         {" --rr-depth 2", "roulette depth"},
     };
     for (const auto& [more, part] : others) expectFailure(common + more, 3, part);
