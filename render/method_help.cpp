@@ -33,10 +33,10 @@ std::string listMethods() {
 
 std::string autoHelp() {
     return std::string(kAuto) + ": " + kAutoSummary + "\nTries " + triedMethods() +
-           " on a small picture, whose samples are thrown away. With --time the clock has a "
-           "say; else the choice\ndepends on the command and the scene alone. What was chosen, "
-           "why, and how to ask for\nthe same by name: on stderr, in the "
-           "header (`chosen`) and in the JSON.\n";
+           " on a small picture, whose samples are thrown away; those that merge only with "
+           "--allow-bias.\nWith --time the clock has a say; else the choice depends on the "
+           "command and the scene alone.\nWhat was chosen, why, and how to ask for the same by "
+           "name: on stderr, in the header (`chosen`)\nand in the JSON.\n";
 }
 
 std::string methodHelp(const MethodRow& row) {

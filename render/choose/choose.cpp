@@ -45,12 +45,20 @@ struct Row {
     double rayCost;
     const char* strength;    ///< behind "light ", where it wins
     bool wholeFilm = false;  ///< an iteration costs as much as the film is large, whatever the crop
+    const char* setting = nullptr;  ///< of the row, beside what is measured
+    bool merges = false;            ///< only where a picture may be consistent, not unbiased
+
+    std::string name() const {
+        return setting ? std::string(method) + " with " + setting : std::string(method);
+    }
 };
 constexpr Row kRows[] = {
     {"bpt", 1.0, "is found from both ends"},
     {"pt", 1.1, "is in plain sight"},
     {"risbpt", 1.4, "comes from many places near and glossy", true},
     {"spcbpt", 1.5, "takes ways that can be learned"},
+    {"spcbpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on", true},
+    {"vcm", 1.4, "comes through glass or mirrors", true, nullptr, true},
 };
 /// Where trials find nothing clearly better.
 constexpr const char* kUsual = "spcbpt";
@@ -95,6 +103,7 @@ class Pilot {
         show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
         for (const Row& row : std::span(kRows).subspan(1)) {
             if (row.wholeFilm && smallFilmPixels() > kMostFilmPixels) continue;
+            if (row.merges && !options_.allowBias) continue;
             if (mayKeepCaches(row)) tryRow(row);
         }
         judge();
@@ -138,6 +147,7 @@ class Pilot {
         if (learns(row)) {
             result = subspaceSettings(kTrainingShare * budget_ / kRaysPerTrainingPath, subpaths);
         }
+        if (candidate.setting) result.push_back(candidate.setting);
         if (const std::uint64_t splats = splatsOfCrop(); row.techniques.splats && splats > 0) {
             result.push_back("light_paths=" + std::to_string(splats));
         }
@@ -174,8 +184,7 @@ class Pilot {
             const AtomicFile probe(directory + "/x");
             return true;
         } catch (const RunError& e) {
-            progress_.warning("warning: auto does without " + std::string(row.method) + ": " +
-                              e.what());
+            progress_.warning("warning: auto does without " + row.name() + ": " + e.what());
             return false;
         }
     }
@@ -217,10 +226,20 @@ class Pilot {
         std::vector<HalfPictures> pictures;
         for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
         const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
+        // What rows without merging lack, however long they render.
+        double lacking = 0.0;
+        for (const Tried& t : tried_) {
+            if (t.trial.onlyMerged.empty()) continue;
+            lacking = std::max(
+                lacking, errorWithout(t.trial.onlyMerged, t.trial.halves, small_->crop.width()));
+        }
         for (std::size_t i = 0; i < tried_.size(); ++i) {
-            // Noise of one iteration times its cost. What was trained is there already.
+            // The squared error at the end: noise of one iteration times its cost, which is a share of
+            // the budget. What was trained is there already.
             Tried& t = tried_[i];
-            t.verdict = {errors[i], errors[i] * errors[i] * double(t.trial.iterations) * t.cost};
+            const double left = t.row->merges ? 0.0 : lacking * lacking;
+            t.verdict = {errors[i],
+                         errors[i] * errors[i] * double(t.trial.iterations) * t.cost + left};
         }
     }
 
@@ -230,7 +249,7 @@ class Pilot {
         std::vector<Verdict> verdicts;
         for (std::size_t i = 0; i < tried_.size(); ++i) {
             verdicts.push_back(tried_[i].verdict);
-            if (std::string(tried_[i].row->method) == kUsual) usual = i;
+            if (tried_[i].row->name() == kUsual) usual = i;
         }
         const Tried& chosen = tried_[rowToTake(verdicts, usual)];
         Choice choice{
@@ -239,7 +258,7 @@ class Pilot {
         const auto speed = [&](const Tried& t) {
             return t.verdict.loss > 0.0 ? bpt.verdict.loss / t.verdict.loss : 1.0;
         };
-        for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->method, speed(t));
+        for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->name(), speed(t));
         if (&chosen == &bpt || speed(chosen) <= 1.0) {
             choice.why = "no other method was clearly better in a pilot";
         } else {
@@ -276,7 +295,7 @@ class Pilot {
 }  // namespace
 
 std::string triedMethods() {
-    return joined(kRows, ", ", &Row::method);
+    return joined(kRows, ", ", &Row::name);
 }
 
 Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,

@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-/// The names of the rows that are tried: "bpt, pt, ..".
+/// The names of the rows that are tried: "bpt, pt, ..", with those that only --allow-bias lets in.
 std::string triedMethods();
 
 /// Chooses for a stage that was loaded for `bpt`, whose techniques are those that may be used at

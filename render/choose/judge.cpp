@@ -118,6 +118,14 @@ std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width) 
     return errors;
 }
 
+double errorWithout(std::span<const Rgb> part, const HalfPictures& picture, int width) {
+    const Picture mean = meanOf(picture);
+    const double one = 1.0;
+    const Target target({&mean, 1}, {&one, 1}, width);
+    return target.distance([&](std::size_t i) { return channels(part[i]); },
+                           [](std::size_t) { return Vec3d{}; });
+}
+
 std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual) {
     const bool blind = verdicts[usual].error > kBlind;
     std::size_t best = usual;

@@ -21,6 +21,9 @@ struct HalfPictures {
 /// light that it never met shows in the distance to the others alone. So s_i is the larger of both.
 std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width);
 
+/// The mape of a picture that lacks `part`, of its channels: what no other row brings.
+double errorWithout(std::span<const Rgb> part, const HalfPictures& picture, int width);
+
 /// What a trial found of a row.
 struct Verdict {
     double error = 0.0;  ///< mape of its small picture

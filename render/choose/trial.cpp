@@ -32,6 +32,15 @@ class LeastSeconds {
     double least_ = std::numeric_limits<double>::infinity();
 };
 
+/// Whether merges alone can make the path.
+bool isOnlyMerged(const PathEvent& event) {
+    if (!event.technique.merges) return false;
+    for (int t = 1; t <= event.path.edges + 1; ++t) {
+        if (effectiveCount(event.path, event.counts, t) > 0.0) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 SmallFilm::SmallFilm(const Stage& stage, double pixels) {
@@ -96,6 +105,15 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     std::vector<Rgb> picture(pixels);
     std::vector<Rgb>* const halves[] = {&result.halves.first, &result.halves.second};
     for (auto* half : halves) half->assign(pixels, Rgb{});
+    if (method->merging().where != Merges::Nowhere) {
+        result.onlyMerged.assign(pixels, Rgb{});
+        // Merges are of their own pixel's task.
+        integrator.delivery().setObserver([&](const PathEvent& event) {
+            if (isOnlyMerged(event) && isFinite(event.contribution)) {
+                result.onlyMerged[event.pixel] += event.contribution;
+            }
+        });
+    }
     LeastSeconds light("light paths"), prepare("prepare"), eye("eye paths"), observe("observe");
     std::uint64_t& n = result.iterations;
     for (n = 0; n < 2 || n % 2 == 1 || double(statistics.totalRays()) < rays; ++n) {
@@ -109,6 +127,8 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     for (auto* sums : halves) {
         for (Rgb& c : *sums) c = c * ofHalf;
     }
+
+    for (Rgb& c : result.onlyMerged) c = c * (0.5f * ofHalf);
 
     // Pixels that trace light subpaths for themselves do so in the eye pass.
     const double own = row.techniques.ownLightPath ? double(pixels) : 0.0;

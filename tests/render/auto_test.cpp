@@ -43,6 +43,26 @@ TEST_F(RenderAuto, SaysWhatItChoseAndHowToAskForItByName) {
     EXPECT_NE(loud.err.find("the same by name: --method "), std::string::npos) << loud.err;
 }
 
+// Its lamp is seen through glass, and lights what is seen through glass.
+TEST_F(RenderAuto, MergesOnlyIfItMay) {
+    const std::string scene = std::string(LACUNA_SCENES) + "/kitchen-glass.glb";
+    const auto chosen = [&](const std::string& name, const std::string& more) {
+        const Outcome o = run(scene + " -o @" + name + ".exr --json @" + name +
+                              ".json --cache @cache --quiet --width 96 --height 54 "
+                              "--iterations 32 " +
+                              more);
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        return json(name + ".json");
+    };
+    const nlohmann::json plain = chosen("plain", ""), biased = chosen("biased", "--allow-bias");
+    EXPECT_EQ(plain["consistent"], false);
+    EXPECT_EQ(plain["chosen"]["speeds"].size(), 4u);
+    EXPECT_EQ(biased["consistent"], true) << biased["chosen"];
+    EXPECT_EQ(biased["chosen"]["speeds"].size(), 6u);
+    const std::string why = biased["chosen"]["why"];
+    EXPECT_NE(why.find("through glass or mirrors"), std::string::npos) << why;
+}
+
 TEST_F(RenderAuto, IsTheSameOnAnyNumberOfThreads) {
     ASSERT_EQ(run(automatic("one", "--iterations 2 --threads 1")).exitCode, 0);
     ASSERT_EQ(run(automatic("three", "--iterations 2 --threads 3")).exitCode, 0);
