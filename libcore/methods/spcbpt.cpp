@@ -61,7 +61,7 @@ struct Options {
 struct SubspaceTables {
     SubspaceTables(std::shared_ptr<const Subspaces> subspaces, const Options& options)
         : labels(subspaces),
-          gamma(*subspaces, 0, subspaces->lightCount),
+          gamma(*subspaces),
           q(subspaces->q),
           unseen(unseenQ(q, subspaces->lightPaths)),
           windows(subspaces->lightCount, 1) {

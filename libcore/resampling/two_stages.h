@@ -1,5 +1,5 @@
 // Picks in two stages: a light subspace by Gamma, then a vertex of it by its throughput
-// [Su22 6.1, eq 9]. What the rows that use subspaces have in common. (theory.md, "spcbpt")
+// [Su22 6.1, eq 9]. (theory.md, "spcbpt")
 #pragma once
 
 #include <span>
@@ -21,8 +21,8 @@ struct LightCell {
 };
 
 /// Proposes a light vertex for each of `numbers`, u in [0, 1): at most Picks::kMost of them, with the
-/// weight 1 / (`picksTimesPaths` P), P the probability of both stages. Cells by light subspace, the
-/// first of the table's first. An empty one gives nothing and counts as a pick.
+/// weight 1 / (`picksTimesPaths` P), P the probability of both stages. Cells by light subspace; an empty
+/// one gives nothing and counts as a pick.
 void pickInTwoStages(std::span<const double> numbers, const AliasTable& column,
                      std::span<const LightCell> cells, double picksTimesPaths, ProposalSink& sink);
 

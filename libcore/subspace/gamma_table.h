@@ -1,6 +1,7 @@
 // Gamma made ready to draw light subspaces from, and for weights to ask. (theory.md, "spcbpt")
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -9,21 +10,21 @@
 
 namespace lacuna {
 
-/// The columns of Gamma over the light subspaces [first, end): all of them, or one kind under the
-/// condition that it is picked from.
 class GammaTable {
   public:
-    GammaTable(const Subspaces& subspaces, std::uint32_t first, std::uint32_t end);
+    explicit GammaTable(const Subspaces& subspaces);
 
-    /// To draw from: outcomes count from `first`.
+    /// To draw a light subspace from.
     const AliasTable& column(std::uint32_t eye) const { return columns_[eye]; }
-    std::uint32_t first() const { return first_; }
     /// What the weights believe a light subspace's probability to be: within 0.4 %, never zero for
     /// what is not.
-    double believed(std::uint32_t light, std::uint32_t eye) const;
+    double believed(std::uint32_t light, std::uint32_t eye) const {
+        const std::uint32_t high = believed_[std::size_t(eye) * lightCount_ + light];
+        return double(std::bit_cast<float>(high << 16));
+    }
 
   private:
-    std::uint32_t first_, count_;
+    std::uint32_t lightCount_;
     std::vector<AliasTable> columns_;  // by eye subspace
     // In half the memory. Weights look it up for every technique of every path, at random, and may
     // believe what they like.
