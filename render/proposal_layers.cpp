@@ -17,14 +17,9 @@ void ProposalLayers::add(const PathEvent& event) {
 }
 
 Layers ProposalLayers::means() const {
-    const float scale = iterations_ > 0 ? 1.0f / float(iterations_) : 0.0f;
     LayeredImage image(width_, height_);
     for (std::size_t part = 0; part < names_.size(); ++part) {
-        Image layer(width_, height_);
-        for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
-            layer.pixels[i] = sums_[part][i] * scale;
-        }
-        image.setRgb("part." + names_[part], layer);
+        image.setRgb("part." + names_[part], meanOfSum(sums_[part], iterations_, width_, height_));
     }
     return image.channels();
 }

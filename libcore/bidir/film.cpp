@@ -30,6 +30,13 @@ std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rg
     return std::accumulate(leftOut.begin(), leftOut.end(), std::uint64_t(0));
 }
 
+Image meanOfSum(std::span<const Rgb> sum, std::uint64_t iterations, int width, int height) {
+    Image image(width, height);
+    const float scale = iterations > 0 ? 1.0f / float(iterations) : 0.0f;
+    for (std::size_t i = 0; i < sum.size(); ++i) image.pixels[i] = sum[i] * scale;
+    return image;
+}
+
 Film::Film(int width, int height, BlockPlan plan, std::uint64_t first)
     : width_(width), height_(height), plan_(plan), open_(plan.sampleIterations()), block_(first) {}
 
@@ -71,19 +78,15 @@ void Film::add(SumTree::Node node, const ThreadPool* threads) {
     measureOpen();
 }
 
-FilmSum Film::openSum(const ThreadPool* threads) const {
-    return sumOfBlock(open_, layers_, threads);
+FilmSum Film::openSum(const ThreadPool* threads, Layered layered) const {
+    using All = std::span<BlockLayers* const>;
+    return sumOfBlock(open_, layered == Layered::Yes ? All(layers_) : All(), threads);
 }
 
 FilmSum Film::sum(const ThreadPool* threads, Layered layered) const {
     FilmSum sum;
     blocks_.addTo(sum, threads, layered);
-    if (open_.empty()) return sum;
-    if (layered == Layered::Yes) {
-        join(sum, openSum(threads), false, threads);
-    } else {
-        join(sum, sumOfBlock(open_, {}, threads), false, threads, layered);
-    }
+    if (!open_.empty()) join(sum, openSum(threads, layered), false, threads, layered);
     return sum;
 }
 

@@ -32,6 +32,9 @@ struct Splat {
 std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
                         const ThreadPool& pool);
 
+/// By pixel: a sum over iterations as their mean; black where there are none.
+Image meanOfSum(std::span<const Rgb> sum, std::uint64_t iterations, int width, int height);
+
 /// Layers that are filled while the iterations of a block run.
 class BlockLayers {
   public:
@@ -115,7 +118,7 @@ class Film {
     void restore(State state, const ThreadPool& threads);
 
   private:
-    FilmSum openSum(const ThreadPool* threads) const;
+    FilmSum openSum(const ThreadPool* threads, Layered layered = Layered::Yes) const;
     void measureOpen();
 
     int width_, height_;

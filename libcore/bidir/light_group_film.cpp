@@ -26,14 +26,10 @@ void LightGroupFilm::countIteration(const ThreadPool& threads) {
 }
 
 Layers LightGroupFilm::means() const {
-    const float scale = iterations_ > 0 ? 1.0f / float(iterations_) : 0.0f;
     LayeredImage image(width_, height_);
     for (std::size_t group = 0; group < sums_.size(); ++group) {
-        Image layer(width_, height_);
-        for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
-            layer.pixels[i] = sums_[group][i] * scale;
-        }
-        image.setRgb(layerName(groups_.names[group]), layer);
+        image.setRgb(layerName(groups_.names[group]),
+                     meanOfSum(sums_[group], iterations_, width_, height_));
     }
     return image.channels();
 }

@@ -105,10 +105,7 @@ void TechniqueFilm::countIteration() {
 }
 
 Image TechniqueFilm::mean(const std::vector<Rgb>& sum) const {
-    Image image(width_, height_);
-    const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
-    for (std::size_t i = 0; i < sum.size(); ++i) image.pixels[i] = sum[i] * scale;
-    return image;
+    return meanOfSum(sum, iterations_, width_, height_);
 }
 
 std::vector<float> TechniqueFilm::meanOf(const Moments& moments) const {

@@ -78,6 +78,13 @@ void parseModel(Document& document) {
         }
     }
     const std::string text = root.dump();
+    if (const auto nodes = root.find("nodes"); nodes != root.end()) {
+        for (std::size_t i = 0; i < nodes->size(); ++i) {
+            if (const auto extras = (*nodes)[i].find("extras"); extras != (*nodes)[i].end()) {
+                document.nodeExtras[i] = std::move(*extras);
+            }
+        }
+    }
     for (const char* key : kDone) root.erase(key);
     root.update(kept);
     if (text.size() > Limits::kFileBytes) {

@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -28,6 +29,7 @@ struct Document {
     std::vector<Bytes> external;
     std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
     nlohmann::json json;
+    std::map<std::size_t, nlohmann::json> nodeExtras;  ///< by node, of those that have some
     tinygltf::Model model;
     ContentHash hash;  ///< of everything that was read, in order
     std::uint64_t bytesRead = 0;

@@ -180,25 +180,10 @@ std::string lightGroupOf(const Document& document, const json& lacuna, const std
 }
 
 std::string nodeGroup(const Document& document, std::size_t node) {
-    const tinygltf::Value& extras = document.model.nodes[node].extras;
-    if (!extras.IsObject() || !extras.Has("lacuna")) return {};
-    // Nodes are not kept as JSON: there may be a million.
-    json members;
-    const tinygltf::Value& lacuna = extras.Get("lacuna");
-    if (lacuna.IsString()) {
-        members["lacuna"] = lacuna.Get<std::string>();
-    } else if (lacuna.IsObject()) {
-        members["lacuna"] = json::object();
-        if (lacuna.Has("light_group")) {
-            const tinygltf::Value& group = lacuna.Get("light_group");
-            members["lacuna"]["light_group"] =
-                group.IsString() ? json(group.Get<std::string>()) : json("");
-        }
-    } else {
-        members["lacuna"] = nullptr;
-    }
+    const auto extras = document.nodeExtras.find(node);
+    if (extras == document.nodeExtras.end()) return {};
     const std::string place = "nodes[" + std::to_string(node) + "]";
-    return lightGroupOf(document, lacunaExtras(document, members, place), place);
+    return lightGroupOf(document, lacunaExtras(document, extras->second, place), place);
 }
 
 }  // namespace lacuna::gltf

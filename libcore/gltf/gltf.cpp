@@ -37,17 +37,18 @@ class Stopwatch {
 
 /// One instance per placed primitive and copy. Negative determinants stay in toWorld; without one
 /// there is no surface to hit.
+/// `groupName`: of the node's light group, or nothing.
 void addInstances(const Document& document, const Placement& placement, const MeshTable& table,
-                  SceneDescription& scene, Warnings& warnings) {
+                  const std::string& groupName, SceneDescription& scene, Warnings& warnings) {
     const int mesh = document.model.nodes[placement.node].mesh;
     if (mesh < 0) return;
     const std::string place = "nodes[" + std::to_string(placement.node) + "]";
     warnings.add("skins are not rendered: the mesh keeps its own pose",
                  document.model.nodes[placement.node].skin >= 0, place);
     std::uint32_t group = Instance::kNoGroup;
-    if (const std::string name = nodeGroup(document, placement.node); !name.empty()) {
+    if (!groupName.empty()) {
         group = std::uint32_t(scene.nodeGroups.size());
-        scene.nodeGroups.push_back(name);
+        scene.nodeGroups.push_back(groupName);
     }
     for (const Affine& copy : meshCopies(document, placement.node)) {
         const Affine toWorld = placement.toWorld * copy;
@@ -112,10 +113,10 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
     MeshTable table = readMeshes(document, used, warnings);
     scene.meshes = std::move(table.meshes);
     for (const Placement& placement : placements) {
-        addInstances(document, placement, table, scene, warnings);
+        const std::string group = nodeGroup(document, placement.node);
+        addInstances(document, placement, table, group, scene, warnings);
         addCamera(document, placement.node, placement.toWorld, scene, warnings);
-        addLight(document, placement.node, placement.toWorld, nodeGroup(document, placement.node),
-                 scene, warnings);
+        addLight(document, placement.node, placement.toWorld, group, scene, warnings);
     }
     addDefaultMaterial(scene);
     scene.fromBlender = isFromBlender(document);

@@ -46,7 +46,6 @@ struct Row {
     const char* strength;    ///< behind "light ", where it wins
     bool wholeFilm = false;  ///< an iteration costs as much as the film is large, whatever the crop
     const char* setting = nullptr;  ///< of the row, beside what is measured
-    bool merges = false;            ///< only where a picture may be consistent, not unbiased
 
     std::string name() const {
         return setting ? std::string(method) + " with " + setting : std::string(method);
@@ -57,8 +56,8 @@ constexpr Row kRows[] = {
     {"pt", 1.1, "is in plain sight"},
     {"risbpt", 1.4, "comes from many places near and glossy", true},
     {"spcbpt", 1.5, "takes ways that can be learned"},
-    {"spcbpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on", true},
-    {"vcm", 1.4, "comes through glass or mirrors", true, nullptr, true},
+    {"spcbpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on"},
+    {"vcm", 1.4, "comes through glass or mirrors", true},
 };
 /// Where trials find nothing clearly better.
 constexpr const char* kUsual = "spcbpt";
@@ -77,6 +76,14 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
             "train.subspaces=" + rounded(std::min(40.0 * std::pow(factor, 0.6), 1000.0)),
             "train.light_paths=" + rounded(std::min(4.0 * p + 4000.0, 2e6)),
             "train.epochs=" + rounded(std::clamp(factor, 5.0, 20.0))};
+}
+
+/// Whether its picture is consistent, not unbiased.
+bool merges(const Row& candidate) {
+    const MethodRow& row = findMethod(candidate.method);
+    std::vector<std::string> assignments;
+    if (candidate.setting) assignments.push_back(candidate.setting);
+    return isConsistentOnly(row, resolve(row, assignments));
 }
 
 bool learns(const MethodRow& row) {
@@ -103,7 +110,7 @@ class Pilot {
         show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
         for (const Row& row : std::span(kRows).subspan(1)) {
             if (row.wholeFilm && smallFilmPixels() > kMostFilmPixels) continue;
-            if (row.merges && !options_.allowBias) continue;
+            if (!options_.allowBias && merges(row)) continue;
             if (mayKeepCaches(row)) tryRow(row);
         }
         judge();
@@ -227,9 +234,10 @@ class Pilot {
         for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
         const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
         // What rows without merging lack, however long they render.
+        const auto doesMerge = [](const Tried& t) { return !t.trial.onlyMerged.empty(); };
         double lacking = 0.0;
         for (const Tried& t : tried_) {
-            if (t.trial.onlyMerged.empty()) continue;
+            if (!doesMerge(t)) continue;
             lacking = std::max(
                 lacking, errorWithout(t.trial.onlyMerged, t.trial.halves, small_->crop.width()));
         }
@@ -237,7 +245,7 @@ class Pilot {
             // The squared error at the end: noise of one iteration times its cost, which is a share of
             // the budget. What was trained is there already.
             Tried& t = tried_[i];
-            const double left = t.row->merges ? 0.0 : lacking * lacking;
+            const double left = doesMerge(t) ? 0.0 : lacking * lacking;
             t.verdict = {errors[i],
                          errors[i] * errors[i] * double(t.trial.iterations) * t.cost + left};
         }

@@ -2,9 +2,7 @@
 // and together they are the picture.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"

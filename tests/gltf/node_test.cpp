@@ -329,6 +329,7 @@ TEST(Node, LightGroupsAreNames) {
     refused({{"light_group", 7}}, "a name");
     refused({{"light_group", ""}}, "a name");
     refused({{"light_group", json::array({"key"})}}, "a name");
+    refused({{"light_group", json::array()}}, "a name");
     refused("{light_group: key}", "a JSON object");
     refused("7", "a JSON object");
     refused(true, "a JSON object");
