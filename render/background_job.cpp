@@ -32,8 +32,9 @@ std::optional<std::string> BackgroundJob::failure() {
     if (!doing_.valid() || !idle()) return std::nullopt;
     try {
         doing_.get();
+        told_ = false;
     } catch (const std::exception& e) {
-        return e.what();
+        if (!std::exchange(told_, true)) return e.what();
     }
     return std::nullopt;
 }

@@ -23,7 +23,8 @@ class BackgroundJob {
     /// In the background. `due` or never begun.
     void begin(std::function<void()> work);
     void wait();
-    /// Why the last one failed; told once.
+    /// Why the last one failed. Told once, and not again until one succeeds: a disk that is full
+    /// stays full.
     std::optional<std::string> failure();
 
   private:
@@ -33,6 +34,7 @@ class BackgroundJob {
     std::chrono::duration<double> every_;
     Clock::time_point last_ = Clock::now();
     std::future<void> doing_;
+    bool told_ = false;  ///< that the one before failed
 };
 
 }  // namespace lacuna

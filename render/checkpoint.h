@@ -31,7 +31,7 @@ class Checkpoint {
     void save(Part part);
     /// Writes and waits. Throws RunError.
     void finish(Part part);
-    /// Why the last save in the background failed; told once.
+    /// Why the last save in the background failed; told once (background_job.h).
     std::optional<std::string> failure() { return saving_.failure(); }
 
   private:

@@ -132,27 +132,11 @@ void readTotals(const json& text, Part& part) {
     s.held = text.at("held").get<std::map<std::string, std::uint64_t>>();
 }
 
-/// Of everything about the part that the image holds.
-std::string hashOf(const LayeredImage& image) {
-    ContentHash hash;
-    const auto addText = [&](const std::string& text) {
-        hash.addValue(std::uint64_t(text.size()));
-        hash.addValues(std::span(text.data(), text.size()));
-    };
-    for (const char* name : kAttributes) addText(std::get<std::string>(image.attributes.at(name)));
-    for (const auto& [name, plane] : image.channels()) {
-        if (!name.starts_with(kLayer)) continue;
-        addText(name);
-        hash.addValues(std::span(plane.data(), plane.size()));
-    }
-    return hash.hex();
-}
-
 Part readPart(LayeredImage& image) {
     const auto text = [&](const char* name) {
         return std::get<std::string>(image.attributes.at(name));
     };
-    if (text(kHash) != hashOf(image)) throw std::invalid_argument("another hash");
+    if (text(kHash) != partHash(image)) throw std::invalid_argument("another hash");
     Part part;
     part.inputs = CacheStamp::parse(text("partInputs"));
     part.width = image.width();
@@ -187,6 +171,21 @@ std::uint64_t Part::iterations() const {
     return n;
 }
 
+std::string partHash(const LayeredImage& image) {
+    ContentHash hash;
+    const auto addText = [&](const std::string& text) {
+        hash.addValue(std::uint64_t(text.size()));
+        hash.addValues(std::span(text.data(), text.size()));
+    };
+    for (const char* name : kAttributes) addText(std::get<std::string>(image.attributes.at(name)));
+    for (const auto& [name, plane] : image.channels()) {
+        if (!name.starts_with(kLayer)) continue;
+        addText(name);
+        hash.addValues(std::span(plane.data(), plane.size()));
+    }
+    return hash.hex();
+}
+
 void addPart(LayeredImage& image, const Part& part) {
     json sums{{"format", kFormat},
               {"block_iterations", part.plan.iterations},
@@ -207,7 +206,7 @@ void addPart(LayeredImage& image, const Part& part) {
     image.attributes["partSums"] = sums.dump();
     image.attributes["partTotals"] =
         totalsText(part).dump(-1, ' ', false, json::error_handler_t::replace);
-    image.attributes[kHash] = hashOf(image);
+    image.attributes[kHash] = partHash(image);
 }
 
 Part takePart(LayeredImage& image, const std::string& path) {

@@ -27,6 +27,10 @@ struct Part {
 /// Adds channels `sum.*` and attributes `part*`, with a hash of both, to an image of that size.
 void addPart(LayeredImage& image, const Part& part);
 
+/// Of everything about the part that the image holds: what addPart writes as `partHash`. Throws
+/// std::out_of_range where its attributes are missing.
+std::string partHash(const LayeredImage& image);
+
 /// Takes them out again. Throws InputError if there is none, or not as it was written; `path` is
 /// the file's.
 Part takePart(LayeredImage& image, const std::string& path);

@@ -60,8 +60,9 @@ Settings resolveOptions(std::span<const Option> options, std::span<const std::st
                                          [&](const Option& o) { return o.name == name; });
         if (option == options.end()) {
             const std::string names = joined(options, ", ", &Option::name);
-            throw UsageError(title + name + ": " + owner + " has " +
-                             (names.empty() ? "no parameters" : "the parameters " + names));
+            throw UsageError(title + name + ": expected " +
+                             (names.empty() ? "no parameter" : "one of " + names) +
+                             ", found one that " + owner + " does not have");
         }
         settings[name] =
             option->checked(std::string_view(assignment).substr(equals + 1), title + name);

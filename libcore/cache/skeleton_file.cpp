@@ -93,6 +93,10 @@ SkeletonFile readSkeletonFile(const std::string& path, const CacheStamp& expecte
             {Vec3d{nodes[i], nodes[i + 1], nodes[i + 2]} - centre, nodes[i + 3]});
     }
     const auto count = file.skeleton.nodes.size();
+    if (count > NodeMap::kNone) {
+        vdb::refuse(path, "at most " + std::to_string(NodeMap::kNone) + " nodes",
+                    std::to_string(count), remedy);
+    }
     const std::vector<double> edges = doublesOf(*content.meta, kEdges, 8, path, remedy);
     for (std::size_t i = 0; i < edges.size(); i += 8) {
         if (!(edges[i] >= 0 && edges[i] < double(count) && edges[i + 1] >= 0 &&
@@ -115,8 +119,8 @@ SkeletonFile readSkeletonFile(const std::string& path, const CacheStamp& expecte
     std::vector<std::uint16_t> entries;
     entries.reserve(values.size());
     for (const std::int32_t v : values) {
-        const std::int32_t node = v < -1 ? -2 - v : v;
-        if (node >= std::int32_t(count)) vdb::refuse(path, "its own nodes", "others", remedy);
+        const std::int64_t node = v < -1 ? -2 - std::int64_t(v) : v;
+        if (node >= std::int64_t(count)) vdb::refuse(path, "its own nodes", "others", remedy);
         entries.push_back(node < 0 ? NodeMap::kNone
                                    : std::uint16_t(node | (v < -1 ? NodeMap::kSolid : 0)));
     }

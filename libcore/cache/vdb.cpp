@@ -2,6 +2,7 @@
 
 #include <openvdb/io/Stream.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "libcore/base/error.h"
@@ -18,6 +19,7 @@ const char* const kOrigin = "lacuna.origin";  // the file's coordinates
 const char* const kVoxel = "lacuna.voxel_size";
 const char* const kSize = "lacuna.size";
 constexpr int kLargestSide = 4096;
+constexpr double kMostVoxels = double(1 << 30);  // dense arrays of them are made
 
 openvdb::Vec3d toVdb(const Vec3d& v) {
     return {v.x, v.y, v.z};
@@ -84,7 +86,15 @@ Content read(const std::string& path, const std::string& kind, const CacheStamp&
     for (const int n : content.shape.size) {
         if (n < 1 || n > kLargestSide) refuse(path, "a grid of sane size", "another", remedy);
     }
-    if (!(content.shape.voxel > 0.0)) refuse(path, "voxels with a size", "none", remedy);
+    const VoxelIndex& size = content.shape.size;
+    if (double(size[0]) * size[1] * size[2] > kMostVoxels) {
+        refuse(path, "a grid of sane size", "another", remedy);
+    }
+    const Vec3d& origin = content.shape.origin;
+    if (!(content.shape.voxel > 0.0) || !std::isfinite(content.shape.voxel) ||
+        !std::isfinite(origin.x + origin.y + origin.z)) {
+        refuse(path, "voxels with a size and a place", "none", remedy);
+    }
     const std::string differ = differencesText(expected, content.stamp);
     if (!differ.empty()) refuse(path, kind + " made of what is rendered", differ, remedy);
     return content;

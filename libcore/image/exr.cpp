@@ -33,12 +33,22 @@ class AtomicStream final : public Imf::OStream {
   public:
     AtomicStream(const std::string& path, AtomicFile& file)
         : Imf::OStream(path.c_str()), file_(file) {}
-    void write(const char data[], int bytes) override { file_.write(data, std::size_t(bytes)); }
+    void write(const char data[], int bytes) override {
+        file_.write(data, std::size_t(bytes));
+        if (wentBack_) hasHole_ |= std::all_of(data, data + bytes, [](char c) { return c == 0; });
+    }
     uint64_t tellp() override { return file_.tell(); }
-    void seekp(uint64_t position) override { file_.seek(position); }
+    void seekp(uint64_t position) override {
+        wentBack_ = position < file_.tell();
+        file_.seek(position);
+    }
+
+    /// Whether the table of scan lines, which is written last, says of some that they are nowhere.
+    bool hasHole() const { return hasHole_; }
 
   private:
     AtomicFile& file_;
+    bool wentBack_ = false, hasHole_ = false;
 };
 
 /// OpenEXR's way out of bytes in memory.
@@ -173,8 +183,8 @@ void writeExr(const std::string& path, const LayeredImage& image, ExrCompression
     }
 
     AtomicFile file(path);
+    AtomicStream stream(path, file);
     try {
-        AtomicStream stream(path, file);
         // The table of scan lines is written by the destructor, which swallows exceptions: that is
         // what commit() below asks the file about.
         Imf::OutputFile output(stream, header, 0);
@@ -188,6 +198,8 @@ void writeExr(const std::string& path, const LayeredImage& image, ExrCompression
         throw RunError(path + ": expected to write an image, found: " + e.what() +
                        "; choose another output");
     }
+    // OpenEXR says nothing where it found no memory to compress a block in.
+    if (stream.hasHole()) throw std::bad_alloc();
     file.commit();
 }
 

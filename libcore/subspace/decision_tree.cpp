@@ -15,11 +15,16 @@ constexpr std::size_t kSamplesJudged = 2048;  // per node, when attributes are c
 DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
     : nodes_(std::move(nodes)) {
     if (nodes_.empty()) throw std::invalid_argument("decision tree: no node");
+    std::vector<bool> hasParent(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const std::uint32_t attribute = nodes_[i].code & kLeaf, index = nodes_[i].index();
-        const bool good = nodes_[i].isLeaf() ? index < labels
-                                             : attribute < SubpathEnd::kAttributes && index > i &&
-                                                   std::size_t(index) + 1 < nodes_.size();
+        bool good = nodes_[i].isLeaf() ? index < labels
+                                       : attribute < SubpathEnd::kAttributes && index > i &&
+                                             std::size_t(index) + 1 < nodes_.size();
+        if (good && !nodes_[i].isLeaf()) {
+            good = !hasParent[index] && !hasParent[index + 1];
+            hasParent[index] = hasParent[index + 1] = true;
+        }
         if (!good) throw std::invalid_argument("decision tree: node " + std::to_string(i));
     }
     arrange();

@@ -33,7 +33,7 @@ class DecisionTree {
 
     /// One leaf with the label 0.
     DecisionTree() : DecisionTree({{0.0f, kLeaf}}, 1) {}
-    /// Throws std::invalid_argument unless every child lies behind its parent, inside the array,
+    /// Throws std::invalid_argument unless every child lies behind its one parent, inside the array,
     /// with labels below `labels`.
     DecisionTree(std::vector<Node> nodes, std::uint32_t labels);
 

@@ -186,7 +186,8 @@ TEST(OptionTable, messagesNameTheOptionAndWhatItTakes) {
     EXPECT_EQ(refusalOf({"paths"}), "--set expected name=value, found 'paths'");
     EXPECT_EQ(refusalOf({""}), "--set expected name=value, found ''");
     const std::string names =
-        "method x has the parameters paths, share, loud, metal, note, part.count";
+        "expected one of paths, share, loud, metal, note, part.count, found one that method x does "
+        "not have";
     EXPECT_EQ(refusalOf({"count=1"}), "--set count: " + names) << "without its group's name";
     EXPECT_EQ(refusalOf({"=1"}), "--set : " + names);
     EXPECT_EQ(refusalOf({"Paths=1"}), "--set Paths: " + names);
@@ -196,7 +197,7 @@ TEST(OptionTable, messagesNameTheOptionAndWhatItTakes) {
         resolveOptions({}, std::vector<std::string>{"a=1"}, "method pt", "");
         ADD_FAILURE();
     } catch (const UsageError& e) {
-        EXPECT_STREQ(e.what(), "a: method pt has no parameters");
+        EXPECT_STREQ(e.what(), "a: expected no parameter, found one that method pt does not have");
     }
 }
 
