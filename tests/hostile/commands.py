@@ -203,7 +203,7 @@ class Attack:
 
     def again(self, command: Command, folder: Path) -> list[str]:
         """Whether the command does its work now that nothing is in its way: what was left behind must not be."""
-        more = ["--prepare"] if command.caches else []
+        more = ["--prepare"] if command.caches and command.tool == "lacuna-render" else []
         outcome = self.run(command, folder, more=more)
         return [f"afterwards: {wrong}" for wrong in self.judge(command, folder, outcome)] + (
             [f"afterwards: exit code {outcome.exit}: {outcome.message}"] if outcome.exit else [])

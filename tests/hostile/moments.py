@@ -4,29 +4,39 @@ from __future__ import annotations
 
 import random
 import signal
+import subprocess
 import time
+from pathlib import Path
 
 from commands import COMMANDS, Attack, Command
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 
 
+def is_handled(process: subprocess.Popen, number: signal.Signals) -> bool:
+    """Whether the tool handles the signal by now: while the dynamic linker is at work nothing of ours can."""
+    for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("SigCgt:"):
+            return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+    return False
+
+
 def strike(attack: Attack, command: Command, number: signal.Signals, moment: float) -> list[str]:
     """Sends the signal `moment` seconds after the start."""
     folder = attack.folder(command)
-    begin = time.monotonic()
     process = attack.start(command, folder)
     time.sleep(moment)
     struck = time.monotonic()
+    handled = is_handled(process, number)
     process.send_signal(number)
     outcome = attack.outcome(process, struck)
     killed = number == signal.SIGKILL and outcome.exit == -signal.SIGKILL
     if killed:
         outcome.exit, outcome.message = 1, "killed"
-    # A signal while the dynamic linker is at work, before anything of ours is, ends the process as it always does.
-    if outcome.exit == -number and struck - begin < 0.1:
+    if outcome.exit == -number and not handled:
         outcome.exit, outcome.message = 130, "too early to say anything"
-    wrong = attack.judge(command, folder, outcome)
+    # --quiet says nothing of what an interrupt saved.
+    wrong = attack.judge(command, folder, outcome, speaks=outcome.exit != 130)
     if not killed and outcome.exit not in (0, 130):
         wrong.append(f"exit code {outcome.exit}")
     wrong += attack.again(command, folder)

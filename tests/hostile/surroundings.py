@@ -51,8 +51,10 @@ def threads(attack: Attack) -> Iterator[Finding]:
     for command in COMMANDS:
         if command.tool == "lacuna-study":
             continue
-        for number in ("1", "8"):
-            yield tried(attack, f"{number} threads", command, exits={0}, more=["--threads", number])
+        for number in ("1", "64"):
+            options = [number if before == "--threads" else option
+                       for before, option in zip(["", *command.arguments], command.arguments)]
+            yield tried(attack, f"{number} threads", replace(command, arguments=options), exits={0})
 
 
 def locales(attack: Attack) -> Iterator[Finding]:
