@@ -84,6 +84,7 @@ GROUPS = [
         Case("nonsense-skeletons", "nodes and balls anywhere, a random map", "every mean stays"),
         Case("nonsense-subspaces", "random trees, Q and Gamma", "every mean stays"),
         Case("nonsense-emission", "light paths that begin anywhere, with any density", "every mean stays"),
+        Case("learned-dark-lamps", "learned emission beside lamps without power", "nothing for them, and no less"),
         Case("nonsense-walks", "walks that go on anywhere, by any share", "every mean stays"),
         Case("subspace-range", "Q and populations over thirty decades", "every mean stays"),
     ]),
