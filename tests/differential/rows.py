@@ -16,7 +16,7 @@ LEARNED = {"emission_paths", "walk_paths"}  # 0 is half a million of them
 # Never drawn: a box in the scene's coordinates, and what merging is set to below.
 UNDRAWN = {"voxels.domain", "radius", "photons"}
 RADIUS = 0.003  # units; what merging then blurs no test here can see
-SPLATS = 2000  # light paths where nothing else makes the picture: few of them meet what the camera sees
+SPLATS = 2000  # light paths where little else makes the picture: few of them meet what the camera sees
 # Photon mapping alone is noise with few photons and a small radius, and blurs with a large one: no mean of it is judged.
 PHOTONS, PHOTON_RADIUS = 500, 0.06
 
@@ -76,18 +76,20 @@ def _drawn(r, name, kind):
     return str(round(math.exp(r.uniform(math.log(max(low, 1)), math.log(high)))))
 
 
-def settings(row, r, unit):
-    """Options of lacuna-render for a row: in half of all draws the defaults, made small."""
+def settings(row, r, unit, switches):
+    """Options of lacuna-render for a row, beside what is switched: in half of all draws the defaults, made small."""
     chosen = {name: SMALL[name] for name, _ in row.parameters if name in SMALL}
     if r.random() < 0.5:
         for name, kind in row.parameters:
             value = _drawn(r, name, kind) if r.random() < 0.4 else None
             if value is not None:
                 chosen[name] = value
+    if any(f"{technique}=off" in switches for technique in TECHNIQUES):
+        chosen.pop("merge", None)  # which would bring what is to be missing
+    if row.techniques == {"splats"} or "connections=off" in switches and "splats" in row.techniques:
+        chosen["light_paths"] = SPLATS
     if row.name == "ppm":
         chosen.update(photons=PHOTONS, radius=f"{PHOTON_RADIUS * unit:.4g}")
-    elif row.techniques == {"splats"}:
-        chosen["light_paths"] = SPLATS
     elif any(name == "radius" for name, _ in row.parameters):
         chosen["radius"] = f"{RADIUS * unit:.4g}"
     options = [x for name, value in chosen.items() for x in ("--set", f"{name}={value}")]
