@@ -67,10 +67,18 @@ std::unique_ptr<Asset> acquireSkeleton(const AssetRequest& r) {
         });
         if (!voxels) {
             voxels = voxelizeScene(scene, settings, stamp, r.pool, r.cancel, r.phases).file;
-            r.pool.run([&] { writeVoxelFile(voxelPath, *voxels, scene.centre()); });
+            r.pool.run([&] {
+                writeVoxelFile(voxelPath, *voxels, scene.centre());
+                voxels = readVoxelFile(voxelPath, stamp, scene.centre(), remedy);
+            });
         }
         file = skeletonize(scene, *voxels, r.pool, r.cancel, r.phases).file;
-        r.pool.run([&] { writeSkeletonFile(path, *file, scene.centre()); });
+        // Read back: files have the scene's own coordinates, to which places are rounded, and the
+        // picture must be the one that the next render makes of the file.
+        r.pool.run([&] {
+            writeSkeletonFile(path, *file, scene.centre());
+            file = readSkeletonFile(path, stamp, scene.centre(), remedy);
+        });
         r.built(path);
     }
     return std::make_unique<SkeletonAsset>(std::move(*file));

@@ -127,8 +127,10 @@ void shareOut(std::span<const LightMass> masses, std::span<const double> power, 
     const double allWatts = watts[0] + watts[1], allMass = mass[0] + mass[1];
     const double byPower = allWatts > 0.0 ? watts[0] / allWatts : 0.5;
     const double byMass = allMass > 0.0 ? mass[0] / allMass : byPower;
-    const double lower = whole * (effective * byMass + shape.virtualSamples * byPower) /
-                         (effective + shape.virtualSamples);
+    // At most 1, rounding and all: a half of no power must not get less than nothing.
+    const double share =
+        (effective * byMass + shape.virtualSamples * byPower) / (effective + shape.virtualSamples);
+    const double lower = whole * share;
     shareOut(masses.first(half), power.first(half), lower, shape, pmf.first(half));
     shareOut(masses.subspan(half), power.subspan(half), whole - lower, shape, pmf.subspan(half));
 }

@@ -13,6 +13,7 @@
 #include "libcore/material/albedo_tables.h"
 #include "libcore/material/bsdf_inl.h"
 #include "libcore/material/fresnel.h"
+#include "libcore/material/refraction.h"
 
 namespace lacuna {
 namespace {
@@ -59,6 +60,11 @@ Rgb coatReflectance(float ior, const Rgb& color) {
 
 }  // namespace
 
+bool refractsRoughly(float roughness, float ior) {
+    const float alpha = alphaOf(roughness);
+    return alpha > 0.0f && alpha * (legalIor(ior) - 1.0f) >= kMinRefractionSpread;
+}
+
 float Bsdf::layerIor(float ior, const Rgb& specularColor) {
     if (maxComponent(specularColor) == 1.0f) {
         return legalIor(ior);  // as it is, without rounding
@@ -103,7 +109,7 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     }
     const bool thin = parameters.thin;
     const bool roughGlass =
-        alpha_ > 0.0f && (thin || alpha_ * (ior_ - 1.0f) >= kMinRefractionSpread);
+        thin ? alpha_ > 0.0f : refractsRoughly(parameters.roughness, parameters.ior);
     const LobeKind glassKind =
         thin ? (roughGlass ? LobeKind::RoughThinTransmission : LobeKind::SmoothThinTransmission)
              : (roughGlass ? LobeKind::RoughRefraction : LobeKind::SmoothRefraction);

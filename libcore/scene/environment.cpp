@@ -118,8 +118,9 @@ Environment::Sample Environment::inTexel(const DiscreteDistribution::Pick& pick,
     const double cosine = row.top + (row.bottom - row.top) * u2;
     const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
     const SineCosine longitude = sineCosineOfTurns((float(x) + u1) / float(width_) - 0.5f + turn_);
-    return {Vec3{sine * longitude.sine, float(cosine), -sine * longitude.cosine},
-            float(pick.pmf / row.solidAngle)};
+    const Vec3 direction{sine * longitude.sine, float(cosine), -sine * longitude.cosine};
+    // Rounding may lead into the next texel: the density is the one that is found there.
+    return {direction, pdfW(direction)};
 }
 
 float Environment::pdfWAt(Vec2 uv) const {

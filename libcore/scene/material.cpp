@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/material/bsdf.h"
+#include "libcore/material/refraction.h"
 
 namespace lacuna {
 
@@ -37,10 +38,10 @@ bool mayBeMirror(const Material& m) {
     return (mayReflect(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m);
 }
 bool mayRefractRoughly(const Material& m) {
-    return mayTransmit(m) && !m.thin && mayBeRough(m);
+    return mayTransmit(m) && !m.thin && refractsRoughly(m.roughness, m.ior);
 }
 bool mayRefractSmoothly(const Material& m) {
-    return mayTransmit(m) && !m.thin && mayBeSmooth(m);
+    return mayTransmit(m) && !m.thin && (!mayRefractRoughly(m) || m.metallicRoughnessTexture);
 }
 bool mayPassRoughly(const Material& m) {
     return mayTransmit(m) && m.thin && mayBeRough(m);

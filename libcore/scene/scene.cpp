@@ -139,7 +139,8 @@ bool Scene::visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& n
 bool Scene::visibleToInfinity(const Vec3& a, const Vec3& ngA, const Vec3& direction, RayKind kind,
                               RayTally& tally) const {
     ++tally.counts[std::size_t(kind)];
-    const Ray ray{offsetOrigin(a, ngA, direction, offsetFloor_), direction};
+    Ray ray{offsetOrigin(a, ngA, direction, offsetFloor_), direction};
+    ray.atLens = kind == RayKind::Splat;
     if (tally.recording) tally.recording->push_back({ray, kind});
     return !accel_->occluded(ray);
 }

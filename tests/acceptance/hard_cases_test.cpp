@@ -273,6 +273,15 @@ TEST_P(HardCases, lampsHiddenFromTheCamera) {
     SceneBuilder b = stage();
     b.add(quad({-0.3f, 1.2f, 0.2f}, {0.6f, 0, 0}, {0, 0, 0.6f}, b.add(lamp)));
     expectReference(b, quickShot(), "hidden lamp in view");
+    SceneBuilder pane;
+    lacuna::Material hidden = matte(Rgb(0.5f));
+    hidden.hiddenFromCamera = true;
+    pane.environment(constantSky(1), 1);
+    pane.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
+    pane.add(quad({-1, 0, 0}, {2, 0, 0}, {0, 2, 0}, pane.add(hidden)));
+    pane.add(lookAt({0, 0.8, 2}, {0, 0.5, 0}, 40));
+    expectReference(pane, quickShot(), "the sky and a floor behind a hidden pane");
+    stabilityCase("hidden-from-camera", worstDeviation(), kOfAllowed);
 }
 
 // Paths

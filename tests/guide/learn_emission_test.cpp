@@ -9,6 +9,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
 #include "tests/scene/scene_builder.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -117,6 +118,38 @@ TEST(LearnEmission, DividesNoLightWithoutExtent) {
     place.light = 0;
     EXPECT_EQ(lights.guidedBy(learned.guide).guidedPdfs(place, {0, 0, 1}, {}).point, 1.0f);
     EXPECT_NEAR(learned.heldOutLoss, 1.0 / (0.1 + 0.9 * 4), 0.02);
+}
+
+/// Rounding leaves lights without power no less than nothing.
+TEST(LearnEmission, GivesNothingToLightsWithoutPower) {
+    std::vector<EmissiveTriangle> triangles(4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        triangles[i].corners = {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}};
+        triangles[i].radiance = Rgb(i % 2 == 0 ? 1.0f : 0.0f);
+    }
+    const Lights lights(triangles, {}, {}, nullptr, 4.0f);
+    double furthest = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Rng rng(seed, 0, StreamKind::User, 0);
+        Planted p;
+        for (int i = 0; i < 2000; ++i) {
+            EmissionSamples::Sample s{};
+            s.light = rng.below(3) == 0 ? 2 : 0;
+            s.pixel = std::uint32_t(i);
+            s.point = {rng.uniformDouble(), rng.uniformDouble()};
+            s.ray = {0.1 * rng.uniformDouble(), rng.uniformDouble()};
+            s.contribution = s.withRay = s.pdfPoint = s.pdfRay = 1.0f;
+            (i % 10 == 0 ? p.heldOut : p.train).put(s);
+        }
+        const LearnedEmission learned = learnEmission(lights, p.train, p.heldOut, pool());
+        ASSERT_TRUE(learned.guide);
+        learned.guide->check(4);
+        for (const std::size_t dark : {1u, 3u}) {
+            furthest = std::max(furthest, std::abs(learned.guide->pmf[dark]));
+        }
+    }
+    EXPECT_EQ(furthest, 0.0);
+    stabilityCase("learned-dark-lamps", furthest, "for a lamp without power");
 }
 
 /// What was found under a guide speaks as if it had been found without one.

@@ -47,6 +47,20 @@ std::string preparing(const std::string& method) {
     return text;
 }
 
+class RenderWithSkeleton : public RenderTool {};
+
+/// Places are rounded in a file: who makes one must use what the next render will read.
+TEST_F(RenderWithSkeleton, MakesThePictureThatItsFileMakes) {
+    const std::string command = std::string(LACUNA_SCENES) +
+                                "/court.glb -o @out.exr --method skelbpt --iterations 16 --prepare "
+                                "--cache @cache --set candidates=100 --set voxels.resolution=16 "
+                                "--width 24 --height 16 --quiet";
+    ASSERT_EQ(run(command).exitCode, 0);
+    const LayeredImage made = readExrLayers(path("out.exr"));
+    ASSERT_EQ(run(command).exitCode, 0);
+    EXPECT_EQ(readExrLayers(path("out.exr")).channels(), made.channels());
+}
+
 class RenderThreadsSlow : public RenderThreads {};
 
 std::vector<std::string> names() {

@@ -129,6 +129,11 @@ TEST(RenderUnits, EffectsFollowWhatInstancesUse) {
     EXPECT_TRUE(simulated("smooth_refraction"));
     EXPECT_TRUE(!simulated("rough_refraction") && !simulated("area_lights"));
     EXPECT_TRUE(!simulated("diffuse"));
+    // Of any roughness it is rendered as smooth where its index is 1: light goes straight on.
+    scene.materials[1].roughness = 0.5f;
+    EXPECT_TRUE(!simulated("smooth_refraction") && simulated("rough_refraction"));
+    scene.materials[1].ior = 1.0f;
+    EXPECT_TRUE(simulated("smooth_refraction") && !simulated("rough_refraction"));
     scene.instances = {{0, {}}, {2, {}}, {2, {}}};
     EXPECT_TRUE(!simulated("smooth_refraction") && simulated("area_lights"));
     EXPECT_TRUE(simulated("glossy") && !simulated("mirror"));

@@ -37,6 +37,22 @@ void expectNear(const Rgb& a, const Rgb& b, float tolerance) {
     EXPECT_NEAR(a.b, b.b, tolerance);
 }
 
+/// At the borders of texels above all, where rounding leads into the next one.
+TEST(Environment, SamplesHaveTheDensityOfTheirDirections) {
+    constexpr float kLast = 1.0f - 0x1p-24f;
+    int different = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Environment e(noise(1 + i % 17, 1 + i % 9), 1, 0.36 * i, "noise");
+        for (const float u : {0.0f, 0x1p-23f, 0.5f, kLast}) {
+            for (const float v : {0.0f, 0x1p-23f, 0.5f, kLast}) {
+                const Environment::Sample s = e.sample(0.001 * i, u, v);
+                different += s.pdfW != e.pdfW(s.direction);
+            }
+        }
+    }
+    EXPECT_EQ(different, 0);
+}
+
 TEST(Environment, CentreIsMinusZRightIsPlusXTopIsPlusY) {
     const Image image = noise(12, 7);
     const Environment e(image, 1, 0, "noise");

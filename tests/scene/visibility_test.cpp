@@ -59,6 +59,8 @@ TEST(Visibility, OnlyTheLensPassesWhatIsHiddenFromTheCamera) {
         EXPECT_TRUE(scene->trace(front, {}, back - front, RayKind::LightWalk, tally));
         EXPECT_TRUE(scene->visible(front, {}, back, {}, RayKind::Splat, tally));
         EXPECT_FALSE(scene->visible(front, {}, back, {}, RayKind::Connection, tally));
+        EXPECT_TRUE(scene->visibleToInfinity(front, {}, back - front, RayKind::Splat, tally));
+        EXPECT_FALSE(scene->visibleToInfinity(front, {}, back - front, RayKind::Connection, tally));
     }
 }
 
