@@ -61,8 +61,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
                  "A layer of the .exr for each group of lights; together they are the picture")
         ->group(picture);
     app.add_option("--layer", o.layerTexts,
-                   "A layer of the paths that a light path expression matches, in OSL's notation: "
-                   "caustics='C<RD><.S>+L'; may be repeated")
+                   "A layer of the paths that a light path expression matches, in OSL's notation "
+                   "(C<RD>L, C.*<TS>.*L); any number")
         ->type_name("NAME=EXPRESSION")
         ->allow_extra_args(false)
         ->group(picture);

@@ -109,7 +109,7 @@ TEST_P(PathLayersOf, AddUpToThePicture) {
             double energy = 0.0;
             for (const float value : plane) energy += double(value);
             // Splats alone see nothing through mirrors and glass.
-            if (name != "singular") EXPECT_GT(energy, 0.0) << name;
+            EXPECT_TRUE(energy > 0.0 || name == "singular") << name;
         }
     }
 }
@@ -156,7 +156,7 @@ TEST_P(PathLayersSameAs, OfAPathTracer) {
     const PathLayers paths(*scene, false, expressions(texts));
     Shot shot;
     shot.width = shot.height = 8;
-    shot.iterations = 48;
+    shot.iterations = 160;
     const std::vector<Moments> expected = meansOf(*scene, "pt", paths, shot);
     const std::vector<Moments> found = meansOf(*scene, GetParam(), paths, shot);
     const double allowed = allowedErrors(kFalseAlarm, double(texts.size()), 11.0);
