@@ -191,11 +191,13 @@ TEST_F(RenderPieces, otherCommandsAreRefused) {
         {" --rr-depth 2", "roulette depth"},
     };
     for (const auto& [more, part] : others) expectFailure(common + more, 3, part);
-    const std::string layered = quick("lvcbpt", "--quiet --checkpoint @layered --layer ");
-    ASSERT_EQ(run(layered + "x=CL --layer y=CDL").exitCode, 0);
-    EXPECT_EQ(run(layered + "y=CDL --layer x=CL").exitCode, 0);
-    expectFailure(layered + "x=CL --layer y=CGL", 3, "layer y (there 'CDL', here 'CGL')");
-    expectFailure(layered + "x=CL", 3, "layers of expressions (there 'x y', here 'x')");
+    const auto layered = [&](const std::string& layers) {
+        return quick("lvcbpt", "--quiet --checkpoint @layered --block-iterations 1 " + layers);
+    };
+    ASSERT_EQ(run(layered("--layer x=CL --layer y=CDL")).exitCode, 0);
+    EXPECT_EQ(run(layered("--layer y=CDL --layer x=CL")).exitCode, 0);
+    expectFailure(layered("--layer x=CL --layer y=CGL"), 3, "layer y (there 'CDL', here 'CGL')");
+    expectFailure(layered("--layer x=CL"), 3, "layers of expressions (there 'x y', here 'x')");
     std::string text = common;
     expectFailure(text.replace(text.find("--block-iterations 4"), 20, "--block-iterations 8"), 3,
                   "iterations of a block (there '4', here '8')");
