@@ -68,7 +68,7 @@ Letter letterAt(std::size_t index) {
     return Letter(index);
 }
 
-void add(std::vector<PathLayers::Live>& all, Automaton::State state, const Rgb& weight) {
+void add(std::vector<PathLayers::Live>& all, JointAutomaton::State state, const Rgb& weight) {
     for (PathLayers::Live& live : all) {
         if (live.state != state) continue;
         live.weight += weight;
@@ -149,13 +149,18 @@ void PathLayers::addExpressions(const Scene& scene, std::span<const LayerExpress
         ofLight_.insert(ofLight_.end(), some.count, letter);
     }
 
+    const std::size_t first = names_.size();
+    std::vector<Automaton> automata;
     for (const LayerExpression& e : expressions) {
         names_.push_back(e.name);
-        automata_.emplace_back(e.parsed.root, alphabet, e.what());
+        automata.emplace_back(e.parsed.root, alphabet, e.what());
+    }
+    for (std::size_t i = 0; i < automata.size(); i += automata_.back().size()) {
+        automata_.emplace_back(std::span(automata).subspan(i), std::uint32_t(first + i));
     }
 }
 
-PathLayers::Scattered PathLayers::scatteredAt(const FullPath& path, int i) const {
+inline PathLayers::Scattered PathLayers::scatteredAt(const FullPath& path, int i) const {
     const PathVertex& v = *path.vertex[std::size_t(i)];
     const auto of = [&](Kind kind, bool mixed = false) {
         return Scattered{Letter(ofObject_[v.object] + kind), mixed, false, {}};
@@ -173,19 +178,55 @@ PathLayers::Scattered PathLayers::scatteredAt(const FullPath& path, int i) const
     return of(kDiffuseReflection, v.bsdf.isGlossy());
 }
 
-/// The share of the path that the expression matches, by channel.
-Rgb PathLayers::matched(const Automaton& automaton, const FullPath& path, Scratch& s) const {
-    s.live.assign(1, {automaton.start(), Rgb(1.0f)});
+/// The same, looked up; asked for from the camera on.
+inline PathLayers::Scattered& PathLayers::scatteredAt(const FullPath& path, int i,
+                                                      Scratch& s) const {
+    const auto asked = std::size_t(path.edges - 1 - i);
+    if (asked == s.vertices.size()) s.vertices.push_back(scatteredAt(path, i));
+    return s.vertices[asked];
+}
+
+/// Appends the shares of the layers that match. Mostly that is all of the path: nothing is split.
+void PathLayers::match(const JointAutomaton& automaton, const FullPath& path, const Rgb& value,
+                       Scratch& s) const {
+    JointAutomaton::State state = automaton.start();
+    const Letter light = ofLight_[path.vertex[0]->light];
+    for (int i = path.edges - 1; i > 0 && !automaton.settled(state); --i) {
+        const Scattered& at = scatteredAt(path, i, s);
+        const JointAutomaton::State to = automaton.next(state, at.letter);
+        if (at.mixed && automaton.next(state, Letter(at.letter + 1)) != to) {
+            split(automaton, path, i, state, s);
+            s.weights.assign(names_.size(), Rgb{});
+            for (const auto& [end, weight] : s.live) {
+                for (const std::uint32_t layer : automaton.accepted(end, light)) {
+                    s.weights[layer] += weight;
+                }
+            }
+            for (std::uint32_t layer = 0; layer < s.weights.size(); ++layer) {
+                if (isBlack(s.weights[layer])) continue;
+                s.shares.push_back({layer, value * s.weights[layer]});
+            }
+            return;
+        }
+        state = to;
+    }
+    for (const std::uint32_t layer : automaton.accepted(state, light)) {
+        s.shares.push_back({layer, value});
+    }
+}
+
+/// Leaves in `live` what becomes of a path that has come to x_i in `state`.
+void PathLayers::split(const JointAutomaton& automaton, const FullPath& path, int i,
+                       JointAutomaton::State state, Scratch& s) const {
+    s.live.assign(1, {state, Rgb(1.0f)});
     const auto settled = [&](const Live& live) { return automaton.settled(live.state); };
-    for (int i = path.edges - 1; i > 0 && !std::ranges::all_of(s.live, settled); --i) {
-        const auto asked = std::size_t(path.edges - 1 - i);
-        if (asked == s.vertices.size()) s.vertices.push_back(scatteredAt(path, i));
-        Scattered& at = s.vertices[asked];
+    for (; i > 0 && !std::ranges::all_of(s.live, settled); --i) {
+        Scattered& at = scatteredAt(path, i, s);
         s.next.clear();
-        for (const auto& [state, weight] : s.live) {
-            const Automaton::State to = automaton.next(state, at.letter);
-            const Automaton::State other =
-                at.mixed ? automaton.next(state, Letter(at.letter + 1)) : to;
+        for (const auto& [from, weight] : s.live) {
+            const JointAutomaton::State to = automaton.next(from, at.letter);
+            const JointAutomaton::State other =
+                at.mixed ? automaton.next(from, Letter(at.letter + 1)) : to;
             if (to == other) {
                 add(s.next, to, weight);
                 continue;
@@ -197,24 +238,15 @@ Rgb PathLayers::matched(const Automaton& automaton, const FullPath& path, Scratc
         }
         std::swap(s.live, s.next);
     }
-    const Letter light = ofLight_[path.vertex[0]->light];
-    Rgb share;
-    for (const auto& [state, weight] : s.live) {
-        if (automaton.accepts(state, light)) share += weight;
-    }
-    return share;
 }
 
 std::span<const PathLayers::Share> PathLayers::shares(const FullPath& path, const Rgb& value,
                                                       Scratch& s) const {
     s.shares.clear();
     s.vertices.clear();
+    if (isBlack(value)) return {};
     if (!group_.empty()) s.shares.push_back({group_[path.vertex[0]->light], value});
-    const std::size_t first = names_.size() - automata_.size();
-    for (std::size_t i = 0; i < automata_.size(); ++i) {
-        const Rgb share = matched(automata_[i], path, s);
-        if (!isBlack(share)) s.shares.push_back({std::uint32_t(first + i), value * share});
-    }
+    for (const JointAutomaton& automaton : automata_) match(automaton, path, value, s);
     return s.shares;
 }
 

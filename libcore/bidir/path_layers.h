@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libcore/bidir/full_path.h"
-#include "libcore/expression/automaton.h"
+#include "libcore/expression/joint_automaton.h"
 #include "libcore/scene/light_groups.h"
 
 namespace lacuna {
@@ -43,9 +43,9 @@ class PathLayers {
         std::uint32_t layer;
         Rgb value;
     };
-    /// How an expression is run: states with the shares of the path that are in them.
+    /// A state that automata are in with a share of the path.
     struct Live {
-        Automaton::State state;
+        JointAutomaton::State state;
         Rgb weight;
     };
     /// What happened at a vertex. Where the diffuse base and rough lobes scatter both, the next letter
@@ -59,6 +59,7 @@ class PathLayers {
     struct Scratch {
         std::vector<Share> shares;
         std::vector<Live> live, next;
+        std::vector<Rgb> weights;  ///< by layer: the shares of the path that it matches
         std::vector<Scattered>
             vertices;  ///< x_{k-1}, x_{k-2}, .. as far as they have been asked for
     };
@@ -78,11 +79,15 @@ class PathLayers {
 
     void addExpressions(const Scene& scene, std::span<const LayerExpression> expressions);
     Scattered scatteredAt(const FullPath& path, int i) const;
-    Rgb matched(const Automaton& automaton, const FullPath& path, Scratch& scratch) const;
+    Scattered& scatteredAt(const FullPath& path, int i, Scratch& scratch) const;
+    void match(const JointAutomaton& automaton, const FullPath& path, const Rgb& value,
+               Scratch& scratch) const;
+    void split(const JointAutomaton& automaton, const FullPath& path, int i,
+               JointAutomaton::State state, Scratch& scratch) const;
 
     std::vector<std::string> names_;
     std::vector<std::uint32_t> group_;         // by light, where groups are asked for
-    std::vector<Automaton> automata_;          // of the last layers
+    std::vector<JointAutomaton> automata_;     // of the last layers
     std::vector<Automaton::Letter> ofObject_;  // by object, its first letter
     std::vector<Automaton::Letter> ofLight_;   // by light
 };

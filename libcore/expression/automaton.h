@@ -1,4 +1,4 @@
-// An expression as the automaton that is run along paths: one state at a time, from the camera to the
+// An expression as an automaton that goes along paths: one state at a time, from the camera to the
 // light, and as few states as there can be.
 #pragma once
 
@@ -27,6 +27,9 @@ class Automaton {
     Automaton(const Expression& expression, const Alphabet& alphabet, const std::string& what);
 
     std::size_t states() const { return settled_.size(); }
+    /// Of the alphabet.
+    std::size_t letters() const { return letters_; }
+    std::size_t lights() const { return lights_; }
     /// Behind the camera.
     State start() const { return 0; }
     State next(State state, Letter scattering) const {

@@ -7,6 +7,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/expression/automaton.h"
+#include "libcore/expression/joint_automaton.h"
 
 namespace lacuna::test {
 namespace {
@@ -220,6 +221,50 @@ TEST(ExpressionAutomaton, RefusesWhatNoPathMatches) {
          {"L.*C", "D", "CD", "DL", "CsL", "CLL", "C<RD'c'>L", "C<TD>L", "C<LD>"}) {
         expectRefused(text, "expected the way from the camera to a light, such as C<RD>L or C.*B");
     }
+}
+
+TEST(JointExpressions, AcceptWhatEachOfThemAccepts) {
+    const Alphabet alphabet = twoObjects();
+    std::vector<Automaton> automata;
+    for (const char* text : {"C.*L", "C<RD>L", "C.*<TS>.*L", "CD{3}.*B", "C(..)*O", "C.*'a'"}) {
+        automata.push_back(compiled(text, alphabet));
+    }
+    const JointAutomaton joint(automata, 10);
+    ASSERT_EQ(joint.size(), automata.size());
+    std::mt19937 random(3);
+    for (int path = 0; path < 3000; ++path) {
+        JointAutomaton::State state = joint.start();
+        std::vector<Automaton::State> states(automata.size(), 0);
+        bool settled = joint.settled(state);
+        for (std::size_t n = random() % 6; n > 0; --n) {
+            const auto letter = Automaton::Letter(random() % alphabet.scattering.size());
+            const JointAutomaton::State before = state;
+            state = joint.next(state, letter);
+            ASSERT_TRUE(!settled || state == before);
+            settled = joint.settled(state);
+            for (std::size_t i = 0; i < automata.size(); ++i) {
+                states[i] = automata[i].next(states[i], letter);
+            }
+        }
+        const auto light = Automaton::Letter(random() % alphabet.lights.size());
+        std::vector<std::uint32_t> expected;
+        for (std::size_t i = 0; i < automata.size(); ++i) {
+            if (automata[i].accepts(states[i], light)) expected.push_back(10 + std::uint32_t(i));
+        }
+        const auto found = joint.accepted(state, light);
+        ASSERT_EQ(std::vector<std::uint32_t>(found.begin(), found.end()), expected);
+    }
+}
+
+TEST(JointExpressions, AreAsManyAsThereIsRoomFor) {
+    std::vector<Automaton> automata;
+    for (const char* text : {"C.*L", "C.*D.{7}L", "C.*G.{7}L", "CL"}) {
+        automata.push_back(compiled(text));
+    }
+    const JointAutomaton first(automata, 0);
+    EXPECT_EQ(first.size(), 2u);
+    EXPECT_EQ(first.states(), 256u);
+    EXPECT_EQ(JointAutomaton(std::span(automata).subspan(2), 2).size(), 2u);
 }
 
 TEST(ExpressionAutomaton, WithoutLightsThereIsNothingToMatch) {
