@@ -210,6 +210,31 @@ TEST(PathLayers, OfLobesAreThePicturesOfThoseLobes) {
     EXPECT_GT(sums[1], 1.0);
 }
 
+// A smooth coat mirrors nothing of a sun, which no walk can hit: all that connections find is of the
+// base, though walks go on from there by the coat as well.
+TEST(PathLayers, OfConnectionsAreOfWhatTheyEvaluate) {
+    SceneBuilder b;
+    b.add(sphere({0, 0, 0}, 1, 12, b.add(plastic({0.7f, 0.4f, 0.2f}, 0)), true));
+    b.add(directionalLight({-0.3, -1, -0.8}, {3, 2, 1}));
+    b.add(lookAt({0, 0.8, 3}, {0, 0, 0}, 45));
+    const auto scene = b.build();
+    const PathLayers paths(*scene, false, expressions({{"base", "C<RD>L"}, {"coat", "C<RS>L"}}));
+    Shot shot;
+    shot.iterations = 16;
+    LayerFilm film(paths, shot.width, shot.height);
+    shot.layers = &film;
+    const Image picture = render(*scene, rowNamed("pt"), shot).pixels.image();
+    const Layers layers = film.means();
+    double energy = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const float whole = picture.pixels[i].g;
+        EXPECT_NEAR(layers.at("base.G")[i], whole, 1e-6f * whole);
+        EXPECT_EQ(layers.at("coat.G")[i], 0.0f);
+        energy += double(whole);
+    }
+    EXPECT_GT(energy, 1.0);
+}
+
 // Paths of one edge are light that the camera sees, and paths of two edges scatter once.
 TEST(PathLayers, OfShortPathsAreThePicturesOfThose) {
     const auto scene = everyEvent().build();
