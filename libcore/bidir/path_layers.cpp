@@ -136,7 +136,7 @@ void PathLayers::addExpressions(const Scene& scene, std::span<const LayerExpress
                                         {Reflection, Scattering::Singular, known},
                                         {Transmission, Scattering::Glossy, known},
                                         {Transmission, Scattering::Singular, known}});
-            letterAt(alphabet.scattering.size());
+            letterAt(alphabet.scattering.size());  // the last of them fits as well
         }
         ofObject_.push_back(entry->second);
     }

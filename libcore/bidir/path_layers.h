@@ -73,8 +73,7 @@ class PathLayers {
         kGlossyReflection,
         kMirror,
         kRoughTransmission,
-        kSmoothTransmission,
-        kKinds
+        kSmoothTransmission
     };
 
     void addExpressions(const Scene& scene, std::span<const LayerExpression> expressions);
