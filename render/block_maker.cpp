@@ -25,11 +25,10 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
         integrator_->delivery().setTechniqueFilm(techniques_.get());
         layers_.push_back(techniques_.get());
     }
-    if (options.lightGroups) {
-        lightGroups_ = std::make_unique<LightGroupFilm>(stage.scene->lightGroups(), crop.width(),
-                                                        crop.height());
-        integrator_->delivery().setLightGroupFilm(lightGroups_.get());
-        layers_.push_back(lightGroups_.get());
+    if (!stage.layers.empty()) {
+        layersOfPaths_ = std::make_unique<LayerFilm>(stage.layers, crop.width(), crop.height());
+        integrator_->delivery().setLayerFilm(layersOfPaths_.get());
+        layers_.push_back(layersOfPaths_.get());
     }
     if (options.verify) {
         verifier_ = std::make_unique<WeightVerifier>(integrator_->walker(), pool);

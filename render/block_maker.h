@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libcore/bidir/integrator.h"
-#include "libcore/bidir/light_group_film.h"
+#include "libcore/bidir/layer_film.h"
 #include "libcore/bidir/technique_film.h"
 #include "libcore/bidir/verify.h"
 #include "libcore/methods/registry.h"
@@ -73,7 +73,7 @@ class BlockMaker {
     BlockPlan plan_;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::unique_ptr<TechniqueFilm> techniques_;
-    std::unique_ptr<LightGroupFilm> lightGroups_;
+    std::unique_ptr<LayerFilm> layersOfPaths_;
     std::unique_ptr<ProposalLayers> proposals_;
     std::unique_ptr<WeightVerifier> verifier_;
     std::vector<BlockLayers*> layers_;

@@ -13,6 +13,7 @@
 #include "libcore/base/text_list.h"
 #include "libcore/image/image_io.h"
 #include "render/choose/choice.h"
+#include "render/layer_options.h"
 #include "render/live/layer_names.h"
 
 namespace lacuna {
@@ -58,6 +59,12 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->group(picture);
     app.add_flag("--light-groups", o.lightGroups,
                  "A layer of the .exr for each group of lights; together they are the picture")
+        ->group(picture);
+    app.add_option("--layer", o.layerTexts,
+                   "A layer of the paths that a light path expression matches, in OSL's notation "
+                   "(C<RD>L, C.*<TS>.*L); any number")
+        ->type_name("NAME=EXPRESSION")
+        ->allow_extra_args(false)
         ->group(picture);
     app.add_option("--sheet", o.sheet, "All layers of the .exr as a page of small pictures as well")
         ->type_name("FILE.png")
@@ -148,6 +155,12 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         "(distance along the viewing axis, 0 where nothing is hit), variance (of the mean),\n"
         "technique layers, and in the header how it was made; with --crop it has the size of the\n"
         "crop, `crop` in the header says where.\n"
+        "--layer: C camera, R reflected, T transmitted, L any light, O a mesh that shines, B the\n"
+        "environment; D diffuse, G glossy, S mirror or smooth glass, as <RD>, <TS>, or alone; a "
+        "third\n"
+        "place for names: <L.'lamp'>, <RD'floor'>. . [] [^] | * + ? {n,m} () as usual. Nothing is "
+        "s,\n"
+        "straight: what alpha lets pass is no event.\n"
         "mpirun -n P lacuna-render ... makes the same picture with P processes.\n"
         "Examples:\n"
         "  lacuna-render door.glb -o door.png --time 10s\n"
@@ -180,6 +193,7 @@ void checkAccuracy(const RenderOptions& o) {
                               : o.verify              ? "--verify"
                               : o.techniques          ? "--techniques"
                               : o.lightGroups         ? "--light-groups"
+                              : !o.layers.empty()     ? "--layer"
                               : !o.log.empty()        ? "--log"
                               : !o.reference.empty()  ? "--reference"
                               : o.displayServer       ? "--display-server"
@@ -360,6 +374,7 @@ void checkOptions(RenderOptions& o) {
         o.checkpointSeconds = parseDuration("--checkpoint-every", o.checkpointEveryText);
     }
     parseLive(o);
+    o.layers = parseLayerExpressions(o.layerTexts);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
     if (o.countSetup && !o.timeSeconds) {
@@ -374,9 +389,10 @@ void checkOptions(RenderOptions& o) {
     if (o.effects) return;
     checkMethod(o);
     if (o.output.empty() && !o.replay && !o.estimate && !o.inMemory) nameOutput(o);
-    const char* const layers = o.techniques    ? "--techniques"
-                               : o.lightGroups ? "--light-groups"
-                                               : nullptr;
+    const char* const layers = o.techniques        ? "--techniques"
+                               : o.lightGroups     ? "--light-groups"
+                               : !o.layers.empty() ? "--layer"
+                                                   : nullptr;
     if (layers && !o.replay && o.sheet.empty() && !o.output.empty() &&
         endingOf(o.output) != ".exr") {
         throw UsageError(std::string(layers) +

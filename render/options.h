@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/path_layers.h"
 #include "libcore/bidir/sampler.h"
 #include "libcore/image/tone.h"
 #include "libcore/methods/registry.h"
@@ -45,6 +46,7 @@ struct RenderOptions : SceneOptions {
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false, denoise = false;
     bool lightGroups = false;
+    std::vector<std::string> layerTexts;
     bool allowBias = false;  ///< `auto` may choose rows that merge
     bool listMethods = false, effects = false;
     std::string helpMethod;
@@ -53,6 +55,7 @@ struct RenderOptions : SceneOptions {
     std::optional<std::int64_t> blockIterations;
 
     // Made from the texts above by checkOptions.
+    std::vector<LayerExpression> layers;
     std::optional<double> timeSeconds;
     std::optional<UntilRequest> until;
     Sampling sampling = Sampling::Independent;

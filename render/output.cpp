@@ -55,6 +55,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["stopped"] = r.stopped.empty() ? "no: still rendering" : r.stopped;
     a["maxDepth"] = r.limits.maxDepth;
     a["effects"] = utf8Text(effectsJson(r.effects), -1);
+    if (!r.layers.empty()) a["layers"] = utf8Text(json(r.layers), -1);
     if (r.tolerance > 0.0) a["tolerance"] = r.tolerance;
     if (r.crop != PixelRect{0, r.filmWidth, 0, r.filmHeight}) {
         a["crop"] = rectText(r.crop);
@@ -188,6 +189,7 @@ json reportJson(const RenderReport& r) {
            {"warnings", r.warnings},
            {"stopped", r.stopped}};
     if (r.choice) j["chosen"] = r.choice->json();
+    if (!r.layers.empty()) j["layers"] = r.layers;
     if (r.techniques) j["techniques"] = techniqueCostsJson(r.techniqueCosts);
     if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
     j["estimated_error"] = json::object();

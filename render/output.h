@@ -39,6 +39,7 @@ struct RenderReport {
     BlockPlan blocks;
     std::uint64_t firstBlock = 0;
     bool techniques = false;
+    std::map<std::string, std::string> layers;  ///< expressions by name
     std::vector<TechniqueCost> techniqueCosts;  ///< --techniques
     int warmupIterations = 0;                   ///< of each block
     double seconds = 0.0;  ///< warm-ups and iterations; no comparing, logging, saving

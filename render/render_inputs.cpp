@@ -1,8 +1,10 @@
 #include "render/render_inputs.h"
 
+#include <set>
 #include <string>
 
 #include "libcore/base/content_hash.h"
+#include "libcore/base/text_list.h"
 #include "render/code_file.h"
 
 namespace lacuna {
@@ -47,6 +49,12 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
                     std::to_string(crop.y0) + "," + std::to_string(crop.y1));
     add("technique layers", options.techniques ? "yes" : "no");
     add("layers of light groups", options.lightGroups ? "yes" : "no");
+    std::set<std::string> layers;  // whatever their order
+    for (const LayerExpression& layer : options.layers) {
+        layers.insert(layer.name);
+        add("layer " + layer.name, layer.text);
+    }
+    add("layers of expressions", joined(layers, " "));
     add("iterations of a block", std::to_string(plan.iterations));
     return stamp;
 }

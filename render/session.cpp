@@ -40,9 +40,8 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
     const RenderSettings& settings = stage.settings;
     const PixelRect& crop = settings.crop;
     const double depth = settings.limits.maxDepth;
-    const double groups =
-        options.lightGroups ? double(stage.scene->lightGroups().names.size()) : 0.0;
-    const double layers = (options.techniques ? depth * (depth + 3.0) : 0.0) + groups;
+    const double layers =
+        (options.techniques ? depth * (depth + 3.0) : 0.0) + double(stage.layers.names().size());
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
@@ -56,7 +55,8 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
                        std::to_string(std::lround(available * 1e-9)) +
                        " GB; use a smaller picture, --crop" +
                        (options.techniques ? " or a smaller --max-depth" : "") +
-                       (options.lightGroups ? " or fewer light groups" : ""));
+                       (options.lightGroups ? " or fewer light groups" : "") +
+                       (options.layers.empty() ? "" : " or fewer --layer"));
     }
     return Film(crop.width(), crop.height(), plan, options.blocks ? options.blocks->begin : 0);
 }
@@ -95,6 +95,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.blocks = plan_;
     r.firstBlock = film_.block();
     r.techniques = options.techniques;
+    for (const LayerExpression& layer : options.layers) r.layers[layer.name] = layer.text;
     r.warmupIterations = maker_.warmupIterations();
     r.setupSeconds = stage_.setupSeconds + caches_.seconds;
     r.phaseSeconds = stage_.phaseSeconds;
@@ -355,11 +356,7 @@ std::vector<std::string> Session::channelNames() {
     };
     addRgb("variance");
     for (const auto& [name, plane] : still().channels()) names.push_back(name);
-    if (options_.lightGroups) {
-        for (const std::string& group : stage_.scene->lightGroups().names) {
-            addRgb(LightGroupFilm::layerName(group));
-        }
-    }
+    for (const std::string& layer : stage_.layers.names()) addRgb(layer);
     if (!options_.techniques) return names;
     for (const std::string& label : report_.method->proposalLabels) addRgb("part." + label);
     const std::vector<std::string> ofTechniques =

@@ -36,7 +36,9 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
 
     Stage stage{buildStage(std::move(description), options, Look::Camera, &method, pool, progress),
                 {},
-                0.0};
+                0.0,
+                {}};
+    stage.layers = PathLayers(*stage.scene, options.lightGroups, options.layers);
     if (method.biased) {
         stage.warnings.push_back("method " + method.name +
                                  " is BIASED: an experiment of a paper (" + method.reference +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libcore/bidir/integrator.h"
+#include "libcore/bidir/path_layers.h"
 #include "libcore/tool/scene_stage.h"
 #include "render/options.h"
 
@@ -10,6 +11,7 @@ namespace lacuna {
 struct Stage : SceneStage {
     RenderSettings settings;  ///< limits, seed, crop (the whole film where none was asked for)
     double setupSeconds = 0.0;
+    PathLayers layers;  ///< of light groups and expressions, as far as they are asked for
 };
 
 /// Loads and builds. Warnings go to `progress` as well. Throws InputError, UsageError, RunError.

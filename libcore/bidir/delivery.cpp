@@ -44,7 +44,9 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
     const Rgb sum = pixel + w.value;
     if (!isFinite(sum)) return countInvalid(c.sample, result);
     pixel = sum;
-    if (lightGroupFilm_) lightGroupFilm_->add(groupOf(c.path), c.pixel, w.value);
+    if (layerFilm_) {
+        for (const auto& share : sharesOf(c.path, w.value, result)) layerFilm_->add(share, c.pixel);
+    }
     if (techniqueFilm_) {
         const Technique made = c.closed.technique;
         const int s = made.firstOfEye(c.path.edges);
@@ -59,7 +61,11 @@ void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
     if (!isFinite(w.value)) return countInvalid(c.sample, result);
     result.splats.push_back({c.pixel, w.value});
     result.splatPaths.push_back(c.sample.number);
-    if (lightGroupFilm_) result.splatGroups.push_back(groupOf(c.path));
+    if (layerFilm_) {
+        for (const auto& share : sharesOf(c.path, w.value, result)) {
+            result.layerSplats.push_back({c.pixel, share});
+        }
+    }
     if (techniqueFilm_) {
         result.techniqueSplats.push_back({c.path.edges, 1, 1, c.pixel, w.value, w.unweighted});
     }
@@ -75,10 +81,8 @@ void Delivery::collect(std::span<TaskResult> results, IterationStatistics& stati
             }
         }
         for (const TechniqueSample& t : result.techniqueSplats) techniqueFilm_->add(t);
-        for (std::size_t i = 0; i < result.splatGroups.size(); ++i) {
-            lightGroupFilm_->add(result.splatGroups[i], result.splats[i].pixel,
-                                 result.splats[i].value);
-        }
+        for (const LayerSplat& splat : result.layerSplats)
+            layerFilm_->add(splat.share, splat.pixel);
         statistics.add(result.clock.seconds());
         recorded_.insert(recorded_.end(), result.rays.begin(), result.rays.end());
     }

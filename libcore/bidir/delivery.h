@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libcore/bidir/close.h"
-#include "libcore/bidir/light_group_film.h"
+#include "libcore/bidir/layer_film.h"
 #include "libcore/bidir/render_setup.h"
 #include "libcore/bidir/task.h"
 #include "libcore/bidir/technique_film.h"
@@ -56,8 +56,8 @@ class Delivery {
 
     /// Per-technique layers to fill as well, or null.
     void setTechniqueFilm(TechniqueFilm* film) { techniqueFilm_ = film; }
-    /// Layers of light groups to fill as well, or null.
-    void setLightGroupFilm(LightGroupFilm* film) { lightGroupFilm_ = film; }
+    /// Layers of paths to fill as well, or null.
+    void setLayerFilm(LayerFilm* film) { layerFilm_ = film; }
     /// Returns the one before.
     PathObserver setObserver(PathObserver observer);
     /// Records every ray of the following tasks in the order in which a task traces them.
@@ -81,7 +81,7 @@ class Delivery {
     void addSplats(std::span<TaskResult> results, const Iteration& iteration) const;
     void countIteration() const {
         if (techniqueFilm_) techniqueFilm_->countIteration();
-        if (lightGroupFilm_) lightGroupFilm_->countIteration(setup_.threads);
+        if (layerFilm_) layerFilm_->countIteration(setup_.threads);
     }
 
   private:
@@ -90,14 +90,16 @@ class Delivery {
         Rgb value, unweighted;
     };
     Weighed weigh(const Contribution& c, const TechniqueCounts& counts) const;
-    std::uint32_t groupOf(const FullPath& path) const {
-        return lightGroupFilm_->groupOf(path.vertex[0]->light);
+    /// What a path that adds `value` to the picture adds to layers; where there is a film of them.
+    std::span<const PathLayers::Share> sharesOf(const FullPath& path, const Rgb& value,
+                                                TaskResult& result) const {
+        return layerFilm_->layers().shares(path, value, result.layerScratch);
     }
     void countInvalid(const Sample& sample, TaskResult& result) const;
 
     const RenderSetup& setup_;
     TechniqueFilm* techniqueFilm_ = nullptr;
-    LightGroupFilm* lightGroupFilm_ = nullptr;
+    LayerFilm* layerFilm_ = nullptr;
     PathObserver observer_;
     bool recording_ = false;
     std::vector<RecordedRay> recorded_;

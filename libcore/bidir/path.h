@@ -54,6 +54,7 @@ struct PathVertex {
     std::uint32_t material = kNone;
     std::uint32_t region =
         kNone;  ///< of the guide that walks follow here; kNone: none (walk_guide.h)
+    std::uint32_t object = kNone;  ///< Surface only: the scene's
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
     std::uint8_t index = 0;                     ///< 0 on the light or the lens

@@ -12,6 +12,7 @@
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/bidir/method.h"
+#include "libcore/bidir/path_layers.h"
 #include "libcore/bidir/technique_clock.h"
 #include "libcore/bidir/technique_film.h"
 #include "libcore/bidir/walk.h"
@@ -21,11 +22,18 @@ namespace lacuna {
 /// Subpaths that a thread has under way at once; also the side of a tile of pixels.
 inline constexpr int kTile = 16;
 
+/// A splat's share of a layer.
+struct LayerSplat {
+    std::uint32_t pixel;
+    PathLayers::Share share;
+};
+
 /// What one task leaves behind.
 struct TaskResult {
     std::vector<Splat> splats;
     std::vector<std::uint64_t> splatPaths;         // by splat: its light subpath
-    std::vector<std::uint32_t> splatGroups;        // by splat, where light groups are asked for
+    std::vector<LayerSplat> layerSplats;           // where layers of paths are asked for
+    PathLayers::Scratch layerScratch;              // likewise
     std::vector<TechniqueSample> techniqueSplats;  // where --techniques asks for them
     TechniqueClock clock;                          // likewise
     std::vector<PathVertex> pooled;                // vertices of the subpaths that go into the pool

@@ -124,6 +124,7 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     v.light = point.light;
     v.lightUv = point.barycentric;
     v.material = point.material;
+    v.object = point.object;
     v.survival = v.bsdf.survivalAlbedo();
     if (guide() && v.bsdf.connectable()) v.region = guide()->regionAt(WalkGuide::placeOf(v));
     v.throughput = throughput * transmittance(scene_.absorption(), previous, direction, v);

@@ -112,6 +112,9 @@ void addLight(const Document& document, std::size_t node, const Affine& toWorld,
     }
     const std::string& nodeName = document.model.nodes[node].name;
     light.group = !group.empty() ? group : !nodeName.empty() ? nodeName : source->name;
+    for (const std::string* name : {&nodeName, &source->name}) {
+        if (!name->empty()) light.names.push_back(*name);
+    }
     scene.lights.push_back(light);
 }
 

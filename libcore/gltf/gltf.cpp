@@ -50,6 +50,11 @@ void addInstances(const Document& document, const Placement& placement, const Me
         group = std::uint32_t(scene.nodeGroups.size());
         scene.nodeGroups.push_back(groupName);
     }
+    std::uint32_t nodeName = Instance::kNoName;
+    if (const std::string& name = document.model.nodes[placement.node].name; !name.empty()) {
+        nodeName = std::uint32_t(scene.nodeNames.size());
+        scene.nodeNames.push_back(name);
+    }
     for (const Affine& copy : meshCopies(document, placement.node)) {
         const Affine toWorld = placement.toWorld * copy;
         const double determinant = toWorld.determinant();
@@ -68,7 +73,7 @@ void addInstances(const Document& document, const Placement& placement, const Me
                        "at most " + std::to_string(Limits::kInstances) + " instances", "more",
                        "simplify the scene");
             }
-            scene.instances.push_back({index, toWorld, group});
+            scene.instances.push_back({index, toWorld, group, nodeName});
         }
     }
 }

@@ -146,6 +146,11 @@ class Bsdf {
     }
     /// Whether light may pass through.
     bool transmits() const { return has(kGlass); }
+    /// What reflects in the Smooth event: a diffuse base, rough lobes, or both.
+    bool isDiffuse() const { return has(kDiffuse); }
+    bool isGlossy() const { return has(kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f; }
+    /// Of evaluate().f what the diffuse base scatters; the rest is glossy.
+    Rgb diffusePart(const Vec3& toEye, const Vec3& toLight) const;
     /// Whether there is no lobe that is wide beside others of the same surface.
     bool isNarrow() const { return !has(kDiffuse) && alpha_ < kNarrowAlpha; }
     bool isBlack() const { return !has(kDiffuse | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
@@ -238,6 +243,10 @@ class Bsdf {
     BsdfEvaluation evaluateTilted(const Vec3& toEye, const Vec3& toLight, const Cosines& c) const;
     BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
                               const Cosines& c) const;
+    Rgb diffuseValue(const Choice& eye, const Choice& base, const Cosines& c) const {
+        return baseColor_ * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
+                             (c.lightS / c.lightG));
+    }
     BsdfEvaluation deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const;
     float coatAlbedo(float mu) const;
     float clearcoatAlbedo(float mu) const;

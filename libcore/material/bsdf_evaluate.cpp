@@ -69,8 +69,7 @@ inline Lobe lobeOf(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
         if (c.lightSeen()) {
             const float lightS = std::abs(c.lightS);
             const Choice base = lightS == pair.lightAbs() ? light : choose(lightS);
-            out.f = baseColor_ * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
-                                  (c.lightS / c.lightG));
+            out.f = diffuseValue(eye, base, c);
             out.pdfWToLight = eye.diffuse * lightS * kInvPi;
         }
     }
@@ -92,6 +91,23 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
         return lobesAbout(aboutNg(c), toEye, toLight, c);
     }
     return evaluateTilted(toEye, toLight, c);
+}
+
+Rgb Bsdf::diffusePart(const Vec3& toEye, const Vec3& toLight) const {
+    Cosines c;
+    if (!has(kDiffuse) || !makeCosines(toEye, toLight, c) || !c.lightSeen() || !c.reflects()) {
+        return Rgb{};
+    }
+    const Choice base = choose(std::abs(c.lightS));
+    const auto about = [&](const Pair& pair) {
+        return diffuseValue(choose(pair.eyeAbs()), base, c);
+    };
+    if (!isTilted()) return about(aboutNg(c));
+    const float eyeNg = eyeShare(c.eyeS, c.eyeG);
+    Rgb part;
+    if (eyeNg < 1.0f) part += about(aboutNs(c)) * (1.0f - eyeNg);
+    if (eyeNg > 0.0f) part += about(aboutNg(c)) * eyeNg;
+    return part;
 }
 
 /// The mixture of both normals' parts, partAbout(pair) each; `byNs`, `byNg`: which of them have one.

@@ -144,6 +144,7 @@ SceneObject place(const Instance& instance, const Mesh& mesh, const Vec3d& centr
     SceneObject object;
     object.mesh = instance.mesh;
     object.lightGroup = instance.lightGroup;
+    object.nodeName = instance.nodeName;
     object.mirrored = instance.toWorld.determinant() < 0.0;
     Affine toWorld = instance.toWorld;
     if (use.instances == 1) {

@@ -48,6 +48,7 @@ struct SceneObject {
     std::array<Vec3, 3> normal;                     // of the transform of normals
     std::uint32_t firstLight = kNoLight;            ///< that of its first triangle, where it emits
     std::uint32_t lightGroup = Instance::kNoGroup;  ///< that of its instance
+    std::uint32_t nodeName = Instance::kNoName;     ///< likewise
 
     static constexpr std::uint32_t kNoLight = 0xffffffffu;
 

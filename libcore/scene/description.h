@@ -35,6 +35,8 @@ struct Instance {
     Affine toWorld;
     static constexpr std::uint32_t kNoGroup = 0xffffffffu;
     std::uint32_t lightGroup = kNoGroup;  ///< among SceneDescription::nodeGroups
+    static constexpr std::uint32_t kNoName = 0xffffffffu;
+    std::uint32_t nodeName = kNoName;  ///< among SceneDescription::nodeNames
 };
 
 /// glTF perspective camera: looks along -Z of its own frame, +Y up.
@@ -55,10 +57,11 @@ struct PunctualLight {
     Kind kind = Kind::Point;
     Rgb intensity;
     Vec3d position;
-    Vec3d direction{0, 0, -1};      ///< unit, the way the light travels (spot, directional)
-    double innerConeAngle = 0.0;    ///< radians from the axis (spot)
-    double outerConeAngle = 0.785;  ///< radians from the axis (spot)
-    std::string group;              ///< what its node calls its group, else its name
+    Vec3d direction{0, 0, -1};            ///< unit, the way the light travels (spot, directional)
+    double innerConeAngle = 0.0;          ///< radians from the axis (spot)
+    double outerConeAngle = 0.785;        ///< radians from the axis (spot)
+    std::string group;                    ///< what its node calls its group, else its name
+    std::vector<std::string> names = {};  ///< of its node and its own, as far as it has them
 };
 
 struct EnvironmentDescription {
@@ -74,6 +77,7 @@ struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<std::string> nodeGroups;  ///< names of light groups that nodes with meshes have
+    std::vector<std::string> nodeNames;   ///< of nodes with meshes
     std::vector<Material>
         materials;  ///< never empty: glTF's default material is added where needed
     std::vector<Texture> textures;

@@ -2,23 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "libcore/scene/scene_names.h"
+
 namespace lacuna {
 
-struct BakedScene;
-struct SceneDescription;
-
-/// The group of every light. A mesh that emits is in the group that its node names, else in that of its
-/// material, else in one of the material's name; any other lamp in the one that its node names, else in
-/// one of the node's name, else of its own; the environment in `environment`. Who has no name at all is
-/// in `unnamed`.
+/// The group of every light, as NamedLights::group says it. Who has no name at all is in `unnamed`.
 struct LightGroups {
     std::vector<std::string> names;    ///< in the order of the groups' first lights
     std::vector<std::uint32_t> group;  ///< by light, as Lights counts them: an index into `names`
 };
-LightGroups lightGroups(const SceneDescription& description, const BakedScene& baked,
-                        bool environment);
+LightGroups lightGroups(std::span<const NamedLights> lights);
 
 }  // namespace lacuna

@@ -81,8 +81,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
 
 Scene::~Scene() = default;
 
-LightGroups Scene::lightGroups() const {
-    return lacuna::lightGroups(description_, baked_, environment_ != nullptr);
+std::vector<NamedLights> Scene::namedLights() const {
+    return lacuna::namedLights(description_, baked_, environment_ != nullptr);
+}
+
+std::vector<std::vector<std::string>> Scene::objectNames() const {
+    return lacuna::objectNames(description_, baked_);
 }
 
 Camera Scene::makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const {

@@ -17,6 +17,7 @@
 #include "libcore/scene/light.h"
 #include "libcore/scene/light_groups.h"
 #include "libcore/scene/ray.h"
+#include "libcore/scene/scene_names.h"
 #include "libcore/scene/shading.h"
 #include "libcore/scene/surfaces.h"
 
@@ -43,8 +44,10 @@ class Scene {
     const SceneDescription& description() const { return description_; }
     const Lights& lights() const { return *lights_; }
     const Environment* environment() const { return environment_.get(); }
-    /// Made anew at each call.
-    LightGroups lightGroups() const;
+    /// These three are made anew at each call.
+    LightGroups lightGroups() const { return lacuna::lightGroups(namedLights()); }
+    std::vector<NamedLights> namedLights() const;
+    std::vector<std::vector<std::string>> objectNames() const;
     const Accel& accel() const { return *accel_; }
     /// Middle of the file's bounding box: file coordinates = ours + centre().
     Vec3d centre() const { return baked_.centre; }

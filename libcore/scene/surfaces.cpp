@@ -82,6 +82,7 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
         if (std::fabs(side) > 1e-3f) s.ns = turned ? -n : n;
     }
     s.uv = between(mesh.uvs, t, hit.u, hit.v);
+    s.object = hit.object;
     s.material = mesh.material;
     s.light = object.firstLight != kNone ? object.firstLight + hit.primitive : kNone;
     s.uv1 = {};

@@ -18,6 +18,7 @@ struct SurfacePoint {
     Vec2 uv, uv1;     ///< texture coordinates of either set
     Rgb color{1.0f};  ///< the vertices', a factor on the base colour
     Vec2 barycentric;
+    std::uint32_t object = kNone;
     std::uint32_t material = 0;
     std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
 };

@@ -37,45 +37,30 @@ TEST_P(LightGroupsOf, HoldTheirLampsAndAddUpToThePicture) {
     Shot shot;
     shot.iterations = 24;
     shot.radius = 0.1;  // of photons, so that some are there to be merged
-    LightGroupFilm film(scene->lightGroups(), shot.width, shot.height);
-    shot.lightGroups = &film;
+    const PathLayers groups(*scene, true, {});
+    LayerFilm film(groups, shot.width, shot.height);
+    shot.layers = &film;
     const Picture p = render(*scene, rowNamed(GetParam()), shot);
     const Image picture = p.pixels.image();
 
     const Layers layers = film.means();
-    const std::array<std::string, 3> groups{"lamp", "bulb", "environment"};
+    const std::array<std::string, 3> names{"lamp", "bulb", "environment"};
     const std::array<std::string, 3> channels{".R", ".G", ".B"};
     ASSERT_EQ(layers.size(), 9u);
     for (std::size_t c = 0; c < 3; ++c) {
         double energy = 0.0;
         for (std::size_t g = 0; g < 3; ++g) {
-            const std::vector<float>& plane = layers.at("light." + groups[g] + channels[c]);
+            const std::vector<float>& plane = layers.at("light." + names[g] + channels[c]);
             for (std::size_t i = 0; i < plane.size(); ++i) {
                 const Rgb& pixel = picture.pixels[i];
                 const float whole = c == 0 ? pixel.r : c == 1 ? pixel.g : pixel.b;
                 ASSERT_NEAR(plane[i], g == c ? whole : 0.0f, 1e-6f * whole)
-                    << groups[g] << channels[c] << ", pixel " << i;
+                    << names[g] << channels[c] << ", pixel " << i;
                 energy += double(plane[i]);
             }
         }
-        EXPECT_GT(energy, 0.0) << groups[c];
+        EXPECT_GT(energy, 0.0) << names[c];
     }
-}
-
-TEST(LightGroups, AreTheSameOnAnyNumberOfThreads) {
-    const auto scene = primaryColours().build();
-    std::vector<Layers> layers;
-    for (const int threads : {1, 3}) {
-        const ThreadPool own(threads);
-        Shot shot;
-        shot.iterations = 5;
-        shot.threads = &own;
-        LightGroupFilm film(scene->lightGroups(), shot.width, shot.height);
-        shot.lightGroups = &film;
-        render(*scene, rowNamed("bpt"), shot);
-        layers.push_back(film.means());
-    }
-    EXPECT_EQ(layers[0], layers[1]);
 }
 
 }  // namespace

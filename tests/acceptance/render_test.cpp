@@ -168,7 +168,7 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
     integrator_->delivery().setTechniqueFilm(shot_.techniques);
-    integrator_->delivery().setLightGroupFilm(shot_.lightGroups);
+    integrator_->delivery().setLayerFilm(shot_.layers);
     integrator_->delivery().setObserver(shot_.observer);
     pixels_.resize(std::size_t(r.crop.width()) * std::size_t(r.crop.height()));
 }

@@ -42,7 +42,7 @@ struct Shot {
     std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
     std::uint64_t walkGuide = 0;  ///< likewise of a guide that walks follow
     TechniqueFilm* techniques = nullptr;
-    LightGroupFilm* lightGroups = nullptr;
+    LayerFilm* layers = nullptr;
     PathObserver observer = nullptr;
 };
 

@@ -300,6 +300,10 @@ TEST(Light, GroupOfItsNodeElseItsName) {
         const SceneDescription scene = withLight(point, node).load();
         return scene.lights.at(0).group;
     };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(withLight(point, json::object()).load().lights.at(0).names, Names{"Light.001"});
+    EXPECT_EQ(withLight(point, {{"name", "bulb"}}).load().lights.at(0).names,
+              (Names{"bulb", "Light.001"}));
     EXPECT_EQ(groupUnder(json::object()), "Light.001");
     EXPECT_EQ(groupUnder({{"name", "bulb"}}), "bulb");
     json node = {{"name", "bulb"}};
@@ -319,6 +323,14 @@ TEST(Node, LightGroupOfAMesh) {
     ASSERT_LT(scene.instances[0].lightGroup, scene.nodeGroups.size());
     EXPECT_EQ(scene.nodeGroups[scene.instances[0].lightGroup], "key");
     EXPECT_EQ(withNode(json::object()).load().instances.at(0).lightGroup, Instance::kNoGroup);
+}
+
+TEST(Node, NameOfAMesh) {
+    const SceneDescription scene = withNode({{"name", "table"}}).load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    ASSERT_LT(scene.instances[0].nodeName, scene.nodeNames.size());
+    EXPECT_EQ(scene.nodeNames[scene.instances[0].nodeName], "table");
+    EXPECT_EQ(withNode(json::object()).load().instances.at(0).nodeName, Instance::kNoName);
 }
 
 TEST(Node, LightGroupsAreNames) {

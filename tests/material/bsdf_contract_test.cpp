@@ -47,6 +47,31 @@ TEST(BsdfContract, SampleEvaluationIsEvaluateBitForBit) {
     stabilityCase("bsdf-contract", drawn, "samples, each as evaluated");
 }
 
+// What the base scatters and what is scattered where there is none make up everything.
+TEST(BsdfContract, DiffusePartIsWhatIsMissingWithoutTheBase) {
+    Random random(13);
+    int mixed = 0;
+    for (const Case& c : grid()) {
+        Bsdf::Parameters p = c.parameters;
+        p.without.add(LobeKind::Diffuse);
+        const Bsdf rest(p, c.bsdf.ng(), c.bsdf.ns(), tables());
+        for (int i = 0; i < 10; ++i) {
+            const Vec3 to = uniformDirection(random);
+            const Vec3 &toEye = c.side == Side::Eye ? c.from : to,
+                       &toLight = c.side == Side::Eye ? to : c.from;
+            const Rgb all = c.bsdf.evaluate(toEye, toLight).f;
+            const Rgb base = c.bsdf.diffusePart(toEye, toLight);
+            const Rgb glossy = rest.evaluate(toEye, toLight).f;
+            ASSERT_LE(std::abs(base.r + glossy.r - all.r), 2e-5f * all.r) << c.name;
+            ASSERT_LE(std::abs(base.b + glossy.b - all.b), 2e-5f * all.b) << c.name;
+            ASSERT_TRUE(c.bsdf.isDiffuse() || base == Rgb{}) << c.name;
+            ASSERT_TRUE(c.bsdf.isGlossy() || glossy == Rgb{}) << c.name;
+            mixed += base.r > 0.0f && glossy.r > 0.0f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(mixed, 3000);
+}
+
 // Where ns = ng, f / eta_eye^2 is symmetric, and a density is the same number whichever role its
 // direction plays.
 TEST(BsdfContract, ReciprocityAndSwappedRoles) {

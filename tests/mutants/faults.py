@@ -332,12 +332,31 @@ FAULTS = [
     # --light-groups
     Fault("splats-of-the-first-group", "what the lens sees of light paths counts for the first group of lights",
           "libcore/bidir/delivery.cpp",
-          "result.splatGroups.push_back(groupOf(c.path));", "result.splatGroups.push_back(0);",
+          "result.layerSplats.push_back({c.pixel, share});",
+          "result.layerSplats.push_back({c.pixel, {0, share.value}});",
           {"acceptance": "*LightGroupsOf.*bpt*"}),
     Fault("light-groups-outlive-their-block", "layers of light groups hold the blocks before as well",
-          "libcore/bidir/light_group_film.cpp",
+          "libcore/bidir/layer_film.cpp",
           "for (auto* planes : {&now_, &sums_}) {", "for (auto* planes : {&now_, &now_}) {",
           {"render": "*RenderPiecesOf.mergedPartsAreThePicture*bpt*"}),
+
+    # --layer
+    Fault("layers-of-the-sampled-event", "a vertex that is connected counts for what was sampled there",
+          "libcore/bidir/path_layers.cpp",
+          "if (path.delta[std::size_t(i)]) {", "if (isDelta(v.event)) {",
+          {"acceptance": "PathLayers.*"}),
+    Fault("layers-without-shares", "where the base and the coat scatter both, all counts as the base's",
+          "libcore/bidir/path_layers.cpp",
+          "return of(kDiffuseReflection, v.bsdf.isGlossy());", "return of(kDiffuseReflection);",
+          {"acceptance": "PathLayers.*"}),
+    Fault("negated-letters-as-they-are", "[^D] is read as [D] within <>",
+          "libcore/expression/parser.cpp",
+          "return negated ? ~all : all;", "return negated ? all : all;",
+          {"expression": "*"}),
+    Fault("states-told-apart-once", "states are made one by what they accept alone",
+          "libcore/expression/automaton.cpp",
+          "if (result.size() == classes) return result;", "if (classes > 0) return result;",
+          {"expression": "*"}),
 
     # Live view
     Fault("live-view-goes-on-with-the-old", "an older picture is sent to its end before the last one",

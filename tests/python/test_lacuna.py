@@ -40,6 +40,13 @@ class Pixels(InFolder):
         self.assertEqual(here.rgb.shape, (6, 8, 3))
         self.assertGreater(here.rgb.max(), 0)
 
+    def test_layers_of_expressions_are_a_mapping(self):
+        image = small(square(base_colour=(0.5, 0.5, 0.5), emission=(1, 1, 1)), method="pt",
+                      iterations=1, layer={"seen": "CL", "lit": "C.+L"})
+        np.testing.assert_array_equal(image.layers["seen"], image.rgb)
+        np.testing.assert_array_equal(image.layers["lit"], 0 * image.rgb)
+        self.assertEqual(image.statistics["layers"], {"seen": "CL", "lit": "C.+L"})
+
     def test_layers_of_techniques_add_up(self):
         image = small(CORNELL, iterations=4, techniques=True)
         weighted = [name for name in image.layers if re.fullmatch(r"weighted\.s\d+t\d+", name)]

@@ -268,6 +268,54 @@ TEST_F(RenderOutput, LightGroupsAddUpToThePicture) {
     expectFailure(png, 2, "--light-groups: expected an .exr or a --sheet to hold the layers");
 }
 
+TEST_F(RenderOutput, LayersOfExpressionsAddUpToThePicture) {
+    TinyScene scene;
+    scene.pointLight = true;
+    nlohmann::json root = nlohmann::json::parse(scene.text());
+    root["materials"][0]["name"] = "walls";
+    write("room.gltf", root.dump());
+    const std::string layers = "--layer \"walls=C'walls'.*\" --layer=\"rest=C[^'walls'].*\"";
+    ASSERT_EQ(run(quick("bpt", "--quiet --iterations 6 --json @o.json " + layers)).exitCode, 0);
+    const LayeredImage image = readExrLayers(path("out.exr"));
+    const Image picture = image.rgb(), walls = image.rgb("walls"), rest = image.rgb("rest");
+    double energy = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const float whole = picture.pixels[i].g;
+        EXPECT_NEAR(walls.pixels[i].g + rest.pixels[i].g, whole, 1e-6f * (1.0f + whole)) << i;
+        energy += double(walls.pixels[i].g);
+    }
+    EXPECT_GT(energy, 0.0);
+    const nlohmann::json expected = {{"walls", "C'walls'.*"}, {"rest", "C[^'walls'].*"}};
+    EXPECT_EQ(json("o.json").at("layers"), expected);
+    EXPECT_EQ(nlohmann::json::parse(attribute<std::string>(image, "layers")), expected);
+
+    std::string without = quick("bpt", "--quiet --iterations 6");
+    without.replace(without.find("out.exr"), 7, "plain.exr");
+    ASSERT_EQ(run(without).exitCode, 0);
+    EXPECT_EQ(readExrLayers(path("plain.exr")).rgb().pixels, picture.pixels);
+}
+
+TEST_F(RenderOutput, LayersThatCannotBeAreRefused) {
+    const auto refused = [&](const std::string& options, const std::string& part) {
+        expectFailure(quick("bpt", "--quiet " + options), 2, part);
+    };
+    refused("--layer 'glass=C<TX>L'",
+            "--layer glass=C<TX>L: position 4: expected a scattering letter (D, G, S, s or .), "
+            "found \"X\"");
+    refused("--layer CL", "--layer: expected NAME=EXPRESSION, found 'CL'");
+    refused("--layer a.b=CL", "letters, digits, _ and -, found 'a.b'");
+    refused("--layer =CL", "letters, digits, _ and -, found ''");
+    refused("--layer albedo=CL", "a name that pictures do not use themselves");
+    refused("--layer a=CL --layer a=C.L", "--layer: expected names that differ, found 'a' twice");
+    refused("--layer a=LC", "--layer a=LC: expected the way from the camera to a light");
+    refused("--layer \"a=C<L.'lamp'>\"", "--layer a=C<L.'lamp'>: position 6: expected the name of");
+    refused("--layer 'a=C.*D.{12}L'", "expected an automaton of at most 1000 states");
+    refused("--layer a=CL --estimate", "found --layer");
+    std::string png = quick("bpt", "--quiet --layer a=CL");
+    png.replace(png.find("out.exr"), 7, "out.png");
+    expectFailure(png, 2, "--layer: expected an .exr or a --sheet to hold the layers");
+}
+
 // A group's layer is what its techniques add; the JSON and the table are about the same layers.
 TEST_F(RenderOutput, GroupsOfTechniquesHaveEnergyNoiseAndTime) {
     const Outcome o = run(quick("bpt", "--techniques --iterations 32 --json @o.json"));

@@ -36,7 +36,8 @@ TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
     // Ten iterations: the last block is not whole.
     const std::string common =
         quick(GetParam(),
-              "--quiet --techniques --light-groups --iterations 10 --sampler sobol "
+              "--quiet --techniques --light-groups --layer 'x=C<.D>.*' --iterations 10 "
+              "--sampler sobol "
               "--block-iterations 4");
     const auto to = [&](const std::string& name) {
         std::string text = common;
@@ -186,9 +187,17 @@ TEST_F(RenderPieces, otherCommandsAreRefused) {
         {" --crop 0,8,0,8", "crop"},
         {" --techniques", "technique layers"},
         {" --light-groups", "layers of light groups"},
+        {" --layer x=CL", "layers of expressions (there '', here 'x')"},
         {" --rr-depth 2", "roulette depth"},
     };
     for (const auto& [more, part] : others) expectFailure(common + more, 3, part);
+    const auto layered = [&](const std::string& layers) {
+        return quick("lvcbpt", "--quiet --checkpoint @layered --block-iterations 1 " + layers);
+    };
+    ASSERT_EQ(run(layered("--layer x=CL --layer y=CDL")).exitCode, 0);
+    EXPECT_EQ(run(layered("--layer y=CDL --layer x=CL")).exitCode, 0);
+    expectFailure(layered("--layer x=CL --layer y=CGL"), 3, "layer y (there 'CDL', here 'CGL')");
+    expectFailure(layered("--layer x=CL"), 3, "layers of expressions (there 'x y', here 'x')");
     std::string text = common;
     expectFailure(text.replace(text.find("--block-iterations 4"), 20, "--block-iterations 8"), 3,
                   "iterations of a block (there '4', here '8')");

@@ -171,7 +171,7 @@ def render(
 
     `options` are those of `lacuna-render --help`: method="bpt", width=640, time=30 (seconds, or
     "10m"), crop=(0, 32, 0, 32), until={"mape": .05}, effect={"dispersion": False}, prepare=True,
-    output="door.exr". None leaves one out. `set` holds parameters of the method:
+    layer={"caustics": "C.*D[GS]+L"}, output="door.exr". None leaves one out. `set` holds parameters of the method:
     set={"candidates": 200}.
 
     `on_progress` is called where a phase begins and after each iteration, with a Progress: phase,

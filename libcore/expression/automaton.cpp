@@ -1,0 +1,100 @@
+#include "libcore/expression/automaton.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "libcore/base/error.h"
+#include "libcore/expression/nfa.h"
+
+namespace lacuna {
+
+namespace {
+
+/// Of one state: what it accepts, and where each letter leads to.
+struct Row {
+    std::vector<std::uint8_t> accepts;
+    std::vector<std::size_t> next;
+
+    auto operator<=>(const Row&) const = default;
+};
+using Table = std::vector<Row>;
+
+/// The sets of states that `nfa` can be in, as states [Rabin59]; the first one behind the camera.
+/// Empty where there are more than `most`.
+std::optional<Table> subsetsOf(const Nfa& nfa, const Alphabet& alphabet, std::size_t most) {
+    std::map<Nfa::States, std::size_t> indices;
+    std::vector<Nfa::States> sets;
+    const auto indexOf = [&](Nfa::States set) {
+        const auto [entry, isNew] = indices.try_emplace(std::move(set), sets.size());
+        if (isNew) sets.push_back(entry->first);
+        return entry->second;
+    };
+    indexOf(nfa.after(nfa.start(), VertexEvent{}));
+    Table table;
+    while (table.size() < sets.size()) {
+        if (sets.size() > most) return std::nullopt;
+        const Nfa::States set = sets[table.size()];
+        Row row;
+        for (const VertexEvent& light : alphabet.lights) {
+            row.accepts.push_back(nfa.accepts(nfa.after(set, light)));
+        }
+        for (const VertexEvent& event : alphabet.scattering) {
+            row.next.push_back(indexOf(nfa.after(set, event)));
+        }
+        table.push_back(std::move(row));
+    }
+    return table;
+}
+
+/// States that nothing tells apart as one: classes by what they accept are split by where they lead
+/// to, until none is [Moore56].
+Table minimal(const Table& table) {
+    std::vector<std::size_t> classOf(table.size(), 0);
+    for (std::size_t classes = 0;;) {
+        std::map<std::pair<std::size_t, Row>, std::size_t> indices;
+        std::vector<std::size_t> finer;
+        Table result;
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            Row row = table[i];
+            for (std::size_t& next : row.next) next = classOf[next];
+            const auto [entry, isNew] = indices.try_emplace({classOf[i], row}, result.size());
+            if (isNew) result.push_back(row);
+            finer.push_back(entry->second);
+        }
+        if (result.size() == classes) return result;
+        classes = result.size();
+        classOf = std::move(finer);
+    }
+}
+
+}  // namespace
+
+Automaton::Automaton(const Expression& expression, const Alphabet& alphabet,
+                     const std::string& what)
+    : letters_(alphabet.scattering.size()), lights_(alphabet.lights.size()) {
+    constexpr std::size_t kMostOfNfa = 4 * kMostStates;
+    const std::optional<Nfa> nfa = Nfa::of(expression, kMostOfNfa);
+    const std::optional<Table> subsets =
+        nfa ? subsetsOf(*nfa, alphabet, kMostStates) : std::nullopt;
+    if (!subsets) {
+        throw UsageError(what + ": expected an automaton of at most " +
+                         std::to_string(kMostStates) + " states, found more; repeat less");
+    }
+    const Table table = minimal(*subsets);
+    bool matchesSomething = alphabet.lights.empty();
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const auto& [accepts, next] = table[i];
+        accepts_.insert(accepts_.end(), accepts.begin(), accepts.end());
+        for (const std::size_t n : next) next_.push_back(State(n));
+        settled_.push_back(std::ranges::all_of(next, [&](std::size_t n) { return n == i; }));
+        matchesSomething = matchesSomething || std::ranges::count(accepts, 1) > 0;
+    }
+    if (!matchesSomething) {
+        throw UsageError(what +
+                         ": expected the way from the camera to a light, such as C<RD>L or C.*B, "
+                         "found none that matches here");
+    }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,51 @@
+// Light path expressions [Heckbert90] in the notation of OSL, from text to tree:
+//
+//     either     = sequence { '|' sequence }
+//     sequence   = { repeated }+
+//     repeated   = ( '(' either ')' | events ) { '*' | '+' | '?' | '{' n [ ',' [ m ] ] '}' }
+//     events     = pattern | '[' [ '^' ] { pattern }+ ']'
+//     pattern    = '.' | type | scattering | name | '<' types [ scatterings [ names ] ] '>'
+//     type       = C | R | T | L | O | B          scattering = D | G | S | s
+//     name       = a quote, what something in the scene is called, a quote
+//
+// types, scatterings, names: '.', one of them, or several in brackets: [RT], [^D], ['lamp''sun'].
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libcore/expression/event.h"
+
+namespace lacuna {
+
+/// A regular expression over events.
+struct Expression {
+    enum class Kind : std::uint8_t { Events, Sequence, Either, Repeat };
+    Kind kind = Kind::Sequence;
+    EventSet events = {};                ///< of Events
+    std::vector<Expression> parts = {};  ///< of the others; Repeat has one
+    int least = 0;                       ///< of Repeat
+    std::optional<int> most = {};        ///< likewise; nothing: any number
+};
+
+/// A name in an expression, and where it stands in it: a character, the first one is 1.
+struct NameMention {
+    std::string name;
+    std::size_t position = 0;
+};
+
+struct ParsedExpression {
+    Expression root;
+    std::vector<NameMention> names;  ///< in the order of the text
+};
+
+/// Longest text and largest number of repetitions that are read.
+inline constexpr std::size_t kMostCharacters = 1000;
+inline constexpr int kMostRepetitions = 1000;
+
+/// Throws UsageError, which begins with `what` and points at the character.
+ParsedExpression parseExpression(const std::string& text, const std::string& what);
+
+}  // namespace lacuna

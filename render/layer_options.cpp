@@ -1,0 +1,62 @@
+#include "render/layer_options.h"
+
+#include <algorithm>
+#include <array>
+
+#include "libcore/base/error.h"
+#include "libcore/base/text_list.h"
+
+namespace lacuna {
+namespace {
+
+/// What pictures and parts call channels and layers of their own.
+constexpr std::array kTaken = {"A",        "B",      "G",          "R",        "Y",
+                               "Z",        "albedo", "emission",   "light",    "lightSubspace",
+                               "node",     "normal", "part",       "share",    "square",
+                               "subspace", "sum",    "unweighted", "variance", "walks",
+                               "weighted"};
+
+bool isPlain(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+}
+
+void checkName(const std::string& name) {
+    constexpr std::size_t kLongest = 100;
+    if (name.empty() || name.size() > kLongest || !std::ranges::all_of(name, isPlain)) {
+        throw UsageError("--layer: expected a name of 1 to " + std::to_string(kLongest) +
+                         " letters, digits, _ and -, found '" + name + "'");
+    }
+    if (std::ranges::find(kTaken, name) != kTaken.end()) {
+        throw UsageError("--layer: expected a name that pictures do not use themselves (" +
+                         joined(kTaken, ", ") + "), found '" + name + "'");
+    }
+}
+
+LayerExpression parse(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        throw UsageError("--layer: expected NAME=EXPRESSION, found '" + text + "'");
+    }
+    LayerExpression layer{text.substr(0, equals), text.substr(equals + 1), {}};
+    checkName(layer.name);
+    layer.parsed = parseExpression(layer.text, layer.what());
+    return layer;
+}
+
+}  // namespace
+
+std::vector<LayerExpression> parseLayerExpressions(std::span<const std::string> texts) {
+    std::vector<LayerExpression> layers;
+    for (const std::string& text : texts) {
+        LayerExpression layer = parse(text);
+        if (std::ranges::find(layers, layer.name, &LayerExpression::name) != layers.end()) {
+            throw UsageError("--layer: expected names that differ, found '" + layer.name +
+                             "' twice");
+        }
+        layers.push_back(std::move(layer));
+    }
+    return layers;
+}
+
+}  // namespace lacuna
