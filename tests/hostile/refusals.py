@@ -1,4 +1,4 @@
-"""Every system call that a tool makes, refused once: the first, the second and so on to the last."""
+"""Every system call of some names that a tool makes, refused once: the first, the second and so on to the last."""
 
 from __future__ import annotations
 

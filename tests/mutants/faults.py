@@ -298,7 +298,7 @@ FAULTS = [
           {"render": "RenderPieces.otherCommandsAreRefused"}),
     Fault("parts-unread", "damaged parts are believed",
           "render/part.cpp",
-          "text(kHash) != hashOf(image)", "false",
+          "text(kHash) != partHash(image)", "false",
           {"render": "RenderPieces.damagedAndForeignFilesAreRefusedAndKept"}),
     Fault("parts-twice", "parts that hold the same block are merged",
           "render/merge.cpp",
