@@ -91,7 +91,7 @@ Content read(const std::string& path, const std::string& kind, const CacheStamp&
         refuse(path, "a grid of sane size", "another", remedy);
     }
     const Vec3d& origin = content.shape.origin;
-    if (!(content.shape.voxel > 0.0) || !std::isfinite(content.shape.voxel) ||
+    if (!(content.shape.voxel > 0.0) || !std::isnormal(content.shape.voxel) ||
         !std::isfinite(origin.x + origin.y + origin.z)) {
         refuse(path, "voxels with a size and a place", "none", remedy);
     }

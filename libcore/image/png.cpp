@@ -33,10 +33,12 @@ struct StbFree {
     throw InputError(path + ": expected an intact PNG file, found: " + found + "; write it again");
 }
 
-/// What stb_image says of its last failure, which may be nothing.
+/// What stb_image says of its last failure, which may be nothing, or hold bytes of the file.
 std::string reason() {
-    const char* text = stbi_failure_reason();
-    return text && *text ? text : "a damaged one";
+    const char* said = stbi_failure_reason();
+    std::string text = said && *said ? said : "a damaged one";
+    std::ranges::replace_if(text, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // OpenVDB files that are sound, with content that is not.
+#include <type_traits>
+
 #include "libcore/cache/skeleton_file.h"
 #include "libcore/cache/vdb.h"
 #include "libcore/cache/voxel_file.h"
@@ -58,7 +60,9 @@ typename GridType::Ptr gridOf(Source& source, const char* name) {
     while (!source.empty()) {
         const auto where = [&] { return int(source.value<std::int16_t>()); };
         const openvdb::Coord at(where(), where(), where());
-        const auto value = source.value<typename GridType::ValueType>();
+        using Value = typename GridType::ValueType;
+        using Bits = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>;
+        const auto value = Value(source.value<Bits>());
         const auto tile = source.value<std::uint8_t>();
         if (tile % 8 == 7) {
             grid->fill(openvdb::CoordBBox::createCube(at, 8), value);
