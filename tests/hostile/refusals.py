@@ -24,7 +24,7 @@ def refuse(attack: Attack, shim: Path, command: Command, call: str, n: int) -> t
 
 
 def run(attack: Attack, shim: Path, *, quick: bool) -> tuple[dict[str, int], list[str]]:
-    """Number of refused calls by command and call, and what was wrong. `quick`: calls 1, 2, 4, 8 .. of few commands."""
+    """Number of refused calls by command and call, and what was wrong. `quick`: calls 1, 4, 16 .. of few commands."""
     counts: dict[str, int] = {}
     wrong: list[str] = []
     for command in COMMANDS:
@@ -38,6 +38,6 @@ def run(attack: Attack, shim: Path, *, quick: bool) -> tuple[dict[str, int], lis
                     break
                 made += 1
                 wrong += found
-                n += n if quick else 1
+                n += 3 * n if quick else 1
             counts[f"{command.name}, {call}"] = made
     return counts, wrong
