@@ -180,6 +180,13 @@ bool parseNumber(std::string_view text, T& value) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
+/// The option that asks for layers which iterations fill; null: none does.
+const char* layerOption(const RenderOptions& o) {
+    if (o.techniques) return "--techniques";
+    if (o.lightGroups) return "--light-groups";
+    return o.layers.empty() ? nullptr : "--layer";
+}
+
 /// --estimate writes no image, and --until judges the whole one.
 void checkAccuracy(const RenderOptions& o) {
     if (o.until && (o.blocks || o.estimate)) {
@@ -191,9 +198,7 @@ void checkAccuracy(const RenderOptions& o) {
                               : !o.checkpoint.empty() ? "--checkpoint"
                               : o.replay              ? "--replay"
                               : o.verify              ? "--verify"
-                              : o.techniques          ? "--techniques"
-                              : o.lightGroups         ? "--light-groups"
-                              : !o.layers.empty()     ? "--layer"
+                              : layerOption(o)        ? layerOption(o)
                               : !o.log.empty()        ? "--log"
                               : !o.reference.empty()  ? "--reference"
                               : o.displayServer       ? "--display-server"
@@ -389,10 +394,7 @@ void checkOptions(RenderOptions& o) {
     if (o.effects) return;
     checkMethod(o);
     if (o.output.empty() && !o.replay && !o.estimate && !o.inMemory) nameOutput(o);
-    const char* const layers = o.techniques        ? "--techniques"
-                               : o.lightGroups     ? "--light-groups"
-                               : !o.layers.empty() ? "--layer"
-                                                   : nullptr;
+    const char* const layers = layerOption(o);
     if (layers && !o.replay && o.sheet.empty() && !o.output.empty() &&
         endingOf(o.output) != ".exr") {
         throw UsageError(std::string(layers) +

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -217,6 +218,8 @@ Part takePart(LayeredImage& image, const std::string& path) {
     }
     try {
         return readPart(image);
+    } catch (const std::bad_alloc&) {
+        throw;  // says nothing about the file
     } catch (const std::exception& e) {
         throw InputError(path + ": expected a part of a picture as it was written, found " +
                          "a damaged one (" + e.what() + "); delete it, or name another file");

@@ -29,14 +29,15 @@ done
 
 install_packages build test
 (install_packages browser) || say "No browser: the test of lacuna-study's page will be skipped"
+
+say "Layout of the sources"
+bash "$project/.ci/format.sh"
+
 SECONDS=0
 # An earlier demo may have configured the same directory without them.
 configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON -DLACUNA_MPI=ON
 build_targets
 say "Built in $SECONDS s"
-
-say "Layout of the sources"
-bash "$project/.ci/format.sh"
 
 say "Scenes: the files are what their generator makes"
 python3 -B -m unittest discover -s "$project/scenes" -t "$project/scenes"

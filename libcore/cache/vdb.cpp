@@ -83,13 +83,13 @@ Content read(const std::string& path, const std::string& kind, const CacheStamp&
     } catch (const openvdb::Exception& e) {
         refuse(path, kind + " written by lacuna", e.what(), remedy);
     }
+    bool isSane = true;
+    double voxels = 1.0;
     for (const int n : content.shape.size) {
-        if (n < 1 || n > kLargestSide) refuse(path, "a grid of sane size", "another", remedy);
+        isSane = isSane && n >= 1 && n <= kLargestSide;
+        voxels *= n;
     }
-    const VoxelIndex& size = content.shape.size;
-    if (double(size[0]) * size[1] * size[2] > kMostVoxels) {
-        refuse(path, "a grid of sane size", "another", remedy);
-    }
+    if (!isSane || voxels > kMostVoxels) refuse(path, "a grid of sane size", "another", remedy);
     const Vec3d& origin = content.shape.origin;
     if (!(content.shape.voxel > 0.0) || !std::isnormal(content.shape.voxel) ||
         !std::isfinite(origin.x + origin.y + origin.z)) {

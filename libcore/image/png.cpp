@@ -37,7 +37,8 @@ struct StbFree {
 std::string reason() {
     const char* said = stbi_failure_reason();
     std::string text = said && *said ? said : "a damaged one";
-    std::ranges::replace_if(text, [](char c) { return c < ' ' || c > '~'; }, '?');
+    std::ranges::replace_if(
+        text, [](char c) { return c < ' ' || c > '~'; }, '?');
     return text;
 }
 

@@ -35,7 +35,8 @@ json readJsonFile(const std::string& path) {
         throw InputError(path + ": expected JSON, found an error at byte " +
                          std::to_string(e.byte) + ": " + e.what());
     } catch (const json::out_of_range& e) {
-        throw InputError(path + ": expected numbers of double precision, found others: " + e.what());
+        throw InputError(path +
+                         ": expected numbers of double precision, found others: " + e.what());
     }
 }
 

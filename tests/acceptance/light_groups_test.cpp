@@ -38,12 +38,11 @@ TEST_P(LightGroupsOf, HoldTheirLampsAndAddUpToThePicture) {
     shot.iterations = 24;
     shot.radius = 0.1;  // of photons, so that some are there to be merged
     const PathLayers groups(*scene, true, {});
-    LayerFilm film(groups, shot.width, shot.height);
-    shot.layers = &film;
+    shot.layers = &groups;
     const Picture p = render(*scene, rowNamed(GetParam()), shot);
     const Image picture = p.pixels.image();
 
-    const Layers layers = film.means();
+    const Layers& layers = p.layers;
     const std::array<std::string, 3> names{"lamp", "bulb", "environment"};
     const std::array<std::string, 3> channels{".R", ".G", ".B"};
     ASSERT_EQ(layers.size(), 9u);

@@ -86,10 +86,10 @@ TEST_P(PathLayersOf, AddUpToThePicture) {
     shot.maxDepth = 9;
     shot.radius = 0.1;  // of photons, so that some are there to be merged
     const PathLayers paths(*scene, true, expressions(allOfThem()));
-    LayerFilm film(paths, shot.width, shot.height);
-    shot.layers = &film;
-    const Image picture = render(*scene, rowNamed(GetParam()), shot).pixels.image();
-    const Layers layers = film.means();
+    shot.layers = &paths;
+    const Picture p = render(*scene, rowNamed(GetParam()), shot);
+    const Image picture = p.pixels.image();
+    const Layers& layers = p.layers;
 
     std::vector<NamedTexts> sums = families();
     sums.push_back({{"light.lamp", ""}, {"light.unnamed", ""}, {"light.environment", ""}});
@@ -122,11 +122,9 @@ TEST_P(PathLayersOf, AddUpToThePicture) {
 std::vector<Moments> meansOf(const Scene& scene, const std::string& row, const PathLayers& paths,
                              Shot shot) {
     std::vector<Moments> means(paths.names().size());
+    shot.layers = &paths;
     for (shot.seed = 1; shot.seed <= 12; ++shot.seed) {
-        LayerFilm film(paths, shot.width, shot.height);
-        shot.layers = &film;
-        render(scene, rowNamed(row), shot);
-        const Layers layers = film.means();
+        const Layers layers = render(scene, rowNamed(row), shot).layers;
         for (std::size_t i = 0; i < means.size(); ++i) {
             double sum = 0.0;
             for (const char* channel : {".R", ".G", ".B"}) {
@@ -193,10 +191,8 @@ TEST(PathLayers, OfLobesAreThePicturesOfThoseLobes) {
     shot.iterations = 16;
     const auto both = floor(true, true);
     const PathLayers paths(*both, false, expressions({{"base", "C<RD>L"}, {"coat", "C<RG>L"}}));
-    LayerFilm film(paths, shot.width, shot.height);
-    shot.layers = &film;
-    render(*both, rowNamed("pt"), shot);
-    const Layers layers = film.means();
+    shot.layers = &paths;
+    const Layers layers = render(*both, rowNamed("pt"), shot).layers;
     shot.layers = nullptr;
     const Image coat = render(*floor(false, true), rowNamed("pt"), shot).pixels.image();
     double sums[2] = {0.0, 0.0};
@@ -221,10 +217,10 @@ TEST(PathLayers, OfConnectionsAreOfWhatTheyEvaluate) {
     const PathLayers paths(*scene, false, expressions({{"base", "C<RD>L"}, {"coat", "C<RS>L"}}));
     Shot shot;
     shot.iterations = 16;
-    LayerFilm film(paths, shot.width, shot.height);
-    shot.layers = &film;
-    const Image picture = render(*scene, rowNamed("pt"), shot).pixels.image();
-    const Layers layers = film.means();
+    shot.layers = &paths;
+    const Picture p = render(*scene, rowNamed("pt"), shot);
+    const Image picture = p.pixels.image();
+    const Layers& layers = p.layers;
     double energy = 0.0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
         const float whole = picture.pixels[i].g;
@@ -240,17 +236,16 @@ TEST(PathLayers, OfShortPathsAreThePicturesOfThose) {
     const auto scene = everyEvent().build();
     const PathLayers paths(*scene, false,
                            expressions({{"seen", "CL"}, {"direct", "C.L"}, {"all", "C.*"}}));
-    const auto layersOf = [&](int maxDepth, Image& picture) {
+    const auto upTo = [&](int maxDepth) {
         Shot shot;
         shot.maxDepth = maxDepth;
         shot.iterations = 8;
-        LayerFilm film(paths, shot.width, shot.height);
-        shot.layers = &film;
-        picture = render(*scene, rowNamed("bpt"), shot).pixels.image();
-        return film.means();
+        shot.layers = &paths;
+        return render(*scene, rowNamed("bpt"), shot);
     };
-    Image seen, lit;
-    const Layers ofOne = layersOf(1, seen), ofTwo = layersOf(2, lit);
+    const Picture one = upTo(1), two = upTo(2);
+    const Image seen = one.pixels.image(), lit = two.pixels.image();
+    const Layers &ofOne = one.layers, &ofTwo = two.layers;
     double energy = 0.0;
     for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
         EXPECT_FLOAT_EQ(ofOne.at("seen.G")[i], seen.pixels[i].g);
@@ -272,10 +267,8 @@ TEST(PathLayers, AreTheSameOnAnyNumberOfThreads) {
         Shot shot;
         shot.iterations = 5;
         shot.threads = &own;
-        LayerFilm film(paths, shot.width, shot.height);
-        shot.layers = &film;
-        render(*scene, rowNamed("bpt"), shot);
-        layers.push_back(film.means());
+        shot.layers = &paths;
+        layers.push_back(render(*scene, rowNamed("bpt"), shot).layers);
     }
     EXPECT_EQ(layers[0], layers[1]);
 }
@@ -298,10 +291,10 @@ TEST(PathLayers, NodesAndMaterialsTellObjectsApart) {
             {{"l", "C'left'L"}, {"r", "C'right'L"}, {"t", "C'tile'L"}, {"n", "C[^'left']L"}}));
     Shot shot;
     shot.iterations = 4;
-    LayerFilm film(paths, shot.width, shot.height);
-    shot.layers = &film;
-    const Image picture = render(*scene, rowNamed("pt"), shot).pixels.image();
-    const Layers layers = film.means();
+    shot.layers = &paths;
+    const Picture p = render(*scene, rowNamed("pt"), shot);
+    const Image picture = p.pixels.image();
+    const Layers& layers = p.layers;
     for (int y = 0; y < shot.height; ++y) {
         for (int x = 0; x < shot.width; ++x) {
             const auto i = std::size_t(y * shot.width + x);

@@ -168,7 +168,10 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
     integrator_->delivery().setTechniqueFilm(shot_.techniques);
-    integrator_->delivery().setLayerFilm(shot_.layers);
+    if (shot_.layers) {
+        layerFilm_.emplace(*shot_.layers, r.crop.width(), r.crop.height());
+        integrator_->delivery().setLayerFilm(&*layerFilm_);
+    }
     integrator_->delivery().setObserver(shot_.observer);
     pixels_.resize(std::size_t(r.crop.width()) * std::size_t(r.crop.height()));
 }
@@ -204,6 +207,7 @@ Picture Render::run() {
         }
         picture.blocks.add(blocks, threads);
     }
+    if (layerFilm_) picture.layers = layerFilm_->means();
     picture.statistics = statistics_;
     return picture;
 }

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,7 @@ struct Shot {
     std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
     std::uint64_t walkGuide = 0;  ///< likewise of a guide that walks follow
     TechniqueFilm* techniques = nullptr;
-    LayerFilm* layers = nullptr;
+    const PathLayers* layers = nullptr;  ///< that Picture::layers has then
     PathObserver observer = nullptr;
 };
 
@@ -55,6 +56,7 @@ struct Picture {
         : pixels(crop.width(), crop.height(), plan),
           blocks(std::max(1, crop.width() / 4), std::max(1, crop.height() / 4), plan) {}
     Film pixels, blocks;
+    Layers layers;  ///< means
     IterationStatistics statistics;
 
     /// Mean of all pixels and channels, and its standard error.
@@ -87,6 +89,7 @@ class Render {
     Settings settings_;
     std::unique_ptr<Method> own_;
     Method* method_ = nullptr;
+    std::optional<LayerFilm> layerFilm_;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::vector<Rgb> pixels_;
     IterationStatistics statistics_;

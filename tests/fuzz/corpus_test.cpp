@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "libcore/base/rng.h"
-#include "tests/fuzz/attempt.h"
+#include "tests/fuzz/parsers.h"
 #include "tests/fuzz/seeds.h"
+#include "tests/gltf/gltf_builder.h"
 
 namespace lacuna::test {
 namespace {
@@ -34,15 +35,16 @@ std::vector<File> filesIn(const fs::path& folder) {
     return files;
 }
 
+struct Seeds {
+    Seeds() { writeSeeds(folder / ""); }
+    TempDir folder;
+};
+
 class Fuzz : public testing::TestWithParam<Parser> {
   protected:
     static std::vector<File> seeds() {
-        static const fs::path folder = [] {
-            const fs::path made = fs::path(fileOf("seeds", {})).parent_path() / "of";
-            writeSeeds(made);
-            return made;
-        }();
-        return filesIn(folder / GetParam().name);
+        static const Seeds written;
+        return filesIn(written.folder / std::string(GetParam().name));
     }
     static bool accepts(const File& file) {
         SCOPED_TRACE(file.name);
@@ -74,9 +76,14 @@ TEST_P(Fuzz, DamageIsReadOrRefused) {
             for (std::uint32_t n = 1 + rng.below(4); n > 0 && !damaged.bytes.empty(); --n) {
                 const auto at = rng.below(std::uint32_t(damaged.bytes.size()));
                 switch (rng.below(3)) {
-                    case 0: damaged.bytes[at] ^= std::uint8_t(1u << rng.below(8)); break;
-                    case 1: damaged.bytes[at] = std::uint8_t(rng.below(256)); break;
-                    default: damaged.bytes.resize(at);
+                    case 0:
+                        damaged.bytes[at] ^= std::uint8_t(1u << rng.below(8));
+                        break;
+                    case 1:
+                        damaged.bytes[at] = std::uint8_t(rng.below(256));
+                        break;
+                    default:
+                        damaged.bytes.resize(at);
                 }
             }
             accepts(damaged);

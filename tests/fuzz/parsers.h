@@ -27,23 +27,20 @@ struct Parser {
 /// accidents, not malice, and would keep the fuzzer out.
 std::span<const Parser> parsers();
 
-/// Throws std::out_of_range for a name that none has.
-const Parser& parserOf(std::string_view name);
-
-bool acceptsScene(Bytes bytes);       ///< .glb or .gltf, and the scene that is built of it
-bool acceptsExr(Bytes bytes);         ///< a reference, and a part or checkpoint
-bool acceptsHdr(Bytes bytes);         ///< an environment
-bool acceptsPfm(Bytes bytes);         ///< a reference
-bool acceptsPng(Bytes bytes);         ///< a texture, and a picture to compare
-bool acceptsSubspaces(Bytes bytes);   ///< the sections of KEY.subspaces
-bool acceptsEmission(Bytes bytes);    ///< the sections of KEY.emission
-bool acceptsWalks(Bytes bytes);       ///< the sections of KEY.walks
-bool acceptsGuarded(Bytes bytes);     ///< a .vdb and its sidecar: nothing foreign may come through
-bool acceptsSkeleton(Bytes bytes);    ///< the metadata of KEY.skeleton.vdb; OpenVDB's own format is sound
-bool acceptsVoxels(Bytes bytes);      ///< the metadata of KEY.voxels.vdb
-bool acceptsPart(Bytes bytes);        ///< the attributes of a part; its hash is right
-bool acceptsStudy(Bytes bytes);       ///< a study's .json
-bool acceptsCurve(Bytes bytes);       ///< what --log wrote
-bool acceptsArguments(Bytes bytes);   ///< lacuna-render's, one per line, and the method's settings
+bool acceptsScene(Bytes bytes);      ///< .glb or .gltf, and the scene that is built of it
+bool acceptsExr(Bytes bytes);        ///< a reference, and a part or checkpoint
+bool acceptsHdr(Bytes bytes);        ///< an environment
+bool acceptsPfm(Bytes bytes);        ///< a reference
+bool acceptsPng(Bytes bytes);        ///< a texture, and a picture to compare
+bool acceptsSubspaces(Bytes bytes);  ///< the sections of KEY.subspaces
+bool acceptsEmission(Bytes bytes);   ///< the sections of KEY.emission
+bool acceptsWalks(Bytes bytes);      ///< the sections of KEY.walks
+bool acceptsGuarded(Bytes bytes);    ///< a .vdb and its sidecar: nothing foreign may come through
+bool acceptsSkeleton(Bytes bytes);  ///< the metadata of KEY.skeleton.vdb, OpenVDB's own being sound
+bool acceptsVoxels(Bytes bytes);    ///< the metadata of KEY.voxels.vdb
+bool acceptsPart(Bytes bytes);      ///< the attributes of a part; its hash is right
+bool acceptsStudy(Bytes bytes);     ///< a study's .json
+bool acceptsCurve(Bytes bytes);     ///< what --log wrote
+bool acceptsArguments(Bytes bytes);  ///< lacuna-render's, one per line, and the method's settings
 
 }  // namespace lacuna::test

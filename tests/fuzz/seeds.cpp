@@ -6,6 +6,7 @@
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "render/part.h"
+#include "tests/cache/example_guide.h"
 #include "tests/cache/example_subspaces.h"
 #include "tests/fixtures/random_walk_guide.h"
 #include "tests/gltf/everything.h"
@@ -114,14 +115,7 @@ void caches(const fs::path& folder) {
     writeSubspaceFile(folder / "subspaces" / "a", example(5, 3));
     const auto guide = randomWalkGuide(1);
     writeWalkFile(folder / "walks" / "a", {guide, kStamp, guide->contentHash()});
-    auto emission = std::make_shared<EmissionGuide>();
-    Rng rng(4, 0, StreamKind::User, 0);
-    emission->pmf = {0.25, 0.0, 0.75};
-    emission->pointTree = {1, kNone, 0};
-    emission->points = {randomDensity(rng, 2), randomDensity(rng, 2)};
-    emission->firstLeaf = {0, 2};
-    emission->rayTree = {0, kNone, 1, 0};
-    emission->rays = {randomDensity(rng, 6), randomDensity(rng, 6)};
+    const auto emission = exampleGuide();
     writeEmissionFile(folder / "emission" / "a", {emission, kStamp, emission->contentHash()});
     const fs::path pair = folder / "guarded" / "pair";
     writeGuarded(pair, "some bytes");

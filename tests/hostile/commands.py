@@ -9,7 +9,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,7 +78,6 @@ class Outcome:
     exit: int
     seconds: float
     message: str  # on stderr
-    complaints: list[str] = field(default_factory=list)
 
 
 class Attack:
@@ -147,7 +146,7 @@ class Attack:
 
     def judge(self, command: Command, folder: Path, outcome: Outcome, *, speaks: bool = True) -> list[str]:
         """What is wrong with how it ended, in words; empty: nothing. `speaks`: stderr was there to be written to."""
-        wrong = outcome.complaints
+        wrong = []
         lines = outcome.message.splitlines()
         if outcome.exit < 0:
             wrong.append(f"died of {signal.Signals(-outcome.exit).name}")

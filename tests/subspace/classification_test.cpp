@@ -204,10 +204,10 @@ TEST(DecisionTree, refusesNodesThatLeadNowhere) {
         EXPECT_THROW(DecisionTree(std::move(nodes), 1), std::invalid_argument);
     };
     refuses({});
-    refuses({{0, 1u << 4 | DecisionTree::kLeaf}});  // a label too large
-    refuses({{0, 0u << 4}, leaf, leaf});            // its own child
-    refuses({{0, 2u << 4}, leaf, leaf});            // a child outside
-    refuses({{0, 1u << 4 | 9u}, leaf, leaf});       // an attribute that is none
+    refuses({{0, 1u << 4 | DecisionTree::kLeaf}});                    // a label too large
+    refuses({{0, 0u << 4}, leaf, leaf});                              // its own child
+    refuses({{0, 2u << 4}, leaf, leaf});                              // a child outside
+    refuses({{0, 1u << 4 | 9u}, leaf, leaf});                         // an attribute that is none
     refuses({{0, 1u << 4}, {0, 3u << 4}, {0, 3u << 4}, leaf, leaf});  // children of two
     refuses({{0, 0xffffffffu}});
 }
