@@ -7,7 +7,7 @@ namespace lacuna {
 namespace {
 // Of plain emission's loss. What gains less pays neither for look-ups nor for the paths that training has
 // not met, which become rarer.
-constexpr double kWorthIt = 0.4;
+constexpr double kEmissionWorthIt = 0.4;
 }  // namespace
 
 CacheStamp emissionStamp(const Settings& sceneInputs, const Settings& viewInputs,
@@ -39,7 +39,7 @@ EmissionTraining trainEmission(const Scene& scene, const Camera& camera, double 
             lights = std::make_shared<const Lights>(scene.lights().guidedBy(guide));
         }
     }
-    if (!(result.learned.heldOutLoss < kWorthIt)) result.learned.guide = nullptr;
+    if (!(result.learned.heldOutLoss < kEmissionWorthIt)) result.learned.guide = nullptr;
     return result;
 }
 

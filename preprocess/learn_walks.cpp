@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 /// Of the loss without a guide, from which a walk goes without one: less does not pay for look-ups.
-constexpr double kWorthIt = 0.97;
+constexpr double kWalksWorthIt = 0.97;
 }  // namespace
 
 CacheStamp walkStamp(const Settings& sceneInputs, const Settings& viewInputs, std::uint64_t paths,
@@ -43,7 +43,7 @@ WalkTraining trainWalks(const Scene& scene, const Camera& camera, double aspect,
     if (!learned.guide) return result;
     std::array<bool, 2> worthIt{};
     for (std::size_t side = 0; side < 2; ++side) {
-        worthIt[side] = learned.heldOutLoss[side] < kWorthIt;
+        worthIt[side] = learned.heldOutLoss[side] < kWalksWorthIt;
     }
     if (!worthIt[0] && !worthIt[1]) {
         learned.guide = nullptr;

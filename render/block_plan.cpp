@@ -9,8 +9,6 @@
 namespace lacuna {
 namespace {
 
-constexpr std::uint64_t kDefaultIterations = 64;
-
 /// Large enough that a warm-up costs below 1 % (theory.md, "Blocks").
 constexpr std::uint64_t kBlockIterations = 64;
 /// Where the method learns: an interrupted block is begun anew, so that it should be small, but

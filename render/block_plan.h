@@ -10,6 +10,9 @@
 
 namespace lacuna {
 
+/// Of a picture, where no option says how many.
+constexpr std::uint64_t kDefaultIterations = 64;
+
 /// The method's blocks, or those of --block-iterations.
 BlockPlan planOf(const RenderOptions& options, const Method& method);
 

@@ -20,7 +20,7 @@ std::uint64_t peakBytes() {
 }
 
 /// JSON has no infinity: the text "inf" or "nan" stands for it.
-json number(double value) {
+json jsonNumber(double value) {
     return std::isfinite(value) ? json(value) : json(std::isnan(value) ? "nan" : "inf");
 }
 
@@ -70,7 +70,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
 }  // namespace
 
 json numbersJson(const double (&values)[3]) {
-    return json::array({number(values[0]), number(values[1]), number(values[2])});
+    return json::array({jsonNumber(values[0]), jsonNumber(values[1]), jsonNumber(values[2])});
 }
 
 Attribute integerAttribute(std::uint64_t value) {
@@ -196,7 +196,7 @@ json reportJson(const RenderReport& r) {
     j["estimate_doubts"] = json::object();
     for (const char* measure : {"mape", "relmse", "rmse"}) {
         const Measured& m = *r.estimate.find(measure);
-        j["estimated_error"][measure] = number(m.error);
+        j["estimated_error"][measure] = jsonNumber(m.error);
         if (!m.doubt.empty()) j["estimate_doubts"][measure] = m.doubt;
     }
     if (r.exposure) j["exposure"] = *r.exposure;
@@ -207,10 +207,10 @@ json reportJson(const RenderReport& r) {
         if (!r.verify->replay.empty()) j["verify"]["replay"] = r.verify->replay;
     }
     if (r.error) {
-        j["error"] = {{"mae", number(r.error->mae)},
-                      {"rmse", number(r.error->rmse)},
-                      {"mape", number(r.error->mape)},
-                      {"relmse", number(r.error->relmse)}};
+        j["error"] = {{"mae", jsonNumber(r.error->mae)},
+                      {"rmse", jsonNumber(r.error->rmse)},
+                      {"mape", jsonNumber(r.error->mape)},
+                      {"relmse", jsonNumber(r.error->relmse)}};
     }
     return j;
 }

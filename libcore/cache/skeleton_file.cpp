@@ -11,7 +11,7 @@ namespace lacuna {
 
 namespace {
 
-const char* const kKind = "skeleton";
+const char* const kSkeletonKind = "skeleton";
 const char* const kNodes = "lacuna.nodes";  // x y z radius, doubles, the file's coordinates
 const char* const kEdges = "lacuna.edges";  // two indices and six coordinates each
 
@@ -75,7 +75,7 @@ void writeSkeletonFile(const std::string& path, const SkeletonFile& file, const 
         add(edges, e.enter);
     }
     openvdb::MetaMap meta;
-    vdb::putHeader(meta, kKind, file.stamp, shape, centre, s.contentHash());
+    vdb::putHeader(meta, kSkeletonKind, file.stamp, shape, centre, s.contentHash());
     meta.insertMeta(kNodes, openvdb::StringMetadata(bytesOf(nodes)));
     meta.insertMeta(kEdges, openvdb::StringMetadata(bytesOf(edges)));
     vdb::write(path, {grid}, meta);
@@ -83,7 +83,7 @@ void writeSkeletonFile(const std::string& path, const SkeletonFile& file, const 
 
 SkeletonFile readSkeletonFile(const std::string& path, const CacheStamp& expected,
                               const Vec3d& centre, const std::string& remedy) {
-    const vdb::Content content = vdb::read(path, kKind, expected, centre, remedy);
+    const vdb::Content content = vdb::read(path, kSkeletonKind, expected, centre, remedy);
     SkeletonFile file;
     file.stamp = content.stamp;
     file.contentHash = content.contentHash;

@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-const char* const kKind = "voxels";
+const char* const kVoxelKind = "voxels";
 
 template <class T>
 using DenseView = openvdb::tools::Dense<T, openvdb::tools::LayoutXYZ>;
@@ -44,13 +44,13 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
         grid->setTransform(vdb::transformOf(shape, centre));
     }
     openvdb::MetaMap meta;
-    vdb::putHeader(meta, kKind, file.stamp, shape, centre, space.contentHash());
+    vdb::putHeader(meta, kVoxelKind, file.stamp, shape, centre, space.contentHash());
     vdb::write(path, {solid, distance}, meta);
 }
 
 VoxelFile readVoxelFile(const std::string& path, const CacheStamp& expected, const Vec3d& centre,
                         const std::string& remedy) {
-    const vdb::Content content = vdb::read(path, kKind, expected, centre, remedy);
+    const vdb::Content content = vdb::read(path, kVoxelKind, expected, centre, remedy);
     VoxelFile file;
     file.stamp = content.stamp;
     VoxelSpace& space = file.space;

@@ -9,7 +9,7 @@
 namespace lacuna::gltf {
 namespace {
 
-std::string placeOf(std::size_t node) {
+std::string placeOfNode(std::size_t node) {
     return "nodes[" + std::to_string(node) + "]";
 }
 
@@ -23,7 +23,7 @@ Affine fromMatrix(const Document& document, std::size_t node, const std::vector<
     const double off =
         std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
     if (!(off <= kTolerance)) {
-        refuse(document.file, placeOf(node) + ".matrix", "0, 0, 0, 1 as the last row",
+        refuse(document.file, placeOfNode(node) + ".matrix", "0, 0, 0, 1 as the last row",
                "a projective matrix");
     }
     return {{Vec3d{m[0], m[1], m[2]}, Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]},
@@ -37,7 +37,7 @@ Affine fromTrs(const Document& document, std::size_t index, const tinygltf::Node
                w = node.rotation[3];
         const double l = std::sqrt(x * x + y * y + z * z + w * w);
         if (!(l > 0.0) || !std::isfinite(l)) {
-            refuse(document.file, placeOf(index) + ".rotation", "a unit quaternion",
+            refuse(document.file, placeOfNode(index) + ".rotation", "a unit quaternion",
                    "one of length " + numberText(l));
         }
         x /= l, y /= l, z /= l, w /= l;
@@ -67,7 +67,7 @@ std::vector<bool> checkForest(const Document& document) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         for (const int child : nodes[i].children) {
             if (isChild[std::size_t(child)]) {
-                refuse(document.file, placeOf(std::size_t(child)), "one parent",
+                refuse(document.file, placeOfNode(std::size_t(child)), "one parent",
                        "two (or the same twice)", "export the hierarchy as a tree");
             }
             isChild[std::size_t(child)] = true;
@@ -87,7 +87,7 @@ std::vector<bool> checkForest(const Document& document) {
     }
     const auto lost = std::find(reached.begin(), reached.end(), false);
     if (lost != reached.end()) {
-        refuse(document.file, placeOf(std::size_t(lost - reached.begin())), "a tree of nodes",
+        refuse(document.file, placeOfNode(std::size_t(lost - reached.begin())), "a tree of nodes",
                "a cycle", "export the hierarchy as a tree");
     }
     return isChild;
@@ -107,7 +107,7 @@ std::vector<std::size_t> sceneRoots(const Document& document, std::vector<bool> 
         const std::size_t root = std::size_t(node);
         if (isChild[root]) {
             refuse(document.file, "scenes[" + std::to_string(document.scene) + "].nodes",
-                   "root nodes, once each", placeOf(root) + " again",
+                   "root nodes, once each", placeOfNode(root) + " again",
                    "export the hierarchy as a tree");
         }
         isChild[root] = true;  // a second listing would draw it twice
@@ -144,7 +144,7 @@ std::vector<Affine> meshCopies(const Document& document, std::size_t node) {
     const auto extension = extensions.find("EXT_mesh_gpu_instancing");
     if (extension == extensions.end() || !extension->second.Has("attributes")) return {Affine{}};
     const tinygltf::Value& attributes = extension->second.Get("attributes");
-    const std::string place = placeOf(node) + ".extensions.EXT_mesh_gpu_instancing";
+    const std::string place = placeOfNode(node) + ".extensions.EXT_mesh_gpu_instancing";
 
     std::size_t count = 0;
     const auto read = [&](const char* name, int components) {
@@ -185,7 +185,7 @@ std::vector<Placement> flattenScene(const Document& document, Warnings& warnings
         open.pop_back();
         at.toWorld = at.toWorld * localTransform(document, at.node);
         if (!isFinite(at.toWorld) || !std::isfinite(at.toWorld.determinant())) {
-            refuse(document.file, placeOf(at.node), "a finite transform", "one that overflows",
+            refuse(document.file, placeOfNode(at.node), "a finite transform", "one that overflows",
                    "check the scales in the hierarchy");
         }
         const std::vector<int>& children = nodes[at.node].children;

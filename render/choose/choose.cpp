@@ -8,6 +8,7 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/text_list.h"
+#include "render/block_plan.h"
 #include "render/choose/trial.h"
 
 namespace lacuna {
@@ -19,8 +20,7 @@ constexpr double kTrainingShare = 0.06;  // of the subspaces, which trials and p
 constexpr double kFewestTrialRays = 4e4;
 constexpr double kMostTrialRays = 2e6;  // more would tell nothing new
 
-/// Of the picture, where no option says how many.
-constexpr std::uint64_t kDefaultIterations = 64;
+/// Of the picture, where it is an error that ends it.
 constexpr std::uint64_t kIterationsToAnError = 256;
 
 /// A path of training costs as much as so many rays of a render.

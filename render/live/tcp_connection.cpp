@@ -18,7 +18,7 @@ namespace lacuna {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kSlice = std::chrono::milliseconds(20);
+constexpr auto kTick = std::chrono::milliseconds(20);
 
 [[noreturn]] void fail(const std::string& why) {
     throw std::runtime_error(why);
@@ -56,7 +56,7 @@ std::vector<SocketAddress> lookUp(const ServerAddress& server, Clock::time_point
     std::packaged_task<std::vector<SocketAddress>()> task([server] { return addressesOf(server); });
     std::future<std::vector<SocketAddress>> addresses = task.get_future();
     std::thread(std::move(task)).detach();
-    while (addresses.wait_for(kSlice) != std::future_status::ready) {
+    while (addresses.wait_for(kTick) != std::future_status::ready) {
         if (Clock::now() >= end || !goOn()) fail("the name was not looked up in time");
     }
     return addresses.get();
@@ -66,7 +66,7 @@ std::vector<SocketAddress> lookUp(const ServerAddress& server, Clock::time_point
 bool waitUntilWritable(int fd, Clock::time_point end, const TcpConnection::GoOn& goOn) {
     for (;;) {
         pollfd wanted{fd, POLLOUT, 0};
-        const int ready = ::poll(&wanted, 1, int(kSlice.count()));
+        const int ready = ::poll(&wanted, 1, int(kTick.count()));
         if (ready > 0) return true;
         if (ready < 0 && errno != EINTR) fail(textOf(errno));
         if (Clock::now() >= end || !goOn()) return false;
