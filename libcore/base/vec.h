@@ -117,6 +117,9 @@ struct Rgb {
 constexpr float mean(const Rgb& c) {
     return (c.r + c.g + c.b) * (1.0f / 3.0f);
 }
+constexpr float minComponent(const Rgb& c) {
+    return c.r < c.g ? (c.r < c.b ? c.r : c.b) : (c.g < c.b ? c.g : c.b);
+}
 constexpr float maxComponent(const Rgb& c) {
     return std::max(c.r, std::max(c.g, c.b));
 }

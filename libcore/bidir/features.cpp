@@ -7,7 +7,20 @@ namespace lacuna {
 
 namespace {
 constexpr int kSamples = 4;
+constexpr int kMostPanes = 64;  // one behind the other; no scene has as many
+
+/// What the lens sees first. Every ray passes panes here, whether it would stop there or not: the few that
+/// do would be specks.
+std::optional<SurfacePoint> firstSeen(const Scene& scene, const Vec3& lens, const Vec3& direction,
+                                      RayTally& tally) {
+    auto hit = scene.intersect(lens, Vec3{}, direction, RayKind::Camera, tally);
+    for (int i = 0; hit && i < kMostPanes && scene.bsdfAt(*hit).passing(direction) > 0.0f; ++i) {
+        hit = scene.intersect(hit->position, hit->ng, direction, RayKind::Camera, tally);
+    }
+    return hit;
 }
+
+}  // namespace
 
 FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const PixelRect& crop,
                              std::uint64_t seed, const ThreadPool& pool) {
@@ -32,7 +45,7 @@ FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const Pix
                 const Vec3 lens = camera.sampleLens({u1, u2});
                 const Vec3 direction =
                     camera.directionAt(lens, {float(x) + jitterX, float(y) + jitterY}).direction;
-                const auto hit = scene.intersect(lens, Vec3{}, direction, RayKind::Camera, tally);
+                const auto hit = firstSeen(scene, lens, direction, tally);
                 if (!hit) continue;
                 const Bsdf bsdf = scene.bsdfAt(*hit);
                 albedo += bsdf.layerAlbedo();

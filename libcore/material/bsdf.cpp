@@ -143,6 +143,7 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
         int((flags & kDiffuse) != 0) + int((flags & kLayers) != 0) + int((flags & kGlass) != 0);
     const bool oneLobe = kinds == 1 && !(clearcoat_ > 0.0f);
     flags_ = std::uint8_t(flags | (oneLobe ? unsigned(kOneLobe) : 0u));
+    isPane_ = parameters.pane && thin && !roughGlass && oneLobe && (flags & kGlass) != 0;
 }
 
 Bsdf Bsdf::at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const {
@@ -169,6 +170,12 @@ float Bsdf::openAverage(float coatAverage) const {
         }
     }
     return sum;
+}
+
+float Bsdf::passing(const Vec3& direction) const {
+    if (!isPane_) return 0.0f;
+    const float cosine = std::abs(dot(normalize(direction), ng_));
+    return cosine >= kMinCosine ? passingAt(std::min(1.0f, cosine)) : 0.0f;
 }
 
 float Bsdf::survivalAlbedo() const {

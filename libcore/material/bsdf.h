@@ -96,6 +96,8 @@ class Bsdf {
         float ior = 1.5f;
         float transmission = 0.0f;
         bool thin = true;
+        /// Rays pass it straight, and what is left is of those that stop; only smooth thin glass alone.
+        bool pane = false;
         float clearcoat = 0.0f;  ///< weight of a layer of index kClearcoatIor over everything else
         float clearcoatRoughness = 0.0f;
         /// Lobes that are not there: a layer leaves its light to what is under it, the others'
@@ -144,6 +146,9 @@ class Bsdf {
     bool connectable() const {
         return has(kDiffuse | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
     }
+    /// Share of the rays along `direction` (of any length) that go on straight as if nothing were there,
+    /// a pane's; the same from both sides. What scatters is of the others. (theory.md, "Panes")
+    float passing(const Vec3& direction) const;
     /// Whether light may pass through.
     bool transmits() const { return has(kGlass); }
     /// What reflects in the Smooth event: a diffuse base, rough lobes, or both.
@@ -258,6 +263,17 @@ class Bsdf {
     /// Transmitted over incident index for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
 
+    /// What an event at smooth glass is, seen at this cosine from a side with this relative index.
+    struct Interface {
+        float reflected;  ///< reflectance
+        Rgb transmitted;  ///< transmittance
+        float pmf;        ///< of a reflection
+    };
+    Interface paneAt(float cosine) const;
+    /// The probability of a reflection.
+    float reflectionPmf(float cosine, float relativeIndex) const;
+    float passingAt(float cosine) const;
+
     void addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                             const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
     void addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
@@ -281,7 +297,8 @@ class Bsdf {
     float diffuseScale_ = 0;  ///< plastic / (pi times the mean of what all coats leave)
     float clearcoat_ = 0, clearcoatAlpha_ = 0;
     std::uint8_t flags_ = 0;
-    std::uint8_t rowIndex_ = 0;  ///< AlbedoTable::Row
+    std::uint8_t rowIndex_ : 7 = 0;  ///< AlbedoTable::Row
+    std::uint8_t isPane_ : 1 = 0;
     std::uint16_t rowFraction_ = 0;
 };
 static_assert(sizeof(Bsdf) <= 96);

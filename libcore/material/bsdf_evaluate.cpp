@@ -255,6 +255,13 @@ BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent
         if (!deltaGlass) {
             return out;
         }
+        if (isPane_) {
+            const Interface pane = paneAt(ce);
+            out.f = pane.transmitted;
+            out.pdfWToLight = (1.0f - pane.pmf) * std::abs(c.lightG);
+            out.pdfWToEye = (1.0f - pane.pmf) * std::abs(c.eyeG);
+            return out;
+        }
         // From the outside, where there is no total internal reflection; thin: both sides are.
         const float transmit = 1.0f - fresnelDielectric(front || has(kThin) ? ce : cl, ior_);
         const Rgb coefficient = baseColor_ * (glass() * transmit * through(eye, light));
@@ -283,10 +290,12 @@ BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent
         pmfLight = light.layers;
     }
     if (deltaGlass) {
-        const float inner = fresnelDielectric(ce, relativeIndex(front));
+        const float inner =
+            isPane_ ? paneAt(ce).reflected : fresnelDielectric(ce, relativeIndex(front));
+        const float pmf = reflectionPmf(ce, relativeIndex(front));
         reflectance += Rgb(glass() * inner);
-        pmfEye += eye.glass * inner;
-        pmfLight += light.glass * inner;
+        pmfEye += eye.glass * pmf;
+        pmfLight += light.glass * pmf;
     }
     reflectance *= through(eye, light);
     if (deltaClearcoat) {

@@ -88,6 +88,27 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     return c;
 }
 
+/// What all channels let through alike.
+inline float Bsdf::passingAt(float cosine) const {
+    return (1.0f - fresnelDielectric(cosine, ior_)) * minComponent(baseColor_);
+}
+
+/// Of the rays that stop: Fresnel's reflection, and what the colour lets through beyond passingAt.
+inline Bsdf::Interface Bsdf::paneAt(float cosine) const {
+    const float fresnel = fresnelDielectric(cosine, ior_);
+    const float grey = minComponent(baseColor_);
+    const float stopping = 1.0f - (1.0f - fresnel) * grey;
+    if (!(stopping > 0.0f)) return {0.0f, Rgb{}, 0.0f};
+    const float reflected = fresnel / stopping, open = (1.0f - fresnel) / stopping;
+    const Rgb transmitted = (baseColor_ - Rgb(grey)) * open;
+    const float sum = reflected + maxComponent(transmitted);
+    return {reflected, transmitted, sum > 0.0f ? reflected / sum : 0.0f};
+}
+
+inline float Bsdf::reflectionPmf(float cosine, float relativeIndex) const {
+    return isPane_ ? paneAt(cosine).pmf : fresnelDielectric(cosine, relativeIndex);
+}
+
 /// Coat and metal together, seen from outside. The coat's colour is that of its reflectance along
 /// the normal; towards grazing angles it becomes white, as Fresnel's does.
 inline Rgb Bsdf::layersReflectance(float cosine) const {

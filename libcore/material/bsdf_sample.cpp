@@ -86,11 +86,11 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             return result;
         }
         if (glass) {
-            // What is left of uBase decides between reflection (F) and transmission (1 - F).
+            // What is left of uBase decides between reflection (F) and transmission.
             const float uGlass = (uBase - choice.diffuse - choice.layers) / choice.glass;
             // Never transmission where F is 1, though rounding may bring uGlass up to 1.
-            const float fresnel = fresnelDielectric(hCosine, relativeIndex(front));
-            transmits = !(uGlass < fresnel) && fresnel < 1.0f;
+            const float reflects = reflectionPmf(hCosine, relativeIndex(front));
+            transmits = !(uGlass < reflects) && reflects < 1.0f;
         }
         if (!transmits) {
             to = reflected(from, h, hCosine);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
 
 #include "libcore/base/parallel.h"
@@ -44,14 +45,15 @@ Vec3d centreOf(const Mesh& mesh) {
     return box.centre();
 }
 
-/// Whether every corner's normal is its face's own: then the face's is enough.
+/// Whether every corner's normal is its face's own, within `angle` (radians, small): then the face's
+/// is enough.
 bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
-            std::span<const std::array<std::uint32_t, 3>> triangles) {
+            std::span<const std::array<std::uint32_t, 3>> triangles, float angle) {
     if (normals.empty()) return true;
     for (const auto& t : triangles) {
         const Vec3 ng = triangleNormal(positions[t[0]], positions[t[1]], positions[t[2]]);
         for (const std::uint32_t corner : t) {
-            if (lengthSquared(normalize(normals[corner]) - ng) > 1e-12f) return false;
+            if (lengthSquared(normalize(normals[corner]) - ng) > angle * angle) return false;
         }
     }
     return true;
@@ -185,8 +187,11 @@ void moveVertices(const MeshUse& use, Mesh& from, BakedMesh& to) {
     }
 }
 
+/// How far normals may be from their faces', radians: rounding, and what nobody sees in a window.
+constexpr float kFlatness = 1e-6f, kPaneFlatness = 1e-3f;
+
 /// What is left of them faces the winding's side; degenerate ones go.
-void takeTriangles(const MeshUse& use, Mesh& from, BakedMesh& to) {
+void takeTriangles(const MeshUse& use, float flatness, Mesh& from, BakedMesh& to) {
     const auto normalOf = [&](const std::array<std::uint32_t, 3>& t) {
         return triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]);
     };
@@ -199,7 +204,26 @@ void takeTriangles(const MeshUse& use, Mesh& from, BakedMesh& to) {
         to.faceNormals.reserve(to.triangles.size());
         for (const auto& t : to.triangles) to.faceNormals.push_back(normalOf(t));
     }
-    if (isFlat(to.positions, to.normals, to.triangles)) to.normals = {};
+    if (isFlat(to.positions, to.normals, to.triangles, flatness)) to.normals = {};
+}
+
+/// Flat meshes of thin smooth glass get a material of their own, which lets rays pass: the same one may
+/// be on curved meshes, where a reflection meets the shading normal at another angle than the face's.
+void findPanes(SceneDescription& d, std::vector<BakedMesh>& meshes) {
+    std::map<std::uint32_t, std::uint32_t> paneOf;
+    for (BakedMesh& mesh : meshes) {
+        if (mesh.triangles.empty() || !mesh.normals.empty()) continue;
+        const Material& material = d.materials[mesh.material];
+        if (!mayBePane(material) || mayHaveHoles(material, d.textures, mesh.hasVertexAlpha()))
+            continue;
+        const auto [found, isNew] = paneOf.try_emplace(mesh.material, d.materials.size());
+        if (isNew) {
+            Material pane = material;
+            pane.pane = true;
+            d.materials.push_back(std::move(pane));
+        }
+        mesh.material = found->second;
+    }
 }
 
 }  // namespace
@@ -229,9 +253,10 @@ BakedScene bake(SceneDescription& d, const ThreadPool& pool) {
         to.plain =
             to.colors.empty() && to.uvs1.empty() && !(material.normalTexture && !to.uvs.empty());
         to.farTextures = farTexturesOf(material, d.textures);
-        takeTriangles(uses[m], from, to);
+        takeTriangles(uses[m], mayBePane(material) ? kPaneFlatness : kFlatness, from, to);
         from = Mesh{};
     });
+    findPanes(d, out.meshes);
 
     // A mesh without triangles makes Embree objects of no use.
     std::erase_if(out.objects,

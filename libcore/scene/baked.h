@@ -73,7 +73,8 @@ struct BakedScene {
 };
 
 /// Takes the geometry out of the description: meshes that are used once are baked into world space,
-/// the others stay to be instanced. Degenerate triangles and objects without any are dropped.
+/// the others stay to be instanced. Degenerate triangles and objects without any are dropped. Panes get
+/// materials of their own, behind the others.
 BakedScene bake(SceneDescription& scene, const ThreadPool& pool);
 
 /// Alpha of one of the object's triangles, whose corners come in the mesh's order.

@@ -72,6 +72,13 @@ bool mayTransmit(const Material& m) {
     return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
 }
 
+bool mayBePane(const Material& m) {
+    return mayPassSmoothly(m) && !mayBeRough(m) && !m.metallicRoughnessTexture &&
+           m.metallic == 0.0f && m.transmission == 1.0f && !m.transmissionTexture &&
+           m.clearcoat == 0.0f && isBlack(m.emission) && !m.normalTexture &&
+           !m.without.has(LobeKind::SmoothThinTransmission);
+}
+
 bool mayHaveCoatedBase(const Material& m) {
     return mayHaveBase(m) && m.specular > 0.0f && m.ior > 1.0f;
 }

@@ -73,6 +73,7 @@ struct Material {
         false;                    ///< only the edge at the lens passes it, as if it were not there
     std::string lightGroup = {};  ///< of what emits by it; empty: its name
     LobeSet without;              ///< lobes to leave out, whatever the rest says
+    bool pane = false;  ///< rays pass it straight (theory.md, "Panes"); the scene finds out
 };
 
 /// The textures that a BSDF is made of, the base colour first. (Normal maps and emission are not.)
@@ -91,6 +92,8 @@ bool mayBeDiffuse(const Material& material);
 /// Metal, or a dielectric layer over a diffuse base.
 bool mayReflect(const Material& material);
 bool mayTransmit(const Material& material);
+/// Thin smooth glass and nothing else, with or without a colour: a pane where it is flat.
+bool mayBePane(const Material& material);
 /// A diffuse base, black or not, under a dielectric layer.
 bool mayHaveCoatedBase(const Material& material);
 

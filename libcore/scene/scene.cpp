@@ -1,10 +1,12 @@
 #include "libcore/scene/scene.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "libcore/base/error.h"
 #include "libcore/base/extent.h"
 #include "libcore/base/number_text.h"
+#include "libcore/base/rng.h"
 #include "libcore/image/image_io.h"
 #include "libcore/scene/emitters.h"
 
@@ -31,8 +33,8 @@ void requireNear(const SceneDescription& scene, const std::string& what, double 
                      "; scale the scene down, or take out what is far away");
 }
 
-std::unique_ptr<Accel> makeAccel(const SceneDescription& scene, const BakedScene& baked,
-                                 const Surfaces& surfaces, const ThreadPool& pool) {
+std::unique_ptr<Accel> makeAccel(const BakedScene& baked, const Surfaces& surfaces,
+                                 Accel::HoleTest stops, const ThreadPool& pool) {
     std::vector<AccelMesh> meshes;
     for (const BakedMesh& m : baked.meshes) meshes.push_back({m.positions, m.triangles});
     std::vector<AccelObject> objects;
@@ -41,16 +43,12 @@ std::unique_ptr<Accel> makeAccel(const SceneDescription& scene, const BakedScene
         a.mesh = o.mesh;
         a.instanced = o.instanced;
         for (std::size_t c = 0; c < 4; ++c) a.toWorld.m[c] = Vec3d(o.toWorld[c]);
-        a.hasHoles = surfaces.hasHoles(o);
-        a.hiddenFromCamera = scene.materials[baked.meshes[o.mesh].material].hiddenFromCamera;
+        const Material& material = surfaces.materialOf(o);
+        a.hasHoles = material.pane || surfaces.hasHoles(o);
+        a.hiddenFromCamera = material.hiddenFromCamera;
         objects.push_back(a);
     }
-    return std::make_unique<Accel>(
-        meshes, objects,
-        [&surfaces](const Hit& hit, Vec3 origin, Vec3 direction) {
-            return surfaces.stops(hit, origin, direction);
-        },
-        pool);
+    return std::make_unique<Accel>(meshes, objects, std::move(stops), pool);
 }
 
 }  // namespace
@@ -76,10 +74,35 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
     }
     lights_ = std::make_unique<Lights>(emissiveTriangles(description_, baked_), description_.lights,
                                        baked_.centre, environment_.get(), baked_.radius);
-    accel_ = makeAccel(description_, baked_, surfaces_, pool);
+    accel_ = makeAccel(
+        baked_, surfaces_,
+        [this](const Hit& hit, Vec3 origin, Vec3 direction) {
+            return stops(hit, origin, direction);
+        },
+        pool);
 }
 
 Scene::~Scene() = default;
+
+bool Scene::stops(const Hit& hit, Vec3 origin, Vec3 direction) const {
+    const SceneObject& object = baked_.objects[hit.object];
+    float share = 0.0f;
+    if (surfaces_.materialOf(object).pane) {
+        SurfacePoint point;
+        surfaceAt(hit, point);
+        share =
+            1.0f - bsdfAt(point).passing(object.instanced ? object.vector(direction) : direction);
+    } else {
+        share = surfaces_.opacity(hit);
+    }
+    if (share <= 0.0f || share >= 1.0f) return share > 0.0f;
+    // A share of the rays, which they draw themselves: no state, and the same ray again meets the
+    // same surfaces. Every strategy of a path has the same chance at each of its edges and vertices
+    // but the lamp's own point, where light subpaths begin (LightPoint::opacity).
+    const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+    return hashToUniform({bits(origin.x), bits(origin.y), bits(origin.z), bits(direction.x),
+                          bits(direction.y), bits(direction.z), hit.object, hit.primitive}) < share;
+}
 
 std::vector<NamedLights> Scene::namedLights() const {
     return lacuna::namedLights(description_, baked_, environment_ != nullptr);

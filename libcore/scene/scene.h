@@ -55,8 +55,8 @@ class Scene {
     float radius() const { return baked_.radius; }
     std::size_t triangleCount() const { return baked_.triangles; }
     /// The triangles that stop light, in our coordinates, instances each time, in a fixed order.
-    /// That is all of them, glass too: a connection does not pass through glass either. Left out
-    /// are triangles of which alpha lets more than half through (leaves, chains, veils).
+    /// That is all of them, glass that bends light too: a connection does not pass it either. Left out
+    /// are panes, and triangles of which alpha lets more than half through (leaves, chains, veils).
     std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const {
         return surfaces_.blocking(pool);
     }
@@ -87,6 +87,10 @@ class Scene {
     std::span<const Rgb> absorption() const { return absorption_; }
 
   private:
+    /// Whether a ray (of which origin and direction may be in the object's own space) stops at the
+    /// hit: always, but where alpha or a pane lets some of them pass.
+    bool stops(const Hit& hit, Vec3 origin, Vec3 direction) const;
+
     SceneDescription description_;
     BakedScene baked_;
     float offsetFloor_;

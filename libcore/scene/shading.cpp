@@ -78,6 +78,7 @@ Bsdf::Parameters Shading::parametersAt(const Material& m, Vec2 uv, Vec2 uv1) con
     p.ior = m.ior;
     p.transmission = m.transmission;
     p.thin = m.thin;
+    p.pane = m.pane;
     p.clearcoat = m.clearcoat;
     p.clearcoatRoughness = m.clearcoatRoughness;
     p.without = m.without;

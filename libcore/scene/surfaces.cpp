@@ -1,10 +1,8 @@
 #include "libcore/scene/surfaces.h"
 
-#include <bit>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
-#include "libcore/base/rng.h"
 #include "libcore/scene/texture.h"
 #include "libcore/scene/triangle.h"
 
@@ -37,24 +35,14 @@ Vec2 between(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& t
 
 }  // namespace
 
-bool Surfaces::stops(const Hit& hit, Vec3 origin, Vec3 direction) const {
+float Surfaces::opacity(const Hit& hit) const {
     const BakedMesh& mesh = baked_.meshes[baked_.objects[hit.object].mesh];
-    const float alpha = alphaOf(description_, mesh, hit.primitive).opacity({hit.u, hit.v});
-    if (alpha <= 0.0f || alpha >= 1.0f) return alpha > 0.0f;
-    // A share of the rays, which they draw themselves: no state, and the same ray again meets the
-    // same surfaces. Every strategy of a path has the same chance at each of its edges and vertices
-    // but the lamp's own point, where light subpaths begin (LightPoint::opacity).
-    return hashToUniform(
-               {std::bit_cast<std::uint32_t>(origin.x), std::bit_cast<std::uint32_t>(origin.y),
-                std::bit_cast<std::uint32_t>(origin.z), std::bit_cast<std::uint32_t>(direction.x),
-                std::bit_cast<std::uint32_t>(direction.y),
-                std::bit_cast<std::uint32_t>(direction.z), hit.object, hit.primitive}) < alpha;
+    return alphaOf(description_, mesh, hit.primitive).opacity({hit.u, hit.v});
 }
 
 bool Surfaces::hasHoles(const SceneObject& object) const {
-    const BakedMesh& mesh = baked_.meshes[object.mesh];
-    return mayHaveHoles(description_.materials[mesh.material], description_.textures,
-                        mesh.hasVertexAlpha());
+    return mayHaveHoles(materialOf(object), description_.textures,
+                        baked_.meshes[object.mesh].hasVertexAlpha());
 }
 
 void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
@@ -163,6 +151,7 @@ std::vector<std::array<Vec3, 3>> Surfaces::blocking(const ThreadPool& pool) cons
     pool.forEach(parts.size(), [&](std::size_t o) {
         const SceneObject& object = baked_.objects[o];
         const BakedMesh& mesh = baked_.meshes[object.mesh];
+        if (materialOf(object).pane) return;
         const bool holes = hasHoles(object);
         parts[o].reserve(mesh.triangles.size());
         for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {

@@ -32,11 +32,13 @@ class Surfaces {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
     void pointAt(const Hit& hit, SurfacePoint& out) const;
 
-    /// Whether a ray (of which origin and direction may be in the object's own space) stops at the
-    /// hit: always, but where alpha lets some of them pass.
-    bool stops(const Hit& hit, Vec3 origin, Vec3 direction) const;
-    /// Whether rays may pass through some points of the object.
+    /// Alpha's: the share of the rays that find the point there.
+    float opacity(const Hit& hit) const;
+    /// Whether that may be below 1 somewhere on the object.
     bool hasHoles(const SceneObject& object) const;
+    const Material& materialOf(const SceneObject& object) const {
+        return description_.materials[baked_.meshes[object.mesh].material];
+    }
 
     /// Scene::blockingTriangles.
     std::vector<std::array<Vec3, 3>> blocking(const ThreadPool& pool) const;

@@ -50,12 +50,12 @@ float channel(const Rgb& c, int i) {
 struct {
     const testing::TestInfo* test = nullptr;
     double share = 0;
-} worst;
+} worstSoFar;
 
 bool within(double deviation, double allowed) {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    if (worst.test != test) worst = {test, 0};
-    if (deviation > 0) worst.share = std::max(worst.share, deviation / allowed);
+    if (worstSoFar.test != test) worstSoFar = {test, 0};
+    if (deviation > 0) worstSoFar.share = std::max(worstSoFar.share, deviation / allowed);
     return deviation <= allowed;
 }
 
@@ -252,8 +252,8 @@ void expectRadiance(const Picture& picture, double exact, const std::string& wha
 }
 
 double worstDeviation() {
-    const bool current = worst.test == testing::UnitTest::GetInstance()->current_test_info();
-    return current ? worst.share : 0.0;
+    const bool current = worstSoFar.test == testing::UnitTest::GetInstance()->current_test_info();
+    return current ? worstSoFar.share : 0.0;
 }
 
 std::vector<std::string> rowNames() {

@@ -196,9 +196,7 @@ NamedScene deltaBox() {
     b.add(plastic({0.5f, 0.3f, 0.2f}, 0));  // material 4, the floor's: a smooth coat over Lambert
     b.add(sphere({0.4f, -0.5f, 0}, 0.35f, 16, b.add(glass())));
     b.add(quad({-0.7f, -0.8f, -0.7f}, {0.9f, 0, -0.2f}, {0, 1.2f, 0}, b.add(mirror(Rgb(0.9f)))));
-    lacuna::Material pane = glass(1.5f, 0);
-    pane.thin = true;
-    b.add(quad({-0.8f, -0.6f, 0.3f}, {0.5f, 0, 0}, {0, 0.9f, 0}, b.add(pane)));
+    b.add(quad({-0.8f, -0.6f, 0.3f}, {0.5f, 0, 0}, {0, 0.9f, 0}, b.add(pane({0.9f, 0.6f, 0.7f}))));
     return {"smooth glass, mirror, delta coat", std::move(b), true};
 }
 

@@ -151,6 +151,7 @@ TEST(BsdfReference, MetalAndThinGlass) {
 TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
     int compared = 0;
     for (const Material& m : materials()) {
+        if (m.parameters.pane) continue;  // rough glass is none
         for (const double degrees : {0.0, 25.0, 38.0, 55.0, 75.0}) {
             for (const bool tilted : {false, true}) {
                 for (const bool front : {true, false}) {

@@ -43,6 +43,12 @@ inline Bsdf::Parameters clearcoated(Bsdf::Parameters p, float weight, float roug
     return p;
 }
 
+inline Bsdf::Parameters paneOf(Rgb color) {
+    Bsdf::Parameters p = makeParameters(color, 0, 1, 1, 1.5f, true);
+    p.pane = true;
+    return p;
+}
+
 /// Every kind of lobe alone and together; roughness is set by the test.
 inline std::vector<Material> materials() {
     const Rgb white(1.0f), red(0.9f, 0.3f, 0.1f), black(0.0f);
@@ -73,6 +79,8 @@ inline std::vector<Material> materials() {
          clearcoated(makeParameters(red, 0, 1, 1, 1.5f, true), 0.7f, 0.4f)},
         {"rough clearcoat on everything, solid",
          clearcoated(makeParameters(red, 0.3f, 0.5f, 1, 1.33f), 0.6f, 0.5f)},
+        {"pane", paneOf(white)},
+        {"tinted pane", paneOf(red)},
         {"clearcoat on black", clearcoated(makeParameters(black, 0, 0, 0), 1, 0.3f)},
     };
 }

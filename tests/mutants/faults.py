@@ -491,6 +491,28 @@ FAULTS = [
           "((1.0f - cosN) + 0.0f * directionWeight_ * cosD)",
           {"subspace": "Centroids.nearestIsTheLeastByEquation18"}),
 
+    # Panes
+    Fault("panes-reflect-all-rays", "a ray that stops at a pane is scattered as if all had stopped",
+          "libcore/material/bsdf_inl.h",
+          "const float reflected = fresnel / stopping,", "const float reflected = fresnel,",
+          {"acceptance": "Panes.takeNothingAway"}),
+    Fault("panes-colour-twice", "what passes a coloured pane is let through once more by rays that stop",
+          "libcore/material/bsdf_inl.h",
+          "(baseColor_ - Rgb(grey)) * open;", "baseColor_ * open;",
+          {"acceptance": "Panes.areTheSheetsThatAllMeet"}),
+    Fault("panes-in-their-own-space", "an instance's pane takes the angle of a ray before its node's scale",
+          "libcore/scene/scene.cpp",
+          "object.instanced ? object.vector(direction) : direction", "direction",
+          {"scene": "Pane.LetsPassWhatAllChannelsDo"}),
+    Fault("panes-of-curved-glass", "curved sheets let rays pass",
+          "libcore/scene/baked.cpp",
+          "mesh.triangles.empty() || !mesh.normals.empty()", "mesh.triangles.empty()",
+          {"scene": "Pane.*"}),
+    Fault("panes-in-layers", "layers are of a pane where a ray happens to stop",
+          "libcore/bidir/features.cpp",
+          "i < kMostPanes &&", "i < 0 * kMostPanes &&",
+          {"acceptance": "PanesInLayers.areLookedThrough"}),
+
     # Skeletons
     Fault("sheets-about-cavities-stay", "thinning leaves a sheet around a floating solid",
           "libcore/skeleton/thinning.cpp",

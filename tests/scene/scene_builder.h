@@ -119,6 +119,12 @@ inline lacuna::Material glass(float ior = 1.5f, float roughness = 0) {
     m.thin = false;
     return m;
 }
+inline lacuna::Material pane(Rgb color = Rgb(1.0f), float ior = 1.5f) {
+    lacuna::Material m = glass(ior);
+    m.thin = true;
+    m.baseColor = color;
+    return m;
+}
 /// Solid; `absorption` per unit of length.
 inline lacuna::Material colouredGlass(Rgb absorption, float ior = 1.5f, float roughness = 0) {
     lacuna::Material m = glass(ior, roughness);
