@@ -157,13 +157,17 @@ TEST_F(RenderBlack, LightTracingAndMirrors) {
 }
 
 TEST_F(RenderBlack, PointLightBehindSmoothGlass) {
-    // Above a pane that covers the floor.
+    // Above the glass that the floor lies in. (Shadow rays pass a thin pane.)
     const auto edit = [](Json& root) {
         keep(root, {Floor, Ceiling});
         root["materials"].push_back(
             {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
-             {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
-        root["extensionsUsed"].push_back("KHR_materials_transmission");
+             {"extensions",
+              {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+               {"KHR_materials_volume", {{"thicknessFactor", 1}}}}}});
+        for (const char* name : {"transmission", "volume"}) {
+            root["extensionsUsed"].push_back(std::string("KHR_materials_") + name);
+        }
         root["meshes"][Ceiling]["primitives"][0]["material"] = 5;
         root["nodes"].back()["translation"] = {0, 1.2, 0};
     };
