@@ -175,7 +175,8 @@ float Bsdf::openAverage(float coatAverage) const {
 float Bsdf::passing(const Vec3& direction) const {
     if (!isPane_) return 0.0f;
     const float cosine = std::abs(dot(normalize(direction), ng_));
-    return cosine >= kMinCosine ? passingAt(std::min(1.0f, cosine)) : 0.0f;
+    if (!(cosine >= kMinCosine)) return 0.0f;
+    return (1.0f - fresnelDielectric(std::min(1.0f, cosine), ior_)) * minComponent(baseColor_);
 }
 
 float Bsdf::survivalAlbedo() const {

@@ -263,16 +263,14 @@ class Bsdf {
     /// Transmitted over incident index for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
 
-    /// What an event at smooth glass is, seen at this cosine from a side with this relative index.
+    /// What an event at smooth glass is: a pane's of the rays that stop.
     struct Interface {
         float reflected;  ///< reflectance
-        Rgb transmitted;  ///< transmittance
+        Rgb transmitted;  ///< transmittance, a pane's alone
         float pmf;        ///< of a reflection
     };
-    Interface paneAt(float cosine) const;
-    /// The probability of a reflection.
-    float reflectionPmf(float cosine, float relativeIndex) const;
-    float passingAt(float cosine) const;
+    /// Seen at this cosine from a side with this relative index.
+    Interface interfaceAt(float cosine, float relativeIndex) const;
 
     void addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                             const Choice& eye, const Choice& light, BsdfEvaluation& out) const;

@@ -256,7 +256,7 @@ BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent
             return out;
         }
         if (isPane_) {
-            const Interface pane = paneAt(ce);
+            const Interface pane = interfaceAt(ce, relativeIndex(front));
             out.f = pane.transmitted;
             out.pdfWToLight = (1.0f - pane.pmf) * std::abs(c.lightG);
             out.pdfWToEye = (1.0f - pane.pmf) * std::abs(c.eyeG);
@@ -290,12 +290,10 @@ BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent
         pmfLight = light.layers;
     }
     if (deltaGlass) {
-        const float inner =
-            isPane_ ? paneAt(ce).reflected : fresnelDielectric(ce, relativeIndex(front));
-        const float pmf = reflectionPmf(ce, relativeIndex(front));
-        reflectance += Rgb(glass() * inner);
-        pmfEye += eye.glass * pmf;
-        pmfLight += light.glass * pmf;
+        const Interface inner = interfaceAt(ce, relativeIndex(front));
+        reflectance += Rgb(glass() * inner.reflected);
+        pmfEye += eye.glass * inner.pmf;
+        pmfLight += light.glass * inner.pmf;
     }
     reflectance *= through(eye, light);
     if (deltaClearcoat) {

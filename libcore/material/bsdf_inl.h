@@ -88,14 +88,11 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     return c;
 }
 
-/// What all channels let through alike.
-inline float Bsdf::passingAt(float cosine) const {
-    return (1.0f - fresnelDielectric(cosine, ior_)) * minComponent(baseColor_);
-}
-
-/// Of the rays that stop: Fresnel's reflection, and what the colour lets through beyond passingAt.
-inline Bsdf::Interface Bsdf::paneAt(float cosine) const {
-    const float fresnel = fresnelDielectric(cosine, ior_);
+/// Of a pane's rays that stop: Fresnel's reflection, and what the colour lets through beyond what all
+/// channels do.
+inline Bsdf::Interface Bsdf::interfaceAt(float cosine, float relativeIndex) const {
+    const float fresnel = fresnelDielectric(cosine, relativeIndex);
+    if (!isPane_) return {fresnel, Rgb{}, fresnel};
     const float grey = minComponent(baseColor_);
     const float stopping = 1.0f - (1.0f - fresnel) * grey;
     if (!(stopping > 0.0f)) return {0.0f, Rgb{}, 0.0f};
@@ -103,10 +100,6 @@ inline Bsdf::Interface Bsdf::paneAt(float cosine) const {
     const Rgb transmitted = (baseColor_ - Rgb(grey)) * open;
     const float sum = reflected + maxComponent(transmitted);
     return {reflected, transmitted, sum > 0.0f ? reflected / sum : 0.0f};
-}
-
-inline float Bsdf::reflectionPmf(float cosine, float relativeIndex) const {
-    return isPane_ ? paneAt(cosine).pmf : fresnelDielectric(cosine, relativeIndex);
 }
 
 /// Coat and metal together, seen from outside. The coat's colour is that of its reflectance along

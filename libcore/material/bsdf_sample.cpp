@@ -89,7 +89,7 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             // What is left of uBase decides between reflection (F) and transmission.
             const float uGlass = (uBase - choice.diffuse - choice.layers) / choice.glass;
             // Never transmission where F is 1, though rounding may bring uGlass up to 1.
-            const float reflects = reflectionPmf(hCosine, relativeIndex(front));
+            const float reflects = interfaceAt(hCosine, relativeIndex(front)).pmf;
             transmits = !(uGlass < reflects) && reflects < 1.0f;
         }
         if (!transmits) {

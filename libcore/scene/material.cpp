@@ -73,9 +73,9 @@ bool mayTransmit(const Material& m) {
 }
 
 bool mayBePane(const Material& m) {
-    return mayPassSmoothly(m) && !mayBeRough(m) && !m.metallicRoughnessTexture &&
-           m.metallic == 0.0f && m.transmission == 1.0f && !m.transmissionTexture &&
-           m.clearcoat == 0.0f && isBlack(m.emission) && !m.normalTexture &&
+    return m.thin && !mayBeRough(m) && !m.metallicRoughnessTexture && m.metallic == 0.0f &&
+           m.transmission == 1.0f && !m.transmissionTexture && m.clearcoat == 0.0f &&
+           isBlack(m.emission) && !m.normalTexture &&
            !m.without.has(LobeKind::SmoothThinTransmission);
 }
 

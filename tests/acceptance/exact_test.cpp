@@ -11,10 +11,7 @@
 namespace lacuna::test {
 namespace {
 
-class Exact : public testing::TestWithParam<std::string> {
-  protected:
-    MethodRow row() const { return rowNamed(GetParam()); }
-};
+class Exact : public RowTest {};
 INSTANTIATE_TEST_SUITE_P(All, Exact, testing::ValuesIn(rowNames()), ByParameter());
 
 /// Closed room with things in it, every surface of albedo a and emission 1 - a: radiance is
@@ -57,27 +54,6 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
 
 // Direct light on a plane
 // --------------------------------------------------------------------------
-
-/// Radiance that arrives along a unit direction away from the camera.
-using RadianceAlong = std::function<Vec3d(Vec3d direction)>;
-
-/// Its mean over every pixel of the shot.
-std::vector<Rgb> meanOverPixels(const Camera& camera, const Shot& shot,
-                                const RadianceAlong& radiance) {
-    std::vector<Rgb> means;
-    constexpr int kSteps = 8;
-    for (int i = 0; i < shot.width * shot.height; ++i) {
-        Vec3d sum;
-        for (int j = 0; j < kSteps * kSteps; ++j) {
-            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
-                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
-            sum += radiance(Vec3d(camera.directionAt(camera.position(), raster).direction));
-        }
-        sum = sum * (1.0 / (kSteps * kSteps));
-        means.push_back({float(sum.x), float(sum.y), float(sum.z)});
-    }
-    return means;
-}
 
 /// Irradiance on the plane y = 0 at (x, z).
 using Irradiance = std::function<double(double x, double z)>;

@@ -13,9 +13,8 @@
 namespace lacuna::test {
 namespace {
 
-class HardCases : public testing::TestWithParam<std::string> {
+class HardCases : public RowTest {
   protected:
-    MethodRow row() const { return rowNamed(GetParam()); }
     /// This row against path tracing in `builder`'s scene.
     void expectReference(const SceneBuilder& builder, Shot shot, const std::string& what) const {
         const auto scene = builder.build();

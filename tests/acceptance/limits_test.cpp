@@ -11,9 +11,8 @@
 namespace lacuna::test {
 namespace {
 
-class Limits : public testing::TestWithParam<std::string> {
+class Limits : public RowTest {
   protected:
-    MethodRow row() const { return rowNamed(GetParam()); }
     /// This row against path tracing.
     void expectReference(const SceneBuilder& builder, Shot shot, const std::string& what) const {
         const auto scene = builder.build();

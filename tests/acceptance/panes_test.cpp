@@ -13,10 +13,7 @@
 namespace lacuna::test {
 namespace {
 
-class Panes : public testing::TestWithParam<std::string> {
-  protected:
-    MethodRow row() const { return rowNamed(GetParam()); }
-};
+class Panes : public RowTest {};
 INSTANTIATE_TEST_SUITE_P(All, Panes, testing::ValuesIn(rowNames()), ByParameter());
 
 double openOf(double cosine) {
@@ -41,22 +38,14 @@ TEST_P(Panes, pointLightBehindGlassIsSeenThroughGlass) {
     shot.lightPaths = 1024;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
     const Vec3d from = Vec3d(camera.position()) + scene->centre();
-    std::vector<Rgb> exact;
-    constexpr int kSteps = 8;
-    for (int i = 0; i < shot.width * shot.height; ++i) {
-        double sum = 0;
-        for (int j = 0; j < kSteps * kSteps; ++j) {
-            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
-                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
-            const Vec3d d(camera.directionAt(camera.position(), raster).direction);
-            const Vec3d toLamp = lamp - (from - d * (from.y / d.y));
-            const double distance = length(toLamp), cosine = toLamp.y / distance;
-            const double irradiance =
-                2 * cosine / (distance * distance) * openOf(cosine) * openOf(cosine);
-            sum += irradiance * openOf(-d.y) * 0.6 / std::numbers::pi;
-        }
-        exact.push_back(Rgb(float(sum / (kSteps * kSteps))));
-    }
+    const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
+        const Vec3d toLamp = lamp - (from - d * (from.y / d.y));
+        const double distance = length(toLamp), cosine = toLamp.y / distance;
+        const double irradiance =
+            2 * cosine / (distance * distance) * openOf(cosine) * openOf(cosine);
+        const double radiance = irradiance * openOf(-d.y) * 0.6 / std::numbers::pi;
+        return Vec3d{radiance, radiance, radiance};
+    });
     expectRadiance(render(*scene, row(), shot), exact, row().name + ", point light and panes");
 }
 

@@ -251,6 +251,23 @@ void expectRadiance(const Picture& picture, double exact, const std::string& wha
     expectRadiance(picture, std::vector<Rgb>(n, Rgb(float(exact))), what, which);
 }
 
+std::vector<Rgb> meanOverPixels(const Camera& camera, const Shot& shot,
+                                const RadianceAlong& radiance) {
+    std::vector<Rgb> means;
+    constexpr int kSteps = 8;
+    for (int i = 0; i < shot.width * shot.height; ++i) {
+        Vec3d sum;
+        for (int j = 0; j < kSteps * kSteps; ++j) {
+            const Vec2 raster{float(i % shot.width) + (float(j % kSteps) + 0.5f) / kSteps,
+                              float(i / shot.width) + (float(j / kSteps) + 0.5f) / kSteps};
+            sum += radiance(Vec3d(camera.directionAt(camera.position(), raster).direction));
+        }
+        sum = sum * (1.0 / (kSteps * kSteps));
+        means.push_back({float(sum.x), float(sum.y), float(sum.z)});
+    }
+    return means;
+}
+
 double worstDeviation() {
     const bool current = worstSoFar.test == testing::UnitTest::GetInstance()->current_test_info();
     return current ? worstSoFar.share : 0.0;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,6 +109,12 @@ void expectRadiance(const Picture& picture, const std::vector<Rgb>& exact, const
 void expectRadiance(const Picture& picture, double exact, const std::string& what,
                     Judge judge = Judge::Everything);
 
+/// Radiance that arrives along a unit direction away from the camera.
+using RadianceAlong = std::function<Vec3d(Vec3d direction)>;
+/// Its mean over every pixel of the shot.
+std::vector<Rgb> meanOverPixels(const Camera& camera, const Shot& shot,
+                                const RadianceAlong& radiance);
+
 /// The largest deviation that the comparisons above have met in the running test, as a share of
 /// what each allowed; and what stabilityCase() calls that.
 double worstDeviation();
@@ -122,6 +129,11 @@ std::vector<std::string> rowNames();
 /// With photon mapping, and all that merge as they are set: for tests of weights.
 std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);
+/// A test over rows by their names.
+class RowTest : public testing::TestWithParam<std::string> {
+  protected:
+    MethodRow row() const { return rowNamed(GetParam()); }
+};
 std::string testName(const std::string& text);
 /// For INSTANTIATE_TEST_SUITE_P: names a test after its parameter, as PrintTo writes it.
 struct ByParameter {

@@ -11,9 +11,8 @@
 namespace lacuna::test {
 namespace {
 
-class Reports : public testing::TestWithParam<std::string> {
+class Reports : public RowTest {
   protected:
-    MethodRow row() const { return rowNamed(GetParam()); }
     /// Path tracing of `builder`'s scene.
     static Picture reference(const SceneBuilder& builder, Shot shot) {
         shot.seed += 100;
