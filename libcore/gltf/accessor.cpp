@@ -5,33 +5,13 @@
 #include <limits>
 #include <type_traits>
 
+#include "libcore/gltf/component_type.h"
+
 namespace lacuna::gltf {
 namespace {
 
 std::string placeOf(int index) {
     return "accessors[" + std::to_string(index) + "]";
-}
-
-/// Calls body(T{}) with the C++ type of a glTF component type; false for one that glTF does not
-/// have (tinygltf lets INT and DOUBLE pass).
-template <class Body>
-bool withComponentType(int componentType, Body&& body) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return body(std::int8_t{}), true;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return body(std::uint8_t{}), true;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return body(std::int16_t{}), true;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return body(std::uint16_t{}), true;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return body(std::uint32_t{}), true;
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-            return body(float{}), true;
-        default:
-            return false;
-    }
 }
 
 template <class T>
@@ -60,12 +40,6 @@ void convert(const std::uint8_t* from, int components, bool normalized, float* t
     }
 }
 
-std::size_t componentSize(int componentType) {
-    std::size_t size = 0;
-    withComponentType(componentType, [&](auto zero) { size = sizeof zero; });
-    return size;
-}
-
 /// Throws unless `count` elements of `elementSize` bytes, `stride` apart, fit `available` bytes
 /// from `offset` on. No product is formed before it is known not to overflow.
 void checkRange(const Document& document, const std::string& place, std::size_t offset,
@@ -91,9 +65,7 @@ void viewSparse(const Document& document, const tinygltf::Accessor& accessor, in
     }
     const std::size_t count = std::size_t(sparse.count);
     const int type = sparse.indices.componentType;
-    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    if (!isIndexType(type)) {
         refuse(document.file, place + ".indices.componentType", "5121, 5123 or 5125",
                std::to_string(type));
     }
@@ -208,10 +180,7 @@ std::vector<float> readFloats(const AccessorView& view, std::span<const std::uin
 
 std::vector<std::uint32_t> readIndices(const Document& document, int index) {
     const AccessorView view = viewAccessor(document, index, 1);
-    const bool isUnsigned = view.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                            view.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                            view.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (!isUnsigned || view.normalized) {
+    if (!isIndexType(view.componentType) || view.normalized) {
         refuse(document.file, placeOf(index), "plain unsigned integers as vertex indices",
                "component type " + std::to_string(view.componentType) +
                    (view.normalized ? ", normalised" : ""));

@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/gltf/draco.h"
 #include "libcore/gltf/guard.h"
-#include "libcore/gltf/limits.h"
+#include "libcore/gltf/meshopt.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -22,10 +23,19 @@ json parseJson(const std::string& file, std::string_view text) {
     }
 }
 
-/// Buffer `index`: the BIN chunk, a data URI or an external file.
+/// Whether the buffer only stands in for what EXT_meshopt_compression decodes: it need not exist.
+bool isFallback(const json& buffer) {
+    const auto extensions = buffer.find("extensions");
+    if (extensions == buffer.end()) return false;
+    const auto meshopt = extensions->find("EXT_meshopt_compression");
+    return meshopt != extensions->end() && meshopt->value("fallback", false);
+}
+
+/// Buffer `index`: the BIN chunk, a data URI or an external file; no bytes for a fallback.
 std::span<const std::uint8_t> loadBuffer(Document& document, const json& buffer, std::size_t index,
                                          std::span<const std::uint8_t> binary) {
     const std::string place = "buffers[" + std::to_string(index) + "]";
+    if (isFallback(buffer)) return {};
     const auto length = buffer.find("byteLength");
     if (length == buffer.end()) refuse(document.file, place + ".byteLength", "a number", "none");
     const std::uint64_t size = length->get<std::uint64_t>();
@@ -113,15 +123,59 @@ void checkBufferViews(const Document& document) {
     for (std::size_t i = 0; i < views.size(); ++i) {
         const std::size_t size = document.buffers[std::size_t(views[i].buffer)].size();
         if (views[i].byteOffset > size || views[i].byteLength > size - views[i].byteOffset) {
-            refuse(document.file, "bufferViews[" + std::to_string(i) + "]",
-                   "a range within the " + std::to_string(size) + " bytes of its buffer",
-                   std::to_string(views[i].byteLength) + " bytes at " +
-                       std::to_string(views[i].byteOffset));
+            refuseRange(document.file, "bufferViews[" + std::to_string(i) + "]",
+                        views[i].byteLength, views[i].byteOffset, size);
         }
     }
 }
 
 }  // namespace
+
+void Allowance::addFile(std::uint64_t bytes) {
+    left_ += bytes * Limits::kUnpackedPerByte;
+}
+
+bool Allowance::take(std::uint64_t bytes) {
+    std::uint64_t left = left_;
+    do {
+        if (bytes > left) return false;
+    } while (!left_.compare_exchange_weak(left, left - bytes));
+    return true;
+}
+
+void refuseUnpacking(const Document& document, const std::string& place) {
+    refuse(document.file, place,
+           "content that unpacks to at most " + std::to_string(Limits::kUnpackedPerByte) +
+               " times the file's bytes",
+           "more", "export again without compression");
+}
+
+void refuseRange(const std::string& file, const std::string& place, std::uint64_t length,
+                 std::uint64_t offset, std::size_t size) {
+    refuse(file, place, "a range within the " + std::to_string(size) + " bytes of its buffer",
+           std::to_string(length) + " bytes at " + std::to_string(offset));
+}
+
+std::span<const std::uint8_t> rangeOf(const Document& document, const json& range,
+                                      const std::string& place) {
+    for (const char* member : {"buffer", "byteLength"}) {
+        if (!range.contains(member))
+            refuse(document.file, place + "." + member, "a number", "none");
+    }
+    const auto buffer = document.buffers[range["buffer"].get<std::size_t>()];
+    const std::uint64_t length = range["byteLength"].get<std::uint64_t>();
+    const std::uint64_t offset = range.value("byteOffset", std::uint64_t(0));
+    if (offset > buffer.size() || length > buffer.size() - offset) {
+        refuseRange(document.file, place, length, offset, buffer.size());
+    }
+    return buffer.subspan(std::size_t(offset), std::size_t(length));
+}
+
+std::size_t addBuffer(Document& document, Bytes bytes) {
+    document.external.push_back(std::move(bytes));
+    document.buffers.push_back(document.external.back().span());
+    return document.buffers.size() - 1;
+}
 
 std::span<const std::uint8_t> Document::view(int bufferView) const {
     const tinygltf::BufferView& range = model.bufferViews[std::size_t(bufferView)];
@@ -132,6 +186,7 @@ Bytes Document::readExternal(const std::filesystem::path& path, const std::strin
     Bytes read =
         readFile(path, std::min(Limits::kFileBytes, Limits::kTotalBytes - bytesRead), place);
     bytesRead += read.size;
+    allowance.addFile(read.size);
     hash.addValues(read.span());
     return read;
 }
@@ -140,6 +195,7 @@ void loadDocument(const std::string& file, Bytes bytes, Document& document, Warn
     document.file = file;
     document.bytes = std::move(bytes);
     document.bytesRead = document.bytes.size;
+    document.allowance.addFile(document.bytes.size);
     document.hash.addValues(document.bytes.span());
 
     const Chunks chunks = splitContainer(file, document.bytes.span());
@@ -150,6 +206,8 @@ void loadDocument(const std::string& file, Bytes bytes, Document& document, Warn
     checkRules(file, document.json);
     checkVersionAndExtensions(file, document.json, warnings);
     loadBuffers(document, chunks.binary);
+    unpackMeshopt(document);
+    unpackDraco(document, warnings);
     parseModel(document);
     checkBufferViews(document);
     document.scene = std::size_t(std::max(document.model.defaultScene, 0));

@@ -11,13 +11,17 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 10> kSupported = {
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_specular",
-    "KHR_materials_volume",    "KHR_materials_transmission",
-    "KHR_materials_clearcoat", "KHR_mesh_quantization",
-    "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 13> kSupported = {
+    "KHR_draco_mesh_compression", "KHR_lights_punctual",
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_mesh_quantization",      "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
+    "EXT_texture_webp",
 };
+// Not read, but said where it matters: image.cpp takes what stands beside it.
+constexpr std::string_view kBasis = "KHR_texture_basisu";
 
 bool isSupported(const std::string& name) {
     return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
@@ -132,6 +136,11 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
 
     if (const auto required = root.find("extensionsRequired"); required != root.end()) {
         for (const auto& name : *required) {
+            if (name == kBasis) {
+                refuse(file, "extensionsRequired", "textures of PNG, JPEG or WebP",
+                       "KTX2 (KHR_texture_basisu)",
+                       "convert them with `gltf-transform ktxdecompress IN.glb OUT.glb`");
+            }
             if (!isSupported(name.get_ref<const std::string&>())) {
                 refuse(file, "extensionsRequired", "extensions that lacuna has",
                        name.get<std::string>(), "export without it");
@@ -142,7 +151,7 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
         std::vector<std::string> unknown;
         for (const auto& entry : *used) {
             const auto& name = entry.get_ref<const std::string&>();
-            if (!isSupported(name)) unknown.push_back(printable(name));
+            if (!isSupported(name) && name != kBasis) unknown.push_back(printable(name));
         }
         if (!unknown.empty()) {
             warnings.add("extensions that are not known are ignored: " +

@@ -2,6 +2,7 @@
 
 #include <stb/stb_image.h>
 #include <tbb/parallel_for.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <cstring>
@@ -50,9 +51,18 @@ void readCoded(Document& document, Picture& picture) {
 
 constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
 
+constexpr const char* kKinds = "a PNG, JPEG or WebP image";
+
 bool startsWith(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> magic) {
     return bytes.size() > magic.size() &&
            std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+bool isWebp(std::span<const std::uint8_t> bytes) {
+    constexpr std::size_t kForm = 8;  // behind RIFF and a length
+    constexpr std::uint8_t kRiff[] = {'R', 'I', 'F', 'F'}, kWebp[] = {'W', 'E', 'B', 'P'};
+    return startsWith(bytes, kRiff) && bytes.size() > kForm &&
+           startsWith(bytes.subspan(kForm), kWebp);
 }
 
 /// The fewest bytes that hold so many texels: deflate makes 1032 of one at most, and a JPEG has a bit
@@ -65,18 +75,31 @@ std::uint64_t fewestBytes(std::span<const std::uint8_t> coded, std::uint64_t tex
     return texels * coded[kDepth] * samples / (8 * 1032);
 }
 
-/// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
-void readSize(const Document& document, Picture& picture) {
+/// Width and height as a header says; false for one that is damaged or of a moving picture.
+bool readHeader(Picture& picture) {
     const auto coded = picture.coded;
-    if (!startsWith(coded, kPng) && !startsWith(coded, kJpeg)) {
-        refuse(document.file, picture.place, "a PNG or JPEG image", "something else",
-               "convert the image");
+    if (isWebp(coded)) {
+        WebPBitstreamFeatures features;
+        if (WebPGetFeatures(coded.data(), coded.size(), &features) != VP8_STATUS_OK) return false;
+        picture.width = features.width;
+        picture.height = features.height;
+        return !features.has_animation;
     }
     int channels = 0;
-    if (coded.size() > std::size_t(std::numeric_limits<int>::max()) ||
-        !stbi_info_from_memory(coded.data(), int(coded.size()), &picture.width, &picture.height,
-                               &channels)) {
-        refuse(document.file, picture.place, "a PNG or JPEG image", "a damaged header",
+    return coded.size() <= std::size_t(std::numeric_limits<int>::max()) &&
+           stbi_info_from_memory(coded.data(), int(coded.size()), &picture.width, &picture.height,
+                                 &channels);
+}
+
+/// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
+void readSize(Document& document, Picture& picture) {
+    const auto coded = picture.coded;
+    if (!startsWith(coded, kPng) && !startsWith(coded, kJpeg) && !isWebp(coded)) {
+        refuse(document.file, picture.place, kKinds, "something else", "convert the image");
+    }
+    if (!readHeader(picture)) {
+        refuse(document.file, picture.place, kKinds,
+               isWebp(coded) ? "a damaged header or a moving picture" : "a damaged header",
                "save the image again");
     }
     const std::uint64_t texels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
@@ -87,6 +110,11 @@ void readSize(const Document& document, Picture& picture) {
                std::to_string(picture.width) + " x " + std::to_string(picture.height),
                "scale the image down");
     }
+    // A flat WebP takes 30 bytes, whatever its size. libwebp holds the texels twice.
+    if (isWebp(coded)) {
+        if (!document.allowance.take(texels * 8)) refuseUnpacking(document, picture.place);
+        return;
+    }
     if (coded.size() < fewestBytes(coded, texels)) {
         refuse(document.file, picture.place,
                "at least " + std::to_string(fewestBytes(coded, texels)) + " bytes for " +
@@ -96,7 +124,17 @@ void readSize(const Document& document, Picture& picture) {
     }
 }
 
+void decodeWebp(const Document& document, Picture& picture) {
+    picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
+    if (!WebPDecodeRGBAInto(picture.coded.data(), picture.coded.size(), picture.rgba.data(),
+                            picture.rgba.size(), picture.width * 4)) {
+        refuse(document.file, picture.place, kKinds, "a damaged one", "save the image again");
+    }
+    picture.owned = {};
+}
+
 void decodePicture(const Document& document, Picture& picture) {
+    if (isWebp(picture.coded)) return decodeWebp(document, picture);
     struct Free {
         void operator()(stbi_uc* texels) const { stbi_image_free(texels); }
     };
@@ -106,7 +144,7 @@ void decodePicture(const Document& document, Picture& picture) {
                               &channels, STBI_rgb_alpha));
     if (!texels || width != picture.width || height != picture.height) {
         const char* reason = texels ? nullptr : stbi_failure_reason();  // which may be nothing
-        refuse(document.file, picture.place, "a PNG or JPEG image",
+        refuse(document.file, picture.place, kKinds,
                reason && *reason ? std::string("a damaged one (") + reason + ")" : "a damaged one",
                "save the image again");
     }
@@ -131,14 +169,27 @@ Texture::Wrap TextureTable::wrap(int sampler, int mode, const char* name) const 
     }
 }
 
+/// The image of glTF texture `texture` (in range), or -1: an extension's before the plain one.
+int TextureTable::imageOf(int texture, Warnings& warnings) const {
+    const std::string place = "textures[" + std::to_string(texture) + "]";
+    const nlohmann::json& json = document_.json["textures"][std::size_t(texture)];
+    const nlohmann::json extensions = json.value("extensions", nlohmann::json::object());
+    if (const auto webp = extensions.find("EXT_texture_webp"); webp != extensions.end()) {
+        const auto source = webp->find("source");
+        if (source != webp->end()) return source->get<int>();
+    }
+    const int source = document_.model.textures[std::size_t(texture)].source;
+    warnings.add("textures without a PNG, JPEG or WebP image are left out", source < 0, place);
+    warnings.add("KTX2 textures are not read: the plain images beside them are",
+                 source >= 0 && extensions.contains("KHR_texture_basisu"), place);
+    return source;
+}
+
 TextureUse TextureTable::request(int texture, bool srgb, Warnings& warnings) {
     const tinygltf::Texture& entry = document_.model.textures[std::size_t(texture)];
-    if (entry.source < 0) {
-        warnings.add("textures without a PNG or JPEG image are left out", 1,
-                     "textures[" + std::to_string(texture) + "]");
-        return {};
-    }
-    Key key{entry.source, Texture::Wrap::Repeat, Texture::Wrap::Repeat, srgb};
+    const int image = imageOf(texture, warnings);
+    if (image < 0) return {};
+    Key key{image, Texture::Wrap::Repeat, Texture::Wrap::Repeat, srgb};
     if (entry.sampler >= 0) {
         const tinygltf::Sampler& sampler = document_.model.samplers[std::size_t(entry.sampler)];
         key.wrapU = wrap(entry.sampler, sampler.wrapS, "wrapS");

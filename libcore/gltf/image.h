@@ -23,7 +23,7 @@ class TextureTable {
     TextureUse request(int texture, bool srgb, Warnings& warnings);
 
     /// Reads and decodes all that was requested: images in parallel, external files in order of
-    /// image number. Throws InputError for what is no PNG or JPEG, is damaged or is too large.
+    /// image number. Throws InputError for what is no PNG, JPEG or WebP, is damaged or is too large.
     std::vector<Texture> decode(Document& document) const;
 
   private:
@@ -34,6 +34,7 @@ class TextureTable {
         friend auto operator<=>(const Key&, const Key&) = default;
     };
     Texture::Wrap wrap(int sampler, int mode, const char* name) const;
+    int imageOf(int texture, Warnings& warnings) const;
 
     const Document& document_;
     std::vector<Key> keys_;  ///< by texture index

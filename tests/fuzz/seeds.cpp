@@ -10,6 +10,7 @@
 #include "tests/cache/example_subspaces.h"
 #include "tests/fixtures/random_walk_guide.h"
 #include "tests/gltf/everything.h"
+#include "tests/gltf/packed.h"
 
 namespace lacuna::test {
 namespace {
@@ -56,6 +57,15 @@ void scenes(const fs::path& folder) {
     write(folder / "everything.glb", textOf(everything().glb()));
     write(folder / "data-uris.gltf", withDataUris());
     write(folder / "files.gltf", withFilesBesideIt());
+    for (const bool edgebreaker : {false, true}) {
+        GridBuilder grid(2);
+        packByDraco(grid, 0, {edgebreaker, 10, true});
+        write(folder / (edgebreaker ? "edgebreaker.glb" : "sequential.glb"), textOf(grid.glb()));
+    }
+    GridBuilder grid(2);
+    for (std::size_t i = 0; i < grid.root["accessors"].size(); ++i) packByMeshopt(grid, int(i));
+    declareFallback(grid);
+    write(folder / "meshopt.glb", textOf(grid.glb()));
 }
 
 LayeredImage smallPicture() {

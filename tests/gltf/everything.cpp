@@ -5,6 +5,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/scene/scene.h"
+#include "tests/gltf/packed.h"
 
 namespace lacuna::test {
 
@@ -27,8 +28,11 @@ GltfBuilder everything() {
     const int texture =
         b.texture(png(2, 2, ByteVector(16, 99)), {{"wrapS", 33071}, {"wrapT", 10497}});
     const json info = {{"index", texture}, {"texCoord", 0}};
+    const int webpTexture = b.texture(webp(2, 2, ByteVector(16, 77)));
+    b.root["textures"][std::size_t(webpTexture)] = {
+        {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
     const json placed = {
-        {"index", texture},
+        {"index", webpTexture},
         {"texCoord", 1},
         {"extensions",
          {{"KHR_texture_transform",
@@ -77,7 +81,7 @@ GltfBuilder everything() {
     b.root["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior"};
     b.root["extensionsRequired"] = {"KHR_lights_punctual"};
     b.root["scene"] = 0;
-    b.rootNode({{"name", "root"}, {"children", {1, 2}}, {"scale", {1, 2, 3}}});
+    b.rootNode({{"name", "root"}, {"children", {1, 2, 3}}, {"scale", {1, 2, 3}}});
     b.add("nodes", {{"mesh", 0},
                     {"rotation", {0, 0, 0, 1}},
                     {"translation", {1, 2, 3}},
@@ -86,6 +90,14 @@ GltfBuilder everything() {
     b.add("nodes", {{"camera", 0},
                     {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1}},
                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const int corners = b.accessor<std::uint8_t>({0, 1, 2}, "SCALAR");
+    b.mesh({{"attributes", {{"POSITION", b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}}},
+            {"indices", corners}});
+    b.add("nodes", {{"mesh", 1}});
+    packByDraco(b, 1);
+    packByMeshopt(b, places);
+    packByMeshopt(b, indices);
+    declareFallback(b);
     b.extras() = {
         {"lacuna",
          {{"width", 64}, {"height", 48}, {"max_depth", 8}, {"aperture", 0.5}, {"focus", 2}}},
@@ -97,7 +109,7 @@ namespace {
 
 std::optional<SceneDescription> loadOrRefuse(const TempDir& dir, const ByteVector& bytes) {
     try {
-        SceneDescription scene = loadGltf(dir.write("scene.glb", bytes));
+        SceneDescription scene = loadGltf(dir / "scene.glb", bytes);
         expectValid(scene);
         return scene;
     } catch (const InputError& error) {

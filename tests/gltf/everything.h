@@ -8,7 +8,7 @@ namespace lacuna::test {
 /// A scene that uses everything the reader knows.
 GltfBuilder everything();
 
-/// Loads `bytes`, as `scene.glb` in `dir`; true if they were accepted. Fails the test unless they
+/// Loads `bytes`, as if they were `scene.glb` in `dir`; true if they were accepted. Fails the test unless they
 /// were refused properly or gave a valid description.
 bool loadsOrIsRefused(const TempDir& dir, const ByteVector& bytes);
 

@@ -12,9 +12,9 @@ namespace {
 TEST(Malformed, TheIntactSceneLoads) {
     const SceneDescription scene = everything().load();
     expectValid(scene);
-    EXPECT_EQ(scene.meshes.size(), 2u);
-    EXPECT_EQ(scene.instances.size(), 2u);
-    EXPECT_EQ(scene.textures.size(), 2u);
+    EXPECT_EQ(scene.meshes.size(), 3u);
+    EXPECT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.textures.size(), 3u);
     EXPECT_EQ(scene.cameras.size(), 1u);
     EXPECT_EQ(scene.lights.size(), 1u);
 }
@@ -180,6 +180,9 @@ TEST(Malformed, IndicesOutOfRangeOfEveryKind) {
         {"/materials/0/pbrMetallicRoughness/metallicRoughnessTexture/index", "textures"},
         {"/materials/0/extensions/KHR_materials_transmission/transmissionTexture/index",
          "textures"},
+        {"/textures/1/extensions/EXT_texture_webp/source", "images"},
+        {"/meshes/1/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", "bufferViews"},
+        {"/bufferViews/14/extensions/EXT_meshopt_compression/buffer", "buffers"},
     };
     for (const auto& reference : references) {
         const json::json_pointer at(reference.pointer);
@@ -203,7 +206,9 @@ TEST(Malformed, BufferViewsOutsideTheirBuffer) {
     const std::size_t size = b.binary.size();
     const auto refuses = [&](std::size_t view, const char* member, const json& value) {
         json edited = document;
-        edited["bufferViews"][view][member] = value;
+        json& plain = edited["bufferViews"][view];
+        const bool isPacked = plain.contains("extensions");
+        (isPacked ? plain["extensions"]["EXT_meshopt_compression"] : plain)[member] = value;
         expectRefused(dir.write("scene.glb", GltfBuilder::pack(edited.dump(), b.binary)),
                       {"bufferViews"});
     };
