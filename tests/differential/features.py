@@ -12,7 +12,7 @@ from pathlib import Path
 LOADER = Path(__file__).resolve().parents[2] / "libcore" / "gltf"
 # Words that are no feature: parts of messages, names of phases, what Blender's lamps are told by.
 OTHER_WORDS = {"none", "more", "neither", "both", "default", "parse", "decode", "meshes", "glTF", "VEC", "Blender",
-               "Standard", "Raw"}
+               "Standard", "Raw", "triangles", "vertices"}
 # Where a constant of tinygltf is seen in a file: member and value.
 CONSTANTS = {
     "TINYGLTF_COMPONENT_TYPE_BYTE": ("componentType", 5120),

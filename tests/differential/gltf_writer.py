@@ -19,6 +19,7 @@ class Gltf:
         self.root = {"asset": {"version": "2.0"}}
         self.blob = bytearray()
         self.files = {}  # beside the scene, by name
+        self.more_buffers = []
 
     def add(self, kind, entry):
         entries = self.root.setdefault(kind, [])
@@ -63,8 +64,8 @@ class Gltf:
         return self.add("accessors", entry)
 
     def image(self, data, form, number):
-        """`form`: where the bytes of a PNG or JPEG lie."""
-        kind = "png" if data[:4] == b"\x89PNG" else "jpeg"
+        """`form`: where the bytes of a PNG, JPEG or WebP lie."""
+        kind = {b"\x89PNG": "png", b"RIFF": "webp"}.get(data[:4], "jpeg")
         if form == "view":
             return self.add("images", {"bufferView": self.view(data), "mimeType": f"image/{kind}"})
         if form == "data":
@@ -77,7 +78,7 @@ class Gltf:
     def close(self, form):
         """Nothing is added from now on. `form`: a .glb, or a .gltf with its buffer in a file or as data within."""
         buffer = {"byteLength": len(self.blob)}
-        self.root["buffers"] = [buffer]
+        self.root["buffers"] = [buffer, *self.more_buffers]
         if form == "data":
             buffer["uri"] = "data:application/octet-stream;base64," + base64.b64encode(self.blob).decode()
         elif form == "file":

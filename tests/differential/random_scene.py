@@ -15,6 +15,7 @@ from pathlib import Path
 
 from gltf_writer import Gltf, exr, hdr
 from random_meshes import Meshes
+from random_packing import Packing
 from shapes import box, quad, sphere
 
 
@@ -38,6 +39,7 @@ class RandomScene(Meshes):
             self.light()
         self.cameras()
         self.idle_entries()
+        self.used |= Packing(self.gltf, seed).all()
         self.scene_entry()
         self.view()
         self.gltf.close(self.mostly("glb", lambda: self.r.choice(("data", "file")), 0.6))
