@@ -32,7 +32,7 @@ void checkJsonDepth(const std::string& file, std::string_view text);
 void checkRules(const std::string& file, const nlohmann::json& root);
 
 /// Throws InputError for a version that is not 2.x and for required extensions that we lack; warns
-/// once about unknown ones in extensionsUsed.
+/// of others in extensionsUsed: what is lost of each that is known, the names of those that are not.
 void checkVersionAndExtensions(const std::string& file, const nlohmann::json& root,
                                Warnings& warnings);
 

@@ -13,6 +13,13 @@ MESHOPT = "EXT_meshopt_compression"
 DRACO = "KHR_draco_mesh_compression"
 
 
+# Known to the loader, which does not read them.
+UNREAD = ("EXT_lights_image_based", "EXT_texture_avif", "KHR_animation_pointer", "KHR_materials_anisotropy",
+          "KHR_materials_diffuse_transmission", "KHR_materials_dispersion", "KHR_materials_iridescence",
+          "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_variants",
+          "KHR_node_visibility", "KHR_xmp_json_ld", "MSFT_texture_dds")
+
+
 class Packing:
     """Draws from a generator of its own: a scene is otherwise the same as without."""
 
@@ -45,6 +52,10 @@ class Packing:
         if MESHOPT in self.used:
             self.gltf.more_buffers = [{"byteLength": 1 << 20, "extensions": {MESHOPT: {"fallback": True}}}]
         return self.used
+
+    def others(self):
+        """Extensions that a file may name although nothing of them is in it."""
+        return self.r.sample(UNREAD, 2) if self.chance(0.3) else []
 
     def accessor(self, index):
         return self.gltf.root["accessors"][index]

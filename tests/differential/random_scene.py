@@ -39,8 +39,10 @@ class RandomScene(Meshes):
             self.light()
         self.cameras()
         self.idle_entries()
-        self.used |= Packing(self.gltf, seed).all()
+        packing = Packing(self.gltf, seed)
+        self.used |= packing.all()
         self.scene_entry()
+        self.gltf.root.setdefault("extensionsUsed", []).extend(packing.others())
         self.view()
         self.gltf.close(self.mostly("glb", lambda: self.r.choice(("data", "file")), 0.6))
 

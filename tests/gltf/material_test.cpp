@@ -259,10 +259,12 @@ TEST(Material, DefaultsOfUnrenderedExtensionsAreNoNews) {
 
 TEST(Material, UnknownExtensions) {
     TriangleBuilder b;
-    b.root["extensionsUsed"] = {"KHR_materials_unlit", "KHR_materials_ior", "EXT_foo"};
+    b.root["extensionsUsed"] = {"VENDOR_bar", "KHR_materials_ior", "EXT_foo", "KHR_materials_sheen",
+                                "KHR_xmp_json_ld"};
     const SceneDescription scene = b.load();
-    EXPECT_EQ(scene.warnings.size(), 1u);
-    EXPECT_EQ(warningsWith(scene, "KHR_materials_unlit, EXT_foo"), 1);
+    EXPECT_EQ(scene.warnings.size(), 2u);
+    EXPECT_EQ(warningsWith(scene, "VENDOR_bar, EXT_foo"), 1);
+    EXPECT_EQ(warningsWith(scene, "KHR_materials_sheen is not rendered: cloth has no sheen"), 1);
     b.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_mesh_quantization"};
     EXPECT_NO_THROW(b.load());
     b.root["extensionsRequired"] = {"KHR_materials_ior", "EXT_texture_avif"};
