@@ -108,8 +108,11 @@ AccessorView viewAccessor(const Document& document, int index, int components) {
     view.components = tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type));
     const bool isMatrix =
         accessor.type >= TINYGLTF_TYPE_MAT2 && accessor.type <= TINYGLTF_TYPE_MAT4;
-    if (view.components != components || isMatrix) {
-        const std::string type = components == 1 ? "SCALAR" : "VEC" + std::to_string(components);
+    constexpr int kMatrix = 16;  // 4 x 4: smaller ones have gaps between columns
+    if (view.components != components || isMatrix != (components == kMatrix)) {
+        const std::string type = components == 1         ? "SCALAR"
+                                 : components == kMatrix ? "MAT4"
+                                                         : "VEC" + std::to_string(components);
         refuse(document.file, place + ".type", type, "another one");
     }
     const std::size_t size = componentSize(accessor.componentType);

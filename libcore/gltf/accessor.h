@@ -29,7 +29,7 @@ struct AccessorView {
     } sparse;
 };
 
-/// Checks accessor `index` (in range already) and says where its elements are. Throws InputError if
+/// Checks accessor `index` (in range already) and says where its elements are; 16 components are a matrix. Throws InputError if
 /// it does not have `components` components, is empty, or any of its bytes lies outside its view.
 /// One without a view has no bytes: how much may be asked for then is the caller's to bound.
 AccessorView viewAccessor(const Document& document, int index, int components);

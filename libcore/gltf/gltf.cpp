@@ -15,6 +15,7 @@
 #include "libcore/gltf/material.h"
 #include "libcore/gltf/mesh.h"
 #include "libcore/gltf/node.h"
+#include "libcore/gltf/skin.h"
 
 namespace lacuna {
 namespace {
@@ -35,16 +36,26 @@ class Stopwatch {
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// A mesh that a skin bends lies where its joints do, not where its node is.
+void addBent(SkinnedMesh bent, Instance instance, SceneDescription& scene) {
+    if (bent.mesh.triangles.empty()) return;
+    instance.mesh = std::uint32_t(scene.meshes.size());
+    instance.toWorld = bent.toWorld;
+    scene.meshes.push_back(std::move(bent.mesh));
+    scene.instances.push_back(instance);
+}
+
 /// One instance per placed primitive and copy. Negative determinants stay in toWorld; without one
 /// there is no surface to hit.
 /// `groupName`: of the node's light group, or nothing.
-void addInstances(const Document& document, const Placement& placement, const MeshTable& table,
-                  const std::string& groupName, SceneDescription& scene, Warnings& warnings) {
+void addInstances(Document& document, const Placement& placement, const MeshTable& table,
+                  const SkinTable& skins, const std::string& groupName, SceneDescription& scene,
+                  Warnings& warnings) {
     const int mesh = document.model.nodes[placement.node].mesh;
     if (mesh < 0) return;
     const std::string place = "nodes[" + std::to_string(placement.node) + "]";
-    warnings.add("skins are not rendered: the mesh keeps its own pose",
-                 document.model.nodes[placement.node].skin >= 0, place);
+    const bool hasSkin = document.model.nodes[placement.node].skin >= 0;
+    warnings.add("skins are rendered at rest, as their joints' nodes stand", hasSkin, place);
     std::uint32_t group = Instance::kNoGroup;
     if (!groupName.empty()) {
         group = std::uint32_t(scene.nodeGroups.size());
@@ -72,6 +83,12 @@ void addInstances(const Document& document, const Placement& placement, const Me
                 refuse(document.file, place,
                        "at most " + std::to_string(Limits::kInstances) + " instances", "more",
                        "simplify the scene");
+            }
+            if (hasSkin && !table.influences[index].joints.empty()) {
+                addBent(skins.bend(document, placement.node, scene.meshes[index],
+                                   table.influences[index]),
+                        {index, toWorld, group, nodeName}, scene);
+                continue;
             }
             scene.instances.push_back({index, toWorld, group, nodeName});
         }
@@ -116,10 +133,11 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
         if (mesh >= 0) used[std::size_t(mesh)] = true;
     }
     MeshTable table = readMeshes(document, used, warnings);
+    const SkinTable skins(document, placements);
     scene.meshes = std::move(table.meshes);
     for (const Placement& placement : placements) {
         const std::string group = nodeGroup(document, placement.node);
-        addInstances(document, placement, table, group, scene, warnings);
+        addInstances(document, placement, table, skins, group, scene, warnings);
         addCamera(document, placement.node, placement.toWorld, scene, warnings);
         addLight(document, placement.node, placement.toWorld, group, scene, warnings);
     }

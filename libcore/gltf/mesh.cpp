@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <map>
 
 #include "libcore/gltf/accessor.h"
 #include "libcore/gltf/limits.h"
@@ -20,6 +21,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct Task {
     std::size_t mesh = 0, primitive = 0;
     Mesh result;
+    Influences influences;
     std::size_t flatTriangles = 0, zeroNormals = 0;
     bool skippedMode = false, leftOver = false;
     std::exception_ptr error;
@@ -105,16 +107,6 @@ Vec3d areaNormal(const Mesh& mesh, const Triangle& t) {
     return cross(b - a, c - a);
 }
 
-void dropFlatTriangles(Task& task) {
-    Mesh& mesh = task.result;
-    const auto isFlat = [&](const Triangle& t) {
-        return !(float(length(areaNormal(mesh, t))) > 0.0f);
-    };
-    const auto kept = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), isFlat);
-    task.flatTriangles = std::size_t(mesh.triangles.end() - kept);
-    mesh.triangles.erase(kept, mesh.triangles.end());
-}
-
 /// Replaces normals of no length by those of the faces around them, and scales those whose squares
 /// float cannot hold.
 void repairNormals(Task& task) {
@@ -174,6 +166,38 @@ void readColors(const Document& document, Task& task, int accessor, std::size_t 
     }
 }
 
+/// JOINTS_0 and WEIGHTS_0, if the mesh has both.
+void readInfluences(const Document& document, Task& task, std::size_t count,
+                    const std::vector<std::uint32_t>& which) {
+    using Four = std::array<float, 4>;
+    const tinygltf::Primitive& primitive = primitiveOf(document, task);
+    const int joints = attribute(primitive, "JOINTS_0");
+    const int weights = attribute(primitive, "WEIGHTS_0");
+    if (joints < 0 || weights < 0) return;
+    task.influences.joints =
+        readVertices<Four, 4>(document, task, "JOINTS_0", joints, count, which);
+    task.influences.weights =
+        readVertices<Four, 4>(document, task, "WEIGHTS_0", weights, count, which);
+}
+
+/// Moves positions or normals (`name`) as the morph targets say, by the mesh's own weights.
+void addMorphs(const Document& document, Task& task, const char* name, std::size_t count,
+               const std::vector<std::uint32_t>& which, std::vector<Vec3>& values) {
+    const std::vector<double>& weights = document.model.meshes[task.mesh].weights;
+    const auto& targets = primitiveOf(document, task).targets;
+    for (std::size_t k = 0; k < std::min(weights.size(), targets.size()); ++k) {
+        const auto moved = targets[k].find(name);
+        if (weights[k] == 0.0 || moved == targets[k].end()) continue;
+        const auto moves = readVertices<Vec3, 3>(document, task, name, moved->second, count, which);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] += moves[i] * float(weights[k]);
+            if (isFinite(values[i])) continue;
+            refuse(document.file, task.place() + ".targets", "finite sums",
+                   "another one, at vertex " + std::to_string(i));
+        }
+    }
+}
+
 void readPrimitive(const Document& document, Task& task) {
     const tinygltf::Primitive& primitive = primitiveOf(document, task);
     const int positions = attribute(primitive, "POSITION");
@@ -195,9 +219,12 @@ void readPrimitive(const Document& document, Task& task) {
     Mesh& mesh = task.result;
     mesh.positions =
         readVertices<Vec3, 3>(document, task, "POSITION", positions, vertexCount, which);
+    addMorphs(document, task, "POSITION", vertexCount, which, mesh.positions);
     if (const int normals = attribute(primitive, "NORMAL"); normals >= 0) {
         mesh.normals = readVertices<Vec3, 3>(document, task, "NORMAL", normals, vertexCount, which);
+        addMorphs(document, task, "NORMAL", vertexCount, which, mesh.normals);
     }
+    readInfluences(document, task, vertexCount, which);
     readTangents(document, task, vertexCount, which);
     if (const int uvs = attribute(primitive, "TEXCOORD_0"); uvs >= 0) {
         mesh.uvs = readVertices<Vec2, 2>(document, task, "TEXCOORD_0", uvs, vertexCount, which);
@@ -219,18 +246,26 @@ void readPrimitive(const Document& document, Task& task) {
     }
     task.leftOver =
         primitive.mode == TINYGLTF_MODE_TRIANGLES ? cornerCount % 3 != 0 : cornerCount < 3;
-    dropFlatTriangles(task);
+    task.flatTriangles = dropFlatTriangles(mesh);
     repairNormals(task);
 }
 
 /// Elements that a primitive has read although no bytes of the file stand behind them. Indices
 /// without a buffer view do not come this far: tinygltf refuses them.
-std::size_t zeroElements(const Document& document, const tinygltf::Primitive& primitive) {
+std::size_t zeroElements(const Document& document, const Task& task) {
+    const tinygltf::Primitive& primitive = primitiveOf(document, task);
+    const std::vector<double>& weights = document.model.meshes[task.mesh].weights;
     std::size_t sum = 0;
-    for (const auto& [name, index] : primitive.attributes) {
-        const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
-        // Far above the limit is enough: sums must not overflow.
-        if (accessor.bufferView < 0) sum += std::min(accessor.count, Limits::kZeroElements + 1);
+    const auto add = [&](const std::map<std::string, int>& attributes) {
+        for (const auto& [name, index] : attributes) {
+            const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
+            // Far above the limit is enough: sums must not overflow.
+            if (accessor.bufferView < 0) sum += std::min(accessor.count, Limits::kZeroElements + 1);
+        }
+    };
+    add(primitive.attributes);
+    for (std::size_t k = 0; k < std::min(weights.size(), primitive.targets.size()); ++k) {
+        if (weights[k] != 0.0) add(primitive.targets[k]);
     }
     return sum;
 }
@@ -265,7 +300,7 @@ std::vector<Task> planTasks(const Document& document, const std::vector<bool>& u
                            "more", "simplify the scene");
                 }
                 triangles += more;
-                zeros += zeroElements(document, primitive);
+                zeros += zeroElements(document, task);
                 if (zeros > Limits::kZeroElements) {
                     refuse(document.file, task.place(),
                            "at most " + std::to_string(Limits::kZeroElements) +
@@ -287,10 +322,21 @@ void warnAbout(const Document& document, const Task& task, Warnings& warnings) {
     warnings.add("triangles without area are dropped", task.flatTriangles, place);
     warnings.add("vertex normals of zero length are replaced by the faces' normals",
                  task.zeroNormals, place);
-    warnings.add("morph targets are not rendered", !primitive.targets.empty(), place);
+    warnings.add("morph targets are rendered at rest: by their mesh's own weights",
+                 !primitive.targets.empty(), place);
 }
 
 }  // namespace
+
+std::size_t dropFlatTriangles(Mesh& mesh) {
+    const auto isFlat = [&](const Triangle& t) {
+        return !(float(length(areaNormal(mesh, t))) > 0.0f);
+    };
+    const auto kept = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), isFlat);
+    const auto dropped = std::size_t(mesh.triangles.end() - kept);
+    mesh.triangles.erase(kept, mesh.triangles.end());
+    return dropped;
+}
 
 MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Warnings& warnings) {
     std::vector<Task> tasks = planTasks(document, used);
@@ -316,6 +362,7 @@ MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Wa
         }
         ofPrimitive.push_back(std::uint32_t(table.meshes.size()));
         table.meshes.push_back(std::move(task.result));
+        table.influences.push_back(std::move(task.influences));
     }
     return table;
 }

@@ -1,6 +1,7 @@
 // glTF primitives as indexed triangles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,18 +11,28 @@
 
 namespace lacuna::gltf {
 
+/// What leads the vertices of a mesh (JOINTS_0, WEIGHTS_0): up to four joints of a skin and how much of
+/// each. Empty for a mesh that no skin bends.
+struct Influences {
+    std::vector<std::array<float, 4>> joints, weights;
+};
+
 /// The meshes of the description, and where those of each glTF mesh are.
 struct MeshTable {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
     std::vector<Mesh> meshes;
+    std::vector<Influences> influences;  ///< by mesh
     /// By glTF mesh and primitive: index into `meshes`, or kNone where nothing is left to draw.
     std::vector<std::vector<std::uint32_t>> ofPrimitive;
 };
 
+/// Drops the triangles that have no area; their number.
+std::size_t dropFlatTriangles(Mesh& mesh);
+
 /// Reads the primitives of the glTF meshes that `used` marks (one flag per mesh), in parallel.
 /// Strips and fans are unrolled; points and lines are skipped and triangles without area dropped,
-/// with one warning each. Primitives without a material get index model.materials.size(). Throws
+/// with one warning each. Morph targets move the vertices by their mesh's own weights. Primitives without a material get index model.materials.size(). Throws
 /// InputError, always that of the first faulty primitive.
 MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Warnings& warnings);
 

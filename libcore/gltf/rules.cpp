@@ -85,6 +85,8 @@ constexpr Rule kRules[] = {
 
     {"meshes", Shape::Array},
     {"meshes/*", Shape::Object},
+    {"meshes/*/weights", Shape::Array},
+    {"meshes/*/weights/*", Shape::Number},
     {"meshes/*/primitives", Shape::Array},
     {"meshes/*/primitives/*", Shape::Object},
     {"meshes/*/primitives/*/mode", Shape::Count32},
@@ -216,6 +218,10 @@ constexpr Rule kRules[] = {
 
     {"animations", Shape::Array},
     {"skins", Shape::Array},
+    {"skins/*", Shape::Object},
+    {"skins/*/joints", Shape::Array},
+    {"skins/*/joints/*", Shape::Index, 0, "nodes"},
+    {"skins/*/inverseBindMatrices", Shape::Index, 0, "accessors"},
 };
 
 /// Where a walk stands, from the value up to the root: text only when it is needed.

@@ -32,7 +32,12 @@ class Packing:
 
     def all(self):
         """The extensions that a reader must have from now on."""
+        for i, node in enumerate(self.gltf.root["nodes"]):
+            if "skin" in node and "extensions" not in node:
+                self.bend(i, node)
         for mesh in self.gltf.root.get("meshes", []):
+            if any("targets" in primitive for primitive in mesh["primitives"]) and self.chance(0.7):
+                mesh["weights"] = [self.r.random()]
             for primitive in mesh["primitives"]:
                 if primitive.get("mode", 4) < 4:  # shares its attributes
                     continue
@@ -56,6 +61,22 @@ class Packing:
     def others(self):
         """Extensions that a file may name although nothing of them is in it."""
         return self.r.sample(UNREAD, 2) if self.chance(0.3) else []
+
+    def bend(self, index, node):
+        """Gives the node's skin two joints, the node itself and one a little beside it."""
+        gltf, r = self.gltf, self.r
+        skin = gltf.root["skins"][node["skin"]]
+        skin["joints"] = [index, index]
+        if self.chance(0.7):
+            moves = [(0.0, 0.0, 0.0), tuple(r.uniform(-0.2, 0.2) for _ in range(3))]
+            skin["inverseBindMatrices"] = gltf.accessor([(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0,
+                                                         *move, 1.0) for move in moves])
+        for primitive in gltf.root["meshes"][node["mesh"]]["primitives"]:
+            count = self.accessor(primitive["attributes"]["POSITION"])["count"]
+            joints = [tuple(r.randrange(2) for _ in range(4)) for _ in range(count)]
+            weights = [tuple(r.random() for _ in range(4)) for _ in range(count)]
+            primitive["attributes"]["JOINTS_0"] = gltf.accessor(joints, r.choice((5121, UNSIGNED_SHORT)))
+            primitive["attributes"]["WEIGHTS_0"] = gltf.accessor(weights)
 
     def accessor(self, index):
         return self.gltf.root["accessors"][index]

@@ -8,6 +8,30 @@
 #include "tests/gltf/packed.h"
 
 namespace lacuna::test {
+namespace {
+
+/// Mesh 2 under node 4, which a skin bends and a target moves.
+void addBentMesh(GltfBuilder& b) {
+    const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    std::vector<float> matrix(16);
+    for (const std::size_t i : {0, 5, 10, 15}) matrix[i] = 1;
+    b.add("skins", {{"joints", {1, 2}}});
+    b.add("skins", {{"joints", {1}},
+                    {"inverseBindMatrices",
+                     b.add("accessors", {{"bufferView", b.view(test::bytesOf(matrix))},
+                                         {"componentType", 5126},
+                                         {"count", 1},
+                                         {"type", "MAT4"}})}});
+    b.mesh({{"attributes",
+             {{"POSITION", positions},
+              {"JOINTS_0", b.accessor<std::uint8_t>(ByteVector(12), "VEC4")},
+              {"WEIGHTS_0", b.accessor<std::uint8_t>(ByteVector(12, 64), "VEC4", true)}}},
+            {"targets", {{{"POSITION", positions}}}}});
+    b.root["meshes"][2]["weights"] = {0.5};
+    b.add("nodes", {{"mesh", 2}, {"skin", 1}});
+}
+
+}  // namespace
 
 GltfBuilder everything() {
     GltfBuilder b;
@@ -81,7 +105,7 @@ GltfBuilder everything() {
     b.root["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior"};
     b.root["extensionsRequired"] = {"KHR_lights_punctual"};
     b.root["scene"] = 0;
-    b.rootNode({{"name", "root"}, {"children", {1, 2, 3}}, {"scale", {1, 2, 3}}});
+    b.rootNode({{"name", "root"}, {"children", {1, 2, 3, 4}}, {"scale", {1, 2, 3}}});
     b.add("nodes", {{"mesh", 0},
                     {"rotation", {0, 0, 0, 1}},
                     {"translation", {1, 2, 3}},
@@ -95,6 +119,7 @@ GltfBuilder everything() {
             {"indices", corners}});
     b.add("nodes", {{"mesh", 1}});
     packByDraco(b, 1);
+    addBentMesh(b);
     packByMeshopt(b, places);
     packByMeshopt(b, indices);
     declareFallback(b);
