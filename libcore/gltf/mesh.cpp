@@ -322,6 +322,8 @@ void warnAbout(const Document& document, const Task& task, Warnings& warnings) {
     warnings.add("triangles without area are dropped", task.flatTriangles, place);
     warnings.add("vertex normals of zero length are replaced by the faces' normals",
                  task.zeroNormals, place);
+    warnings.add("joints beyond the first four of a vertex are left out",
+                 attribute(primitive, "JOINTS_1") >= 0, place);
     warnings.add("morph targets are rendered at rest: by their mesh's own weights",
                  !primitive.targets.empty(), place);
 }

@@ -96,11 +96,13 @@ SkinnedMesh SkinTable::bend(Document& document, std::size_t node, const Mesh& me
     }
     const std::vector<Affine> transforms =
         jointTransforms(document, std::size_t(document.model.nodes[node].skin));
-    for (const auto& joints : influences.joints) {
-        for (const float joint : joints) {
+    for (std::size_t i = 0; i < influences.joints.size(); ++i) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const float joint = influences.joints[i][k];
+            if (k > 0 && influences.weights[i][k] == 0.0f) continue;  // may be anything
             if (joint >= 0.0f && joint < float(transforms.size())) continue;
             refuse(document.file, place, "joints below " + std::to_string(transforms.size()),
-                   std::to_string(joint));
+                   std::to_string(std::lround(joint)) + " at vertex " + std::to_string(i));
         }
     }
 

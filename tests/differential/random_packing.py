@@ -77,6 +77,9 @@ class Packing:
             weights = [tuple(r.random() for _ in range(4)) for _ in range(count)]
             primitive["attributes"]["JOINTS_0"] = gltf.accessor(joints, r.choice((5121, UNSIGNED_SHORT)))
             primitive["attributes"]["WEIGHTS_0"] = gltf.accessor(weights)
+            if self.chance(0.2):
+                primitive["attributes"]["JOINTS_1"] = gltf.accessor([(0, 0, 0, 0)] * count, UNSIGNED_SHORT)
+                primitive["attributes"]["WEIGHTS_1"] = gltf.accessor([(0.0, 0.0, 0.0, 0.0)] * count)
 
     def accessor(self, index):
         return self.gltf.root["accessors"][index]

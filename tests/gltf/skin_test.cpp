@@ -94,6 +94,16 @@ TEST(Skin, WhatJointsCollapseIsLeftOut) {
     EXPECT_TRUE(b.load().instances.empty());
 }
 
+TEST(Skin, JointsWithoutWeightMayBeAnything) {
+    SkinBuilder b;
+    b.primitive()["attributes"]["JOINTS_0"] =
+        b.accessor<std::uint8_t>({0, 9, 9, 9, 0, 1, 9, 9, 0, 1, 9, 9}, "VEC4");
+    b.primitive()["attributes"]["JOINTS_1"] = b.accessor<std::uint8_t>(ByteVector(12), "VEC4");
+    const SceneDescription scene = b.load();
+    expectCorners(scene, {Vec3d{0, 0, 2}, Vec3d{1, 0, 2}, Vec3d{0, 3, 2}});
+    EXPECT_EQ(warningsWith(scene, "joints beyond the first four"), 1);
+}
+
 TEST(Skin, WithoutInfluencesTheNodePlacesTheMesh) {
     SkinBuilder b;
     b.primitive()["attributes"].erase("WEIGHTS_0");
@@ -104,7 +114,7 @@ TEST(Skin, SkinsAreChecked) {
     SkinBuilder b;
     const json intact = b.root;
     b.root["skins"][0]["joints"] = {1};
-    expectRefused(b, {"nodes[0].skin", "joints below 1", "1"});
+    expectRefused(b, {"nodes[0].skin", "joints below 1", "1 at vertex 2"});
     b.root["skins"][0]["joints"] = {1, 7};
     expectRefused(b, {"skins[0].joints[1]", "an index below 3"});
     b.root["skins"][0]["joints"] = json::array();
