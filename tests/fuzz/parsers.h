@@ -27,7 +27,11 @@ struct Parser {
 /// accidents, not malice, and would keep the fuzzer out.
 std::span<const Parser> parsers();
 
-bool acceptsScene(Bytes bytes);      ///< .glb or .gltf, and the scene that is built of it
+bool acceptsScene(Bytes bytes);  ///< .glb or .gltf, and the scene that is built of it
+bool acceptsDraco(Bytes bytes);  ///< a mesh's stream
+bool acceptsMeshopt(
+    Bytes bytes);  ///< mode and filter, half the stride, a third of the count; the stream
+bool acceptsWebp(Bytes bytes);       ///< a texture
 bool acceptsExr(Bytes bytes);        ///< a reference, and a part or checkpoint
 bool acceptsHdr(Bytes bytes);        ///< an environment
 bool acceptsPfm(Bytes bytes);        ///< a reference

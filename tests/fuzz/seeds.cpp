@@ -57,15 +57,33 @@ void scenes(const fs::path& folder) {
     write(folder / "everything.glb", textOf(everything().glb()));
     write(folder / "data-uris.gltf", withDataUris());
     write(folder / "files.gltf", withFilesBesideIt());
-    for (const bool edgebreaker : {false, true}) {
-        GridBuilder grid(2);
-        packByDraco(grid, 0, {edgebreaker, 10, true});
-        write(folder / (edgebreaker ? "edgebreaker.glb" : "sequential.glb"), textOf(grid.glb()));
-    }
-    GridBuilder grid(2);
-    for (std::size_t i = 0; i < grid.root["accessors"].size(); ++i) packByMeshopt(grid, int(i));
+}
+
+/// Streams alone, as packed_streams.cpp has them.
+void packed(const fs::path& folder) {
+    write(folder / "draco" / "edgebreaker",
+          textOf(dracoStream(GridBuilder(2), 0, {true, 10, true})));
+    write(folder / "draco" / "floats", textOf(dracoStream(GridBuilder(2))));
+    write(folder / "draco" / "sequential",
+          textOf(dracoStream(GridBuilder(2), 0, {false, 10, true})));
+    write(folder / "webp" / "a", textOf(webp(3, 2, ByteVector(24, 99))));
+
+    GridBuilder grid(2);  // 9 vertices, 24 corners
+    const auto meshopt = [&](const char* name, int accessor, int mode, int stride, int count) {
+        packByMeshopt(grid, accessor);
+        const std::size_t view = grid.root["accessors"][std::size_t(accessor)]["bufferView"];
+        const json& range = grid.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+        const std::size_t offset = range["byteOffset"], size = range["byteLength"];
+        const std::string head = {char(mode), char(stride / 2), char(count / 3)};
+        write(folder / "meshopt" / name,
+              head + std::string(grid.binary.begin() + std::ptrdiff_t(offset),
+                                 grid.binary.begin() + std::ptrdiff_t(offset + size)));
+    };
+    meshopt("positions", grid.accessorOf("POSITION"), 0, 12, 9);
+    meshopt("normals", grid.accessorOf("NORMAL"), 3, 4, 9);
+    meshopt("triangles", grid.indices(), 1, 2, 24);
     declareFallback(grid);
-    write(folder / "meshopt.glb", textOf(grid.glb()));
+    write(folder / "scene" / "meshopt.glb", textOf(grid.glb()));
 }
 
 LayeredImage smallPicture() {
@@ -179,6 +197,7 @@ void texts(const fs::path& folder) {
 
 void writeSeeds(const fs::path& folder) {
     scenes(folder / "scene");
+    packed(folder);
     pictures(folder);
     caches(folder);
     texts(folder);
