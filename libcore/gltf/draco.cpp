@@ -1,5 +1,7 @@
 #include "libcore/gltf/draco.h"
 
+#include <draco/compression/attributes/prediction_schemes/mesh_prediction_scheme_tex_coords_portable_decoder.h>
+#include <draco/compression/attributes/prediction_schemes/prediction_scheme_wrap_decoding_transform.h>
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
@@ -11,6 +13,50 @@
 #include <utility>
 
 #include "libcore/gltf/component_type.h"
+
+// Draco 1.5.5 believes how many flags help to predict texture coordinates: a stream of a few bytes may
+// ask for 2^31, which take seconds and 256 MB for each attribute. Here is its own code with a bound: one
+// flag for each value. These definitions come before the archive's, which are weak.
+namespace draco {
+namespace {
+
+using Wrap = PredictionSchemeWrapDecodingTransform<int, int>;
+using Corners = MeshPredictionSchemeData<CornerTable>;
+using AttributeCorners = MeshPredictionSchemeData<MeshAttributeCornerTable>;
+
+template <class Predictor>
+bool decodeFlags(DecoderBuffer& buffer, std::size_t values, Predictor& predictor) {
+    std::int32_t count = 0;
+    if (!buffer.Decode(&count) || count < 0 || std::size_t(count) > values) return false;
+    predictor.ResizeOrientations(count);
+    RAnsBitDecoder decoder;
+    if (!decoder.StartDecoding(&buffer)) return false;
+    bool flag = true;
+    for (int i = 0; i < count; ++i) {
+        if (!decoder.DecodeNextBit()) flag = !flag;
+        predictor.set_orientation(i, flag);
+    }
+    decoder.EndDecoding();
+    return true;
+}
+
+}  // namespace
+
+template <>
+bool MeshPredictionSchemeTexCoordsPortableDecoder<int, Wrap, Corners>::DecodePredictionData(
+    DecoderBuffer* buffer) {
+    return decodeFlags(*buffer, mesh_data().data_to_corner_map()->size(), predictor_) &&
+           MeshPredictionSchemeDecoder<int, Wrap, Corners>::DecodePredictionData(buffer);
+}
+
+template <>
+bool MeshPredictionSchemeTexCoordsPortableDecoder<
+    int, Wrap, AttributeCorners>::DecodePredictionData(DecoderBuffer* buffer) {
+    return decodeFlags(*buffer, mesh_data().data_to_corner_map()->size(), predictor_) &&
+           MeshPredictionSchemeDecoder<int, Wrap, AttributeCorners>::DecodePredictionData(buffer);
+}
+
+}  // namespace draco
 
 namespace lacuna::gltf {
 namespace {
@@ -44,8 +90,7 @@ struct PackedPrimitive {
 };
 
 /// Draco's decoder, stopped before it allocates what the stream claims but the accessors do not say, or
-/// more than is left to take. The counts of bytes are rounded up from what version 1.5.5 allocates. One
-/// thing is beyond reach: the flags that predict texture coordinates, up to 2^31 bits for an attribute.
+/// more than is left to take. The counts of bytes are rounded up from what version 1.5.5 allocates.
 template <class Decoder>
 class BoundedDecoder final : public Decoder {
   public:

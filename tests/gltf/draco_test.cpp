@@ -33,6 +33,27 @@ TEST(Draco, QuantisedPositionsAreNear) {
     expectSameTriangles(plain, packed, 1.0f / 4095);
 }
 
+TEST(Draco, PredictedTextureCoordinatesAreNear) {
+    GridBuilder b(8, true);
+    const SceneDescription plain = b.load();
+    packByDraco(b, 0, {true, 12, false, true});
+    expectSameTriangles(plain, b.load(), 1.0f / 4095);
+}
+
+TEST(Draco, NoFourBytesCostSeconds) {
+    // As a count of 2^31 - 1: of triangles, symbols, flags or whatever it may be.
+    const TempDir dir;
+    GridBuilder b(2, true);
+    const int view = packByDraco(b, 0, {true, 12, false, true});
+    const json& range = b.root["bufferViews"][std::size_t(view)];
+    const std::size_t at = range["byteOffset"], size = range["byteLength"];
+    for (std::size_t i = at; i + 4 <= at + size; ++i) {
+        GridBuilder damaged = b;
+        for (const std::size_t k : {0, 1, 2, 3}) damaged.binary[i + k] = k < 3 ? 0xFF : 0x7F;
+        loadsOrIsRefused(dir, damaged.glb());
+    }
+}
+
 TEST(Draco, MetadataIsPassedOver) {
     GridBuilder b(2);
     const SceneDescription plain = b.load();

@@ -158,6 +158,11 @@ ByteVector dracoStream(const GltfBuilder& builder, int mesh, DracoCoding coding)
         encoder.SetAttributeQuantization(
             plain->GetNamedAttributeId(draco::GeometryAttribute::POSITION), coding.positionBits);
     }
+    if (coding.smallest) {
+        encoder.SetSpeedOptions(0, 0);
+        encoder.SetAttributeQuantization(
+            plain->GetNamedAttributeId(draco::GeometryAttribute::TEX_COORD), 12);
+    }
     draco::EncoderBuffer buffer;
     EXPECT_TRUE(encoder.EncodeToBuffer(&buffer).ok());
     return ByteVector(buffer.data(), buffer.data() + buffer.size());

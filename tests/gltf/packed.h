@@ -15,6 +15,7 @@ struct DracoCoding {
     bool edgebreaker = true;  ///< which reorders triangles and vertices; else sequential
     int positionBits = 0;     ///< 0: floats as they are
     bool metadata = false;
+    bool smallest = false;  ///< with texture coordinates of 12 bits, predicted from positions
 };
 
 /// Puts the triangles and all attributes of a mesh's first primitive into a Draco stream, and takes the
