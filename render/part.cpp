@@ -21,7 +21,7 @@ constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
 
 /// Hexadecimal: exact, and there are infinities.
-json numberText(double value) {
+json exactText(double value) {
     char text[40];
     std::snprintf(text, sizeof text, "%a", value);
     return text;
@@ -31,7 +31,7 @@ double numberOf(const json& text) {
 }
 
 json numbersText(const std::array<double, 3>& values) {
-    return {numberText(values[0]), numberText(values[1]), numberText(values[2])};
+    return {exactText(values[0]), exactText(values[1]), exactText(values[2])};
 }
 std::array<double, 3> numbersOf(const json& texts) {
     return {numberOf(texts.at(0)), numberOf(texts.at(1)), numberOf(texts.at(2))};
@@ -59,8 +59,8 @@ std::vector<Rgb> takePlanes(LayeredImage& image, const std::string& layer) {
 json halvesText(const std::vector<HalfDifference>& differences) {
     json list = json::array();
     for (const HalfDifference& d : differences) {
-        list.push_back({d.iterations, d.nodes, numberText(d.sum), numberText(d.squares),
-                        numberText(d.unevenness)});
+        list.push_back({d.iterations, d.nodes, exactText(d.sum), exactText(d.squares),
+                        exactText(d.unevenness)});
     }
     return list;
 }

@@ -8,6 +8,24 @@
 #include "libcore/cache/cache_name.h"
 #include "libcore/voxel/grid.h"
 
+// The grids of our files, as the library of Debian 12 exports them: their classes, compiled anew, take ten
+// seconds per grid and file. (Where GCC optimises, it needs no more of them than what is exported.)
+#ifdef LACUNA_GRIDS_OF_OPENVDB
+namespace openvdb {
+OPENVDB_USE_VERSION_NAMESPACE
+namespace OPENVDB_VERSION_NAME {
+extern template class Grid<BoolTree>;
+extern template class Grid<FloatTree>;
+extern template class Grid<Int32Tree>;
+namespace tree {
+extern template class Tree<BoolTree::RootNodeType>;
+extern template class Tree<FloatTree::RootNodeType>;
+extern template class Tree<Int32Tree::RootNodeType>;
+}  // namespace tree
+}  // namespace OPENVDB_VERSION_NAME
+}  // namespace openvdb
+#endif
+
 namespace lacuna::vdb {
 
 inline constexpr int kVersion = 2;

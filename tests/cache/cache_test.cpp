@@ -48,11 +48,11 @@ void replace(const std::string& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-const CacheStamp kStamp{{{"scene", "0123abc"}, {"resolution", "24"}, {"domain", "auto"}}};
+const CacheStamp kVoxelStamp{{{"scene", "0123abc"}, {"resolution", "24"}, {"domain", "auto"}}};
 
 VoxelFile voxels() {
     VoxelFile file;
-    file.stamp = kStamp;
+    file.stamp = kVoxelStamp;
     VoxelSpace& space = file.space;
     space.shape = {{24, 17, 9}, {-3, -2, -1}, 0.25};
     Rng rng(4, 0, StreamKind::User, 0);
@@ -66,7 +66,7 @@ VoxelFile voxels() {
 
 SkeletonFile skeleton() {
     SkeletonFile file;
-    file.stamp = kStamp;
+    file.stamp = kVoxelStamp;
     file.skeleton.nodes = {{{-1, 0.5, 0.25}, 0.75}, {{1, 0.5, 0.25}, 0.5}};
     file.skeleton.edges = {{{0, 1}, {0, 0.5, 0.25}, {0.25, 0.5, 0.25}}};
     const VoxelShape shape{{24, 17, 9}, {-3, -2, -1}, 0.25};
@@ -84,7 +84,7 @@ TEST(Cache, voxelsComeBack) {
     const Directory d;
     const VoxelFile written = voxels();
     writeVoxelFile(d.file("v.vdb"), written, kCentre);
-    const VoxelFile read = readVoxelFile(d.file("v.vdb"), kStamp, kCentre, "do it again");
+    const VoxelFile read = readVoxelFile(d.file("v.vdb"), kVoxelStamp, kCentre, "do it again");
     EXPECT_EQ(read.space.shape.size, written.space.shape.size);
     EXPECT_EQ(read.space.shape.origin, written.space.shape.origin);
     EXPECT_EQ(read.space.state, written.space.state);
@@ -97,7 +97,8 @@ TEST(Cache, skeletonsComeBack) {
     const Directory d;
     const SkeletonFile written = skeleton();
     writeSkeletonFile(d.file("s.vdb"), written, kCentre);
-    const SkeletonFile read = readSkeletonFile(d.file("s.vdb"), kStamp, kCentre, "do it again");
+    const SkeletonFile read =
+        readSkeletonFile(d.file("s.vdb"), kVoxelStamp, kCentre, "do it again");
     ASSERT_EQ(read.skeleton.nodes.size(), 2u);
     EXPECT_EQ(read.skeleton.nodes[1].position, written.skeleton.nodes[1].position);
     EXPECT_EQ(read.skeleton.nodes[1].radius, 0.5);
@@ -118,7 +119,7 @@ TEST(Cache, viewersOpenTheFileInItsOwnCoordinates) {
     const openvdb::Vec3d p = grid->indexToWorld(openvdb::Coord(0, 0, 0));
     EXPECT_NEAR(p.x(), -3 + 0.125 + kCentre.x, 1e-12);
     EXPECT_NEAR(p.y(), -2 + 0.125 + kCentre.y, 1e-12);
-    EXPECT_EQ(file.getMetadata()->metaValue<std::string>("lacuna.inputs"), kStamp.text());
+    EXPECT_EQ(file.getMetadata()->metaValue<std::string>("lacuna.inputs"), kVoxelStamp.text());
 }
 
 template <class Read>
@@ -136,7 +137,7 @@ TEST(Cache, damagedFilesAreRefused) {
     const std::string path = d.file("v.vdb");
     writeVoxelFile(path, voxels(), kCentre);
     const std::string good = contentOf(path), guard = contentOf(path + ".xxh3");
-    const auto read = [&] { readVoxelFile(path, kStamp, kCentre, "do it again"); };
+    const auto read = [&] { readVoxelFile(path, kVoxelStamp, kCentre, "do it again"); };
     Rng rng(5, 0, StreamKind::User, 0);
     for (int n = 0; n < 100; ++n) {
         std::string bad = good;
@@ -175,15 +176,15 @@ TEST(Cache, pairsOfTwoWritersFitTogether) {
 
 /// Every input is part of the name; a newline in a value is none of the stamp's text.
 TEST(CacheStamps, inputsTellFilesApart) {
-    std::set<std::string> names{cacheFile("d", kStamp, "x")};
-    for (const auto& [name, value] : kStamp.inputs) {
-        CacheStamp other = kStamp;
+    std::set<std::string> names{cacheFile("d", kVoxelStamp, "x")};
+    for (const auto& [name, value] : kVoxelStamp.inputs) {
+        CacheStamp other = kVoxelStamp;
         other.inputs[name] = value + "0";
         EXPECT_TRUE(names.insert(cacheFile("d", other, "x")).second) << name;
-        ASSERT_EQ(differences(kStamp, other).size(), 1u);
-        EXPECT_EQ(differences(kStamp, other)[0].substr(0, name.size()), name);
+        ASSERT_EQ(differences(kVoxelStamp, other).size(), 1u);
+        EXPECT_EQ(differences(kVoxelStamp, other)[0].substr(0, name.size()), name);
     }
-    CacheStamp odd = kStamp;
+    CacheStamp odd = kVoxelStamp;
     odd.inputs["camera"] = "1 a=b\nscene=c";
     const CacheStamp back = CacheStamp::parse(odd.text());
     EXPECT_EQ(back.inputs.size(), 4u);
@@ -208,9 +209,9 @@ TEST(Cache, foreignFilesAreRefused) {
                           "do it again");
         },
         "another scene's");
-    expectRefused([&] { readVoxelFile(d.file("s.vdb"), kStamp, kCentre, "do it again"); },
+    expectRefused([&] { readVoxelFile(d.file("s.vdb"), kVoxelStamp, kCentre, "do it again"); },
                   "a skeleton for voxels");
-    expectRefused([&] { readSkeletonFile(d.file("v.vdb"), kStamp, kCentre, "do it again"); },
+    expectRefused([&] { readSkeletonFile(d.file("v.vdb"), kVoxelStamp, kCentre, "do it again"); },
                   "voxels for a skeleton");
     EXPECT_EQ(cacheDirectory("scenes/door.glb", ""), "scenes/door.cache");
     EXPECT_EQ(cacheDirectory("scenes/door.glb", "there"), "there");
@@ -221,7 +222,7 @@ TEST(Cache, wrongEntriesAreRefused) {
     SkeletonFile file = skeleton();
     file.skeleton.nodes.pop_back();  // edge and map name a node that is not there
     writeSkeletonFile(d.file("s.vdb"), file, kCentre);
-    expectRefused([&] { readSkeletonFile(d.file("s.vdb"), kStamp, kCentre, "do it again"); },
+    expectRefused([&] { readSkeletonFile(d.file("s.vdb"), kVoxelStamp, kCentre, "do it again"); },
                   "a map to missing nodes");
 }
 

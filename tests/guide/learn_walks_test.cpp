@@ -12,19 +12,19 @@
 namespace lacuna::test {
 namespace {
 
-const ThreadPool& pool() {
+const ThreadPool& twoThreads() {
     static const ThreadPool threads(2);
     return threads;
 }
 
 /// Steps of diffuse surfaces that found their directions by the cosine: a floor and a wall. `carries`
 /// (place's numbers, direction in the surface's frame) gives what they contribute.
-struct Planted {
+struct PlantedSteps {
     WalkSamples train, heldOut;
 };
 template <class Carries>
-Planted plant(int count, const Carries& carries, bool delta = false) {
-    Planted p;
+PlantedSteps plantSteps(int count, const Carries& carries, bool delta = false) {
+    PlantedSteps p;
     Rng rng(1, 0, StreamKind::User, 0);
     for (int i = 0; i < count; ++i) {
         const Vec3 normal = rng.below(2) == 0 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
@@ -68,10 +68,10 @@ TEST(LearnWalks, FindsWhereLightComesFromByPlaceAndWall) {
         if (s.side == Side::Light) return s.place.numbers[3] > 0.5f ? fromWall : camera;
         return s.place.numbers[3] > 0.5f ? fromWall : s.place.numbers[0] < 0.5f ? left : right;
     };
-    const Planted p = plant(400'000, [&](const WalkSamples::Step& s, const Vec3&, Rng&) {
+    const PlantedSteps p = plantSteps(400'000, [&](const WalkSamples::Step& s, const Vec3&, Rng&) {
         return dot(s.to, axisOf(s)) > 0.94f ? 1.0 : 0.0;
     });
-    const LearnedWalks learned = learnWalks(p.train, p.heldOut, pool());
+    const LearnedWalks learned = learnWalks(p.train, p.heldOut, twoThreads());
     ASSERT_TRUE(learned.guide);
     for (const Side side : {Side::Light, Side::Eye}) {
         // The largest share of a guide that knew the lamp's rim has .09.
@@ -95,26 +95,27 @@ TEST(LearnWalks, LeavesBsdfsAloneWhereTheyAreAsGood) {
     const auto wild = [](const WalkSamples::Step&, const Vec3&, Rng& rng) {
         return 1.0 / (1e-3 + rng.uniformDouble());
     };
-    for (const Planted& p : {plant(50, same), plant(50'000, same), plant(20'000, wild)}) {
-        const LearnedWalks learned = learnWalks(p.train, p.heldOut, pool());
+    for (const PlantedSteps& p :
+         {plantSteps(50, same), plantSteps(50'000, same), plantSteps(20'000, wild)}) {
+        const LearnedWalks learned = learnWalks(p.train, p.heldOut, twoThreads());
         EXPECT_GT(learned.heldOutLoss[0], 0.95);
         EXPECT_GT(learned.heldOutLoss[1], 0.95);
     }
-    EXPECT_FALSE(learnWalks({}, {}, pool()).guide);
+    EXPECT_FALSE(learnWalks({}, {}, twoThreads()).guide);
 }
 
 /// What only a mirror makes is no reason to go elsewhere.
 TEST(LearnWalks, LeavesMirrorsAlone) {
-    const Planted p = plant(
+    const PlantedSteps p = plantSteps(
         50'000, [](const WalkSamples::Step&, const Vec3&, Rng&) { return 1.0; }, true);
-    const LearnedWalks learned = learnWalks(p.train, p.heldOut, pool());
+    const LearnedWalks learned = learnWalks(p.train, p.heldOut, twoThreads());
     EXPECT_GE(learned.heldOutLoss[0], 1.0);
     EXPECT_FALSE(learned.guide);
 }
 
 /// What was found by another density speaks as if it had been found by the BSDF.
 TEST(LearnWalks, KnowsWhatItsStepsWereFoundWith) {
-    Planted p;
+    PlantedSteps p;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 200'000; ++i) {
         // One half of the turns three times as often as the other: each stands for a third.
@@ -130,16 +131,16 @@ TEST(LearnWalks, KnowsWhatItsStepsWereFoundWith) {
         (i % 10 == 0 ? p.heldOut : p.train)
             .put(std::uint32_t(i), 1.0f / (often ? 1.5f : 0.5f), {&s, 1});
     }
-    EXPECT_GT(learnWalks(p.train, p.heldOut, pool()).heldOutLoss[std::size_t(Side::Eye)], 0.98);
+    EXPECT_GT(learnWalks(p.train, p.heldOut, twoThreads()).heldOutLoss[std::size_t(Side::Eye)],
+              0.98);
 }
 
 TEST(LearnWalks, IsTheSameForAnyNumberOfThreads) {
-    const Planted p = plant(20'000, [](const WalkSamples::Step&, const Vec3& local, Rng&) {
-        return double(local.x * local.x);
-    });
+    const PlantedSteps p = plantSteps(20'000, [](const WalkSamples::Step&, const Vec3& local,
+                                                 Rng&) { return double(local.x * local.x); });
     const ThreadPool one(1);
     const LearnedWalks a = learnWalks(p.train, p.heldOut, one),
-                       b = learnWalks(p.train, p.heldOut, pool());
+                       b = learnWalks(p.train, p.heldOut, twoThreads());
     ASSERT_TRUE(a.guide && b.guide);
     EXPECT_EQ(a.guide->contentHash(), b.guide->contentHash());
 }

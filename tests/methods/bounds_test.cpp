@@ -14,13 +14,13 @@
 namespace lacuna::test {
 namespace {
 
-constexpr int kSubpaths = 80;  // more than picks
-constexpr double kGeometry = 1e-3;
+constexpr int kManySubpaths = 80;  // more than picks
+constexpr double kLittle = 1e-3;
 
 /// A surface at the origin that all light vertices arrive at with their whole throughput.
-class OneSurface final : public FixedEyePath {
+class SurfaceInSight final : public FixedEyePath {
   public:
-    OneSurface() {
+    SurfaceInSight() {
         Bsdf::Parameters grey;
         grey.baseColor = Rgb(0.5f);
         addLens({0, 1, 2});
@@ -28,23 +28,23 @@ class OneSurface final : public FixedEyePath {
     }
     Arrival arrival(Subpath light, Subpath, bool) const override {
         const Rgb all = light.back().throughput;
-        return {all, all, kGeometry};
+        return {all, all, kLittle};
     }
 };
 
 /// The samples that connections with a y_1 of these throughputs are believed to stand for, with as
 /// many picks as can be asked for.
-std::vector<double> believed(const MethodRow& row, const std::vector<std::string>& more,
-                             const std::vector<float>& throughputs, Label light) {
-    const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
+std::vector<double> believedSamples(const MethodRow& row, const std::vector<std::string>& more,
+                                    const std::vector<float>& throughputs, Label light) {
+    const LightPool pool = poolOfPairs(kManySubpaths, [](int i, PathVertex& y) {
         y.position = {0.1f * float(i % 9), 0.1f * float(i / 9), 1.5f};
         y.throughput = Rgb(1.0f + 0.1f * float(i));
     });
-    const OneSurface space;
+    const SurfaceInSight space;
     const ThreadPool threads(1);
     IterationStatistics statistics;
     IterationContext context{space, threads, 43, 0, 1, statistics};
-    std::vector<std::string> settings = {"candidates=" + std::to_string(kSubpaths),
+    std::vector<std::string> settings = {"candidates=" + std::to_string(kManySubpaths),
                                          "connections=" + std::to_string(Picks::kMost)};
     for (const Option& o : row.options) {
         if (o.name == "cache_density" || o.name == "record_density") {
@@ -63,7 +63,7 @@ std::vector<double> believed(const MethodRow& row, const std::vector<std::string
         c.order = 2;  // `connections` picks, not those of the first eye vertex
         c.light = {&y[1], &y[0], 2, Rgb(1.0f), light};
         c.beta = Rgb(throughput);
-        c.geometry = kGeometry;
+        c.geometry = kLittle;
         result.push_back(density.effectiveSamples(c));
     }
     return result;
@@ -81,10 +81,10 @@ TEST(Beliefs, neverExceedTheLightSubpaths) {
     };
     for (const auto& [row, settings] : cases) {
         SCOPED_TRACE(row.name);
-        const std::vector<double> n = believed(row, settings, throughputs, kNone);
+        const std::vector<double> n = believedSamples(row, settings, throughputs, kNone);
         for (std::size_t i = 0; i < n.size(); ++i) {
             EXPECT_GT(n[i], 0.0) << throughputs[i];
-            EXPECT_LE(n[i], kSubpaths * (1.0 + 1e-9)) << throughputs[i];
+            EXPECT_LE(n[i], kManySubpaths * (1.0 + 1e-9)) << throughputs[i];
             EXPECT_GE(n[i], n[i > 0 ? i - 1 : 0]) << "brighter is picked more often";
         }
     }
@@ -99,8 +99,8 @@ TEST(Beliefs, neverExceedTheLightSubpathsThatAreKept) {
     for (Label i = 0; i < 4; ++i) {
         SCOPED_TRACE(i);
         const std::vector<double> n =
-            believed(row, {"reuse=400", "weights=ris"}, {1e-6f, 1.0f, 1e6f, 1e30f}, i);
-        const double bound = kSubpaths * windows[i];
+            believedSamples(row, {"reuse=400", "weights=ris"}, {1e-6f, 1.0f, 1e6f, 1e30f}, i);
+        const double bound = kManySubpaths * windows[i];
         for (const double samples : n) EXPECT_LE(samples, bound * (1.0 + 1e-9));
         EXPECT_GT(n.back(), 0.8 * bound);
     }

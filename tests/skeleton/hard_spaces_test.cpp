@@ -4,13 +4,12 @@
 #include "libcore/base/parallel.h"
 #include "libcore/skeleton/node_map.h"
 #include "libcore/skeleton/topology.h"
+#include "tests/fixtures/never.h"
 #include "tests/skeleton/voxel_shapes.h"
 #include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 struct Made {
     Betti empty;
@@ -20,7 +19,7 @@ struct Made {
     NodeMap map;
 };
 
-Made skeletonOf(const VoxelSpace& space) {
+Made madeOf(const VoxelSpace& space) {
     const ThreadPool pool(2);
     Made m{emptySpaceBetti(space), thin(space, pool, kNever), {}, {}, {}};
     const auto radiusAt = [&](const Vec3d& p) { return distanceToSolid(space, p); };
@@ -34,7 +33,7 @@ TEST(HardSpaces, oneVoxelOfEmptySpace) {
     const auto around = [](int x, int y, int z) { return x != 1 || y != 1 || z != 1; };
     for (const VoxelSpace& space :
          {drawn({3, 3, 3}, around), drawn({1, 1, 1}, [](int, int, int) { return false; })}) {
-        const Made m = skeletonOf(space);
+        const Made m = madeOf(space);
         EXPECT_EQ(m.empty, (Betti{1, 0, 0}));
         EXPECT_EQ(m.raw.b0(), 1);
         EXPECT_EQ(m.raw.b1(), 0);
@@ -50,7 +49,7 @@ TEST(HardSpaces, oneVoxelOfEmptySpace) {
 
 TEST(HardSpaces, noEmptySpaceAtAll) {
     const VoxelSpace space = drawn({4, 3, 2}, [](int, int, int) { return true; });
-    const Made m = skeletonOf(space);
+    const Made m = madeOf(space);
     EXPECT_EQ(m.empty, (Betti{0, 0, 0}));
     EXPECT_EQ(m.thinned.punctures, 0u);
     EXPECT_TRUE(m.raw.nodes.empty());
@@ -63,7 +62,7 @@ TEST(HardSpaces, noEmptySpaceAtAll) {
 TEST(HardSpaces, flatSpace) {
     const VoxelSpace space =
         drawn({14, 12, 1}, [](int x, int y, int) { return x == 6 && y != 3 && y != 9; });
-    const Made m = skeletonOf(space);
+    const Made m = madeOf(space);
     EXPECT_EQ(m.empty, (Betti{1, 1, 0}));
     EXPECT_EQ(m.raw.b1(), 1);
     EXPECT_EQ(m.filtered.b1(), 1);
@@ -74,7 +73,7 @@ TEST(HardSpaces, flatSpace) {
 TEST(HardSpaces, sizeOfTheVoxels) {
     const auto rooms = [](int x, int y, int z) { return x == 9 && !(y > 2 && y < 6 && z < 5); };
     const VoxelSpace unit = drawn({18, 11, 8}, rooms);
-    const Made expected = skeletonOf(unit);
+    const Made expected = madeOf(unit);
     double worst = 0;
     for (const double voxel : {1e-3 / 18, 1e6 / 18}) {
         VoxelSpace space = unit;

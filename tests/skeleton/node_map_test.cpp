@@ -7,13 +7,12 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
 #include "libcore/voxel/voxelize.h"
+#include "tests/fixtures/never.h"
 #include "tests/skeleton/voxel_shapes.h"
 #include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 /// Distance in voxels and node, by repeated relaxation in real numbers.
 std::vector<std::pair<double, int>> bruteForce(const VoxelSpace& space,

@@ -9,12 +9,11 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
 #include "libcore/skeleton/graph.h"
+#include "tests/fixtures/never.h"
 #include "tests/skeleton/voxel_shapes.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 struct Graphs {
     Thinned thinned;

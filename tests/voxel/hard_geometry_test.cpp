@@ -10,14 +10,13 @@
 #include "libcore/voxel/components.h"
 #include "libcore/voxel/exact_overlap.h"
 #include "libcore/voxel/surface_distance.h"
+#include "tests/fixtures/never.h"
 #include "tests/scene/scene_builder.h"
 #include "tests/stability.h"
 #include "tests/voxel/triangles.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 const ThreadPool& threads() {
     static const ThreadPool pool(2);
@@ -29,7 +28,7 @@ std::vector<Triangle> joined(std::vector<Triangle> a, const std::vector<Triangle
     return a;
 }
 
-std::vector<VoxelState> voxelized(const std::vector<Triangle>& triangles, const VoxelShape& shape) {
+std::vector<VoxelState> statesOf(const std::vector<Triangle>& triangles, const VoxelShape& shape) {
     std::vector<VoxelState> state(shape.count(), VoxelState::Empty);
     voxelize(triangles, shape, state, threads(), kNever);
     return state;
@@ -41,7 +40,7 @@ std::size_t solidVoxels(const std::vector<VoxelState>& state) {
 
 /// Voxels that are not what CGAL's exact predicate says of every triangle and voxel.
 std::size_t wrongVoxels(const std::vector<Triangle>& triangles, const VoxelShape& shape) {
-    const std::vector<VoxelState> state = voxelized(triangles, shape);
+    const std::vector<VoxelState> state = statesOf(triangles, shape);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < state.size(); ++i) {
         const VoxelIndex v = shape.indexOf(i);
@@ -68,7 +67,7 @@ TEST(HardGeometry, sizeOfTheScene) {
             trianglesOf(mesh, scaling({0.4 * s, 0.3 * s, 0.3 * s}) * rotation({1, 2, 3}, 25)));
     };
     const auto lattice = [&](double s) { return latticeOver({{-s, -s, -s}, {s, s, s}}, 14); };
-    const std::vector<VoxelState> unit = voxelized(scaled(1), lattice(1));
+    const std::vector<VoxelState> unit = statesOf(scaled(1), lattice(1));
     EXPECT_EQ(Components(lattice(1), unit, {}, Connectivity::Corners).count(), 3u);
     std::size_t wrong = 0;
     for (const double s : {1e-3, 1.0, 1e6}) wrong += wrongVoxels(scaled(s), lattice(s));
@@ -76,7 +75,7 @@ TEST(HardGeometry, sizeOfTheScene) {
     const SurfaceDistance here(scaled(1), threads());
     const double unbounded = std::numeric_limits<double>::infinity();
     for (const double s : {0x1p-10, 0x1p20}) {  // exact: to the last bit
-        EXPECT_EQ(voxelized(scaled(s), lattice(s)), unit) << s;
+        EXPECT_EQ(statesOf(scaled(s), lattice(s)), unit) << s;
         const SurfaceDistance there(scaled(s), threads());
         for (const Vec3d& p : {Vec3d{0.1, 0.2, 0.3}, Vec3d{-3, 2, 0.7}, Vec3d{0.95, 0, 0}}) {
             EXPECT_EQ(there(p * s, unbounded), here(p, unbounded) * s) << s;
@@ -96,7 +95,7 @@ TEST(HardGeometry, wallsThinnerThanAVoxel) {
             const float at = 2 * rng.uniform() - 1;
             const auto wall = trianglesOf(box({-20, -20, at}, {20, 20, at + thickness}),
                                           rotation(axis, 360 * rng.uniformDouble()));
-            const auto state = voxelized(wall, unitLattice());
+            const auto state = statesOf(wall, unitLattice());
             leaks += Components(unitLattice(), state, {}, Connectivity::Corners).count() != 2;
         }
     }
@@ -108,14 +107,14 @@ TEST(HardGeometry, facesOnTheLattice) {
     const VoxelShape shape = unitLattice();
     // A sheet on a lattice plane touches the voxels on both sides; a corner on a lattice corner
     // those about it; an edge along a lattice line those around the line.
-    const auto sheet = voxelized(trianglesOf(quad({-9, 2, -9}, {0, 0, 18}, {18, 0, 0})), shape);
+    const auto sheet = statesOf(trianglesOf(quad({-9, 2, -9}, {0, 0, 18}, {18, 0, 0})), shape);
     EXPECT_EQ(solidVoxels(sheet), 200u);
     const std::vector<Triangle> corner = {
         {Vec3{0, 0, 0}, Vec3{-0.5f, 0.25f, 0.125f}, Vec3{-0.25f, 0.5f, 0.25f}}};
-    EXPECT_EQ(solidVoxels(voxelized(corner, shape)), 8u);
+    EXPECT_EQ(solidVoxels(statesOf(corner, shape)), 8u);
     const std::vector<Triangle> edge = {{Vec3{-2, 1, 1}, Vec3{2, 1, 1}, Vec3{0, 1.5f, 1.5f}}};
     // Four voxels along the line, around it four, and one beyond each end of it.
-    EXPECT_EQ(solidVoxels(voxelized(edge, shape)), 24u);
+    EXPECT_EQ(solidVoxels(statesOf(edge, shape)), 24u);
     const std::size_t wrong = wrongVoxels(trianglesOf(box({-3, -2, -1}, {1, 2, 3})), shape) +
                               wrongVoxels(corner, shape) + wrongVoxels(edge, shape);
     EXPECT_EQ(wrong, 0u);
@@ -132,7 +131,7 @@ TEST(HardGeometry, coplanarAndDuplicateFaces) {
     const Triangle& whole = once[0];
     const Vec3 middle = (whole[1] + whole[2]) * 0.5f;
     again.push_back({whole[0], whole[1], middle});
-    const auto expected = voxelized(once, shape), found = voxelized(again, shape);
+    const auto expected = statesOf(once, shape), found = statesOf(again, shape);
     std::size_t different = 0;
     for (std::size_t i = 0; i < found.size(); ++i) different += found[i] != expected[i];
     EXPECT_EQ(different, 0u);
@@ -192,7 +191,7 @@ TEST(HardGeometry, needles) {
         const float width = n % 2 == 0 ? 8e-7f : 0.0f;
         const Vec3 c = (n % 3 == 1 ? (a + b) * 0.5f : b) + Vec3{0, width, 0};
         const std::vector<Triangle> needle = {{a, b, c}};
-        const auto state = voxelized(needle, shape);
+        const auto state = statesOf(needle, shape);
         const SurfaceDistance surface(needle, threads());
         for (std::size_t i = 0; i < state.size(); ++i) {
             const VoxelIndex v = shape.indexOf(i);

@@ -4,13 +4,12 @@
 
 #include "libcore/base/error.h"
 #include "preprocess/skeletonize.h"
+#include "tests/fixtures/never.h"
 #include "tests/scene/scene_builder.h"
 #include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 Voxelized voxelized(const Scene& scene, int resolution, const std::string& domain = {}) {
     Phases phases;

@@ -13,14 +13,13 @@
 #include "libcore/voxel/exact_overlap.h"
 #include "libcore/voxel/reach.h"
 #include "libcore/voxel/surface_distance.h"
+#include "tests/fixtures/never.h"
 #include "tests/scene/scene_builder.h"
 #include "tests/stability.h"
 #include "tests/voxel/triangles.h"
 
 namespace lacuna::test {
 namespace {
-
-const std::atomic<bool> kNever{false};
 
 TEST(Overlap, isExact) {
     Rng rng(1, 0, StreamKind::User, 0);

@@ -14,13 +14,13 @@
 namespace lacuna {
 namespace {
 
-struct Options {
+struct StudyCommand {
     std::string study, output, summary;
     bool quick = false;
     CommonOptions common;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare(CLI::App& app, StudyCommand& options) {
     app.add_option("STUDY", options.study, "What to run: see render/README.md")
         ->type_name("STUDY.json")
         ->required();
@@ -54,9 +54,11 @@ std::string rendererBesideUs() {
     return path;
 }
 
-int runStudy(int argc, const char* const* argv) {
+}  // namespace
+
+int studyTool(int argc, char** argv) {
     CLI::App app("What accuracy costs in time", "lacuna-study");
-    Options options;
+    StudyCommand options;
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
 
@@ -84,9 +86,4 @@ int runStudy(int argc, const char* const* argv) {
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::runStudy(argc, argv); });
-}

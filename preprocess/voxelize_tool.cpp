@@ -12,9 +12,7 @@
 #include "preprocess/voxelize.h"
 
 namespace lacuna {
-namespace {
-
-int voxelizeTool(int argc, const char* const* argv) {
+int voxelizeTool(int argc, char** argv) {
     CLI::App app("Finds the empty space of a glTF scene", "lacuna-voxelize");
     BuildOptions options;
     addBuildOptions(app, options);
@@ -79,9 +77,4 @@ int voxelizeTool(int argc, const char* const* argv) {
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::voxelizeTool(argc, argv); });
-}

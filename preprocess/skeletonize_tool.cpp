@@ -21,7 +21,9 @@ nlohmann::json graphJson(std::size_t nodes, std::size_t edges, const Betti& b) {
     return {{"nodes", nodes}, {"edges", edges}, {"b0", b.b0}, {"b1", b.b1}};
 }
 
-int skeletonizeTool(int argc, const char* const* argv) {
+}  // namespace
+
+int skeletonizeTool(int argc, char** argv) {
     CLI::App app("Finds the curve skeleton of a scene's empty space", "lacuna-skeletonize");
     BuildOptions options;
     std::string voxelPath, graphPath;
@@ -121,9 +123,4 @@ int skeletonizeTool(int argc, const char* const* argv) {
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::skeletonizeTool(argc, argv); });
-}

@@ -107,7 +107,9 @@ void print(const std::string& path, const Trained& t, const Phases& phases, doub
     }
 }
 
-int trainTool(int argc, const char* const* argv) {
+}  // namespace
+
+int trainTool(int argc, char** argv) {
     CLI::App app("Learns where light paths begin, and trains the subspaces of a scene's paths",
                  "lacuna-train");
     BuildOptions options;
@@ -242,9 +244,4 @@ int trainTool(int argc, const char* const* argv) {
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::trainTool(argc, argv); });
-}

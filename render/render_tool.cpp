@@ -62,7 +62,9 @@ int print(const RenderOptions& options) {
     return replay(options, row, settings, ThreadPool(options.common.threads));
 }
 
-int render(int argc, char** argv) {
+}  // namespace
+
+int renderTool(int argc, char** argv) {
     const Ranks ranks;
     // One voice is enough.
     if (!ranks.leads()) {
@@ -92,9 +94,4 @@ int render(int argc, char** argv) {
     return rendered->exitCode();
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::render(argc, argv); });
-}

@@ -16,14 +16,14 @@
 namespace lacuna {
 namespace {
 
-struct Options {
+struct CompareCommand {
     std::string image;
     std::string reference;
     std::string errorMap;
     CommonOptions common;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare(CLI::App& app, CompareCommand& options) {
     app.add_option("IMAGE", options.image, "Image: .exr (R, G, B), .hdr, .pfm or .png")->required();
     app.add_option("REFERENCE", options.reference, "What it should be; the same size")->required();
     app.add_option("--error-map", options.errorMap,
@@ -44,7 +44,7 @@ void declare(CLI::App& app, Options& options) {
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 an image cannot be used.");
 }
 
-void requireOutputs(const Options& options) {
+void requireOutputs(const CompareCommand& options) {
     const NamedFile results[] = {{"--error-map", options.errorMap},
                                  {"--json", options.common.json}};
     const NamedFile inputs[] = {{"the image", options.image}, {"the reference", options.reference}};
@@ -59,22 +59,24 @@ void requireOutputs(const Options& options) {
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
 }
 
-nlohmann::json jsonNumber(double value) {
+nlohmann::json measureJson(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json("inf");
 }
 
-void writeJson(const std::string& path, const ErrorMeasures& m) {
-    const nlohmann::json json{{"mae", jsonNumber(m.mae)},
-                              {"rmse", jsonNumber(m.rmse)},
-                              {"mape", jsonNumber(m.mape)},
-                              {"relmse", jsonNumber(m.relmse)},
+void writeMeasures(const std::string& path, const ErrorMeasures& m) {
+    const nlohmann::json json{{"mae", measureJson(m.mae)},
+                              {"rmse", measureJson(m.rmse)},
+                              {"mape", measureJson(m.mape)},
+                              {"relmse", measureJson(m.relmse)},
                               {"pixels", m.pixels}};
     writeFileAtomically(path, json.dump(2) + "\n");
 }
 
-int compare(int argc, const char* const* argv) {
+}  // namespace
+
+int compareTool(int argc, char** argv) {
     CLI::App app("How far an image is from a reference", "lacuna-compare");
-    Options options;
+    CompareCommand options;
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     requireOutputs(options);
@@ -93,15 +95,10 @@ int compare(int argc, const char* const* argv) {
             std::fprintf(stderr, "%s: %s\n", options.errorMap.c_str(), kErrorMapScale);
         }
     }
-    if (!options.common.json.empty()) writeJson(options.common.json, m);
+    if (!options.common.json.empty()) writeMeasures(options.common.json, m);
     std::printf("mae %.17g\nrmse %.17g\nmape %.17g\nrelmse %.17g\npixels %zu\n", m.mae, m.rmse,
                 m.mape, m.relmse, m.pixels);
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::compare(argc, argv); });
-}

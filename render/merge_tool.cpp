@@ -18,14 +18,14 @@
 namespace lacuna {
 namespace {
 
-struct Options {
+struct MergeCommand {
     std::vector<std::string> parts;
     std::string output;
     bool gaps = false;
     CommonOptions common;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare(CLI::App& app, MergeCommand& options) {
     app.add_option("PART", options.parts, "What lacuna-render --blocks wrote, in any order")
         ->required()
         ->type_name("PART.exr");
@@ -46,7 +46,7 @@ void declare(CLI::App& app, Options& options) {
         "Exit codes: 0 done, 1 failed while running, 2 usage, 3 a part cannot be used.");
 }
 
-void requireOutputs(const Options& options) {
+void requireOutputs(const MergeCommand& options) {
     if (endingOf(options.output) != ".exr") {
         throw UsageError(options.output +
                          ": expected a picture ending in .exr; choose another "
@@ -60,9 +60,11 @@ void requireOutputs(const Options& options) {
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
 }
 
-int merge(int argc, const char* const* argv) {
+}  // namespace
+
+int mergeTool(int argc, char** argv) {
     CLI::App app("Puts the parts of a picture together", "lacuna-merge");
-    Options options;
+    MergeCommand options;
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     requireOutputs(options);
@@ -89,9 +91,4 @@ int merge(int argc, const char* const* argv) {
     return 0;
 }
 
-}  // namespace
 }  // namespace lacuna
-
-int main(int argc, char** argv) {
-    return lacuna::runTool([&] { return lacuna::merge(argc, argv); });
-}
