@@ -27,9 +27,7 @@ Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, do
     for (int i = 0; i < most; ++i) {
         render.iterate(std::uint32_t(i));
         picture.pixels.add(render.pixels(), single);
-        if (i % 64 == 63 && picture.standardError() < relativeError * picture.mean()) {
-            break;
-        }
+        if (i % 32 == 31 && picture.standardError() < relativeError * picture.mean()) break;
     }
     picture.statistics = render.statistics();
     return picture;
