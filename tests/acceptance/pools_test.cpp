@@ -36,7 +36,7 @@ Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, do
 std::vector<std::string> pooledRows() {
     std::vector<std::string> names;
     for (const MethodRow& row : allRows()) {
-        if (!smallSettings(row, 1).empty()) names.push_back(row.name);
+        if (!smallSettings(row, 1).empty() && !mergesBetweenDeltas(row)) names.push_back(row.name);
     }
     return names;
 }

@@ -319,6 +319,10 @@ Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row) {
     return result;
 }
 
+bool mergesBetweenDeltas(const MethodRow& row) {
+    return row.create(resolve(row, {}))->merging().where == Merges::BetweenDeltas;
+}
+
 bool walksFromLights(const MethodRow& row) {
     if (row.techniques.splats) return true;
     const auto method = row.create(resolve(row, smallSettings(row, 4)));

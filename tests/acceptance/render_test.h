@@ -153,6 +153,9 @@ bool seesThroughDeltas(const MethodRow& row);
 /// one subpath per pixel a pixel's variance is that of the handful of splats that it happened to
 /// get, and a z-test means nothing.
 Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
+/// Rows that merge between deltas and nowhere else: without any they are what they are without merging, bit
+/// for bit.
+bool mergesBetweenDeltas(const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
 /// The test's own rows, whose weights believe nonsense on purpose.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -42,6 +43,8 @@ class HalfVectorBins {
         }
         edges_.push_back(0);
         std::sort(edges_.begin(), edges_.end());
+        for (const double edge : edges_) tangents_.push_back(std::tan(edge));
+        tangents_.back() = kInfinity;
         // Rounded to float, grazing directions v and w lose their half vector, v + w being short:
         // then the core of a narrow lobe is one bin.
         const double core = 1e-7 / v_.z > 0.02 * alpha ? std::atan(8 * alpha) * 0.999 : 0;
@@ -75,32 +78,34 @@ class HalfVectorBins {
         if (transmits && kinds_ == 1) {
             return size();
         }
-        const double theta = std::atan2(std::hypot(h.x, h.y), h.z);
-        const double phi = std::atan2(h.y, h.x) / (2 * std::numbers::pi) + 0.5;
-        const auto at = std::upper_bound(edges_.begin(), edges_.end(), theta);
-        const std::size_t ring = std::clamp<std::ptrdiff_t>(at - edges_.begin() - 1, 0,
+        const double tangent = h.z > 0 ? std::sqrt(h.x * h.x + h.y * h.y) / h.z : kInfinity;
+        const auto at = std::upper_bound(tangents_.begin(), tangents_.end(), tangent);
+        const std::size_t ring = std::clamp<std::ptrdiff_t>(at - tangents_.begin() - 1, 0,
                                                             std::ptrdiff_t(edges_.size()) - 2);
-        const std::size_t sector = std::min<std::size_t>(std::size_t(phi * kSectors), kSectors - 1);
-        return index(transmits ? 1 : 0, ring, sector);
+        return index(transmits ? 1 : 0, ring, sectorOf(h.x, h.y));
     }
 
     /// Calls visit(bin, to, solid angle) for the midpoints of all bins.
     template <class Visit>
     void integrate(const Visit& visit) const {
+        const double dPhi = 2 * std::numbers::pi / kSectors / kSteps;
+        std::vector<Angle> phis;
+        for (int b = 0; b < kSectors * kSteps; ++b) {
+            phis.emplace_back((b + 0.5) * dPhi - std::numbers::pi, dPhi);
+        }
         for (int kind = 0; kind < kinds_; ++kind) {
             for (std::size_t ring = 0; ring + 1 < edges_.size(); ++ring) {
                 const double dTheta = (edges_[ring + 1] - edges_[ring]) / kSteps;
-                const double dPhi = 2 * std::numbers::pi / kSectors / kSteps;
                 for (int a = 0; a < kSteps; ++a) {
-                    const double theta = edges_[ring] + (a + 0.5) * dTheta;
+                    const Angle theta(edges_[ring] + (a + 0.5) * dTheta, dTheta);
                     for (int b = 0; b < kSectors * kSteps; ++b) {
-                        const double phi = (b + 0.5) * dPhi - std::numbers::pi;
+                        const Angle& phi = phis[std::size_t(b)];
                         Vec3d to;
-                        if (!direction(kind, theta, phi, to)) {
+                        if (!direction(kind, theta.at, phi.at, to)) {
                             continue;
                         }
                         const double solidAngle =
-                            jacobian(kind, theta, phi, to, dTheta, dPhi) * dTheta * dPhi;
+                            jacobian(kind, theta, phi, to) * theta.width * phi.width;
                         const std::size_t bin =
                             index(std::size_t(kind), ring, std::size_t(b / kSteps));
                         visit(bin, Vec3(s_ * to.x + t_ * to.y + n_ * to.z), solidAngle);
@@ -111,15 +116,36 @@ class HalfVectorBins {
     }
 
   private:
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+    /// The eighth of the circle, from -pi on.
+    static std::size_t sectorOf(double x, double y) {
+        static_assert(kSectors == 8);
+        const bool steep = std::abs(y) > std::abs(x);
+        if (y < 0) return x < 0 ? (steep ? 1 : 0) : (steep ? 2 : 3);
+        return x < 0 ? (steep ? 6 : 7) : (steep ? 5 : 4);
+    }
     std::size_t index(std::size_t kind, std::size_t ring, std::size_t sector) const {
         const bool merged = ring < unresolved_;
         return (kind * (edges_.size() - 1) + (merged ? 0 : ring)) * kSectors +
                (merged ? 0 : sector);
     }
+    struct SineCosine {
+        explicit SineCosine(double angle) : sine(std::sin(angle)), cosine(std::cos(angle)) {}
+        double sine, cosine;
+    };
+    /// The middle of an interval, and a little less and more: what a derivative is taken of.
+    struct Angle {
+        static constexpr double kStep = 1e-4;  ///< of the width
+        Angle(double middle, double wide)
+            : width(wide), at(middle), less(middle - wide * kStep), more(middle + wide * kStep) {}
+        double width;
+        SineCosine at, less, more;
+    };
+
     /// The direction that a half vector (given by its angles) leads to; false if there is none.
-    bool direction(int kind, double theta, double phi, Vec3d& to) const {
-        const Vec3d h{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                      std::cos(theta)};
+    bool direction(int kind, const SineCosine& theta, const SineCosine& phi, Vec3d& to) const {
+        const Vec3d h{theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
         const double vh = dot(v_, h);
         if (vh <= 0) {
             return false;
@@ -137,13 +163,12 @@ class HalfVectorBins {
         to = h * (vh / eta_ - std::sqrt(1 - sine2)) - v_ * (1 / eta_);
         return to.z < 0;
     }
-    double jacobian(int kind, double theta, double phi, const Vec3d& at, double dTheta,
-                    double dPhi) const {
-        const double e = 1e-4;
-        const auto difference = [&](double stepTheta, double stepPhi) {
+    double jacobian(int kind, const Angle& theta, const Angle& phi, const Vec3d& at) const {
+        const auto difference = [&](const SineCosine& moreTheta, const SineCosine& morePhi,
+                                    const SineCosine& lessTheta, const SineCosine& lessPhi) {
             Vec3d plus, minus;
-            const bool hasPlus = direction(kind, theta + stepTheta, phi + stepPhi, plus);
-            const bool hasMinus = direction(kind, theta - stepTheta, phi - stepPhi, minus);
+            const bool hasPlus = direction(kind, moreTheta, morePhi, plus);
+            const bool hasMinus = direction(kind, lessTheta, lessPhi, minus);
             // `direction` sets its result also for a reflection beyond the horizon; not for the
             // rest.
             if (hasPlus && hasMinus) {
@@ -151,16 +176,16 @@ class HalfVectorBins {
             }
             return hasPlus ? plus - at : hasMinus ? at - minus : Vec3d{};
         };
-        const Vec3d a = difference(dTheta * e, 0) * (1 / (dTheta * e));
-        const Vec3d b = difference(0, dPhi * e) * (1 / (dPhi * e));
-        return length(cross(a, b));
+        const Vec3d a = difference(theta.more, phi.at, theta.less, phi.at);
+        const Vec3d b = difference(theta.at, phi.more, theta.at, phi.less);
+        return length(cross(a, b)) / (theta.width * phi.width * Angle::kStep * Angle::kStep);
     }
 
     const Case& case_;
     Vec3d s_, t_, n_, v_;
     double eta_ = 1;
     int kinds_ = 1;
-    std::vector<double> edges_;
+    std::vector<double> edges_, tangents_;
     std::size_t unresolved_ = 0;  ///< number of innermost rings that are one bin
 };
 
