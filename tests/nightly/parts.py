@@ -1,0 +1,151 @@
+"""The parts of a night. Each returns a dictionary: `summary`, one line; `rows`, a table of it, the head first; and
+`findings`, whose absence is success."""
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+JOBS = str(os.cpu_count())
+DICTIONARIES = ROOT / "tests" / "fuzz" / "dictionaries"
+CORPUS = ROOT / "tests" / "fuzz" / "corpus"
+
+
+class Failed(Exception):
+    """What a part needs and does not get."""
+
+
+def run(command, log, **how):
+    """The output, which `log` keeps, and the exit code."""
+    done = subprocess.run([str(c) for c in command], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", **how)
+    log.parent.mkdir(parents=True, exist_ok=True)
+    log.write_text(done.stdout)
+    return done.stdout, done.returncode
+
+
+def build(preset, log, *targets, settings=()):
+    for command in (["cmake", "--preset", preset, *settings],
+                    ["cmake", "--build", "--preset", preset, "--parallel", JOBS,
+                     *(["--target", *targets] if targets else [])]):
+        if run(command, log)[1] != 0:
+            raise Failed(f"preset {preset} does not build: {log}")
+    return ROOT / {"release": "build"}.get(preset, f"build-{preset}")
+
+
+def tests_of(output):
+    """What ctest said: how many tests ran, seconds, and the names of those that failed."""
+    ran = re.search(r"tests failed out of (\d+)", output)
+    seconds = re.search(r"Total Test time \(real\) =\s+([\d.]+)", output)
+    failed = re.findall(r"^\s+\d+ - (\S.*?) \((?!Skipped)", output, re.M)
+    return int(ran[1]) if ran else 0, float(seconds[1]) if seconds else 0.0, failed
+
+
+def sanitizers(options):
+    """The suite under AddressSanitizer and UndefinedBehaviorSanitizer."""
+    folder = build("debug", options.out / "sanitizers-build.log")
+    log = options.out / "sanitizers.log"
+    output, code = run(["ctest", "--test-dir", folder, "--parallel", JOBS, "--output-on-failure", "--timeout", 7200,
+                        *(["-LE", "slow"] if options.quick else [])], log)
+    count, seconds, failed = tests_of(output)
+    if code != 0 and not failed:
+        failed = [f"ctest ended with {code}: {log}"]
+    which = "without the slow tests" if options.quick else "the whole suite"
+    return {"summary": f"AddressSanitizer and UndefinedBehaviorSanitizer, {which}: {count} tests in {seconds:.0f} s",
+            "rows": [], "findings": failed}
+
+
+def fuzzed(output):
+    """What libFuzzer said at its end: executions, edges, features, and the inputs that it kept as findings."""
+    count = re.search(r"stat::number_of_executed_units:\s+(\d+)", output)
+    covered = re.findall(r"cov: (\d+) ft: (\d+)", output)
+    edges, features = covered[-1] if covered else (0, 0)
+    return (int(count[1]) if count else 0, int(edges), int(features),
+            re.findall(r"Test unit written to (\S+)", output))
+
+
+def fuzz(options):
+    """Every parser of tests/fuzz/parsers.h."""
+    folder = build("fuzz", options.out / "fuzz-build.log") / "tests"
+    known, _ = run([folder / "fuzz"], options.out / "fuzz-parsers.log", env={**os.environ, "LACUNA_FUZZ_PARSER": ""})
+    names = re.search(r"expected one of (.+), found", known)
+    if not names:
+        raise Failed("the fuzzer does not name its parsers")
+    inputs, findings_folder = options.out / "fuzz", options.out / "findings"
+    if run([folder / "fuzz_seeds", inputs], options.out / "fuzz-seeds.log")[1] != 0:
+        raise Failed(f"no seeds: {options.out / 'fuzz-seeds.log'}")
+    findings_folder.mkdir(exist_ok=True)
+    rows, findings, total = [["parser", "executions", "edges", "features"]], [], 0
+    for name in options.parser or names[1].split():
+        log = options.out / f"fuzz-{name}.log"
+        dictionary = DICTIONARIES / f"{name}.dict"
+        output, code = run(
+            [folder / "fuzz", inputs / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
+             f"-runs={options.executions}", "-print_final_stats=1", "-timeout=60", "-rss_limit_mb=4096",
+             f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
+            log, env={**os.environ, "LACUNA_FUZZ_PARSER": name})
+        executions, edges, features, kept = fuzzed(output)
+        total += executions
+        rows.append([f"`{name}`", executions, edges, features])
+        findings += [f"{name}: {path}" for path in kept]
+        if code != 0 and not kept:
+            findings.append(f"{name}: ended with {code}: {log}")
+    return {"summary": f"libFuzzer, {total} executions", "rows": rows, "findings": findings}
+
+
+def counted(output):
+    """What hostile/run.py said: how often what was done, and what was wrong."""
+    lines = output.splitlines()
+    done = [re.match(r" *(\d+)  (.+)", line) for line in lines]
+    wrong = [line for line, match in zip(lines, done) if not match and line and not re.match(r"\d+ wrong$", line)]
+    return [[match[2], int(match[1])] for match in done if match], wrong
+
+
+def hostile(options):
+    """Calls that fail, signals and kills, limits, odd surroundings."""
+    folder = build("release", options.out / "hostile-build.log", "lacuna_tools", "faults")
+    log = options.out / "hostile.log"
+    output, code = run(["python3", "-B", "tests/hostile/run.py", folder, folder / "tests" / "libfaults.so",
+                        *(["--quick"] if options.quick else [])], log)
+    rows, wrong = counted(output)
+    if code != 0 and not wrong:
+        wrong = [f"ended with {code}: {log}"]
+    return {"summary": f"{sum(times for _, times in rows)} faults put in", "rows": [["what was done", "times"], *rows],
+            "findings": wrong}
+
+
+def compared(output):
+    """What differential/run.py said: its last line, and the finds."""
+    total = re.search(r"^\d+ scenes, \d+ comparisons$", output, re.M)
+    return total[0] if total else "", re.findall(r"^(scene \d+, .+)$", output, re.M)
+
+
+def differential(options):
+    """Random scenes that no night before has had."""
+    folder = build("release", options.out / "differential-build.log", "lacuna_tools")
+    log = options.out / "differential.log"
+    output, code = run(["python3", "-B", "tests/differential/run.py", folder / "render" / "lacuna-render",
+                        options.out / f"differential-{options.seed}", "--scenes", options.scenes, "--first", options.seed],
+                       log)
+    total, finds = compared(output)
+    if code != 0 and not finds:
+        finds = [f"ended with {code}: {log}"]
+    return {"summary": f"{total} from seed {options.seed} on", "rows": [], "findings": finds}
+
+
+def studies(options):
+    """The quick forms of the studies of our own scenes."""
+    folder = build("release", options.out / "studies-build.log", "lacuna_tools")
+    files = sorted(p for p in (ROOT / "tests" / "studies").glob("*.json") if not p.stem.endswith("-shared"))
+    findings = []
+    for study in files[:1] if options.quick else files:
+        log = options.out / f"study-{study.stem}.log"
+        code = run([folder / "render" / "lacuna-study", study, "--quick", "-o", options.out / "studies" / study.stem],
+                   log)[1]
+        if code != 0:
+            findings.append(f"{study.stem}: ended with {code}: {log}")
+    return {"summary": f"{1 if options.quick else len(files)} quick studies", "rows": [], "findings": findings}
+
+
+PARTS = {part.__name__: part for part in (sanitizers, fuzz, hostile, differential, studies)}

@@ -1,0 +1,54 @@
+"""What is read off the programs' outputs, and the page that is made of it."""
+
+import sys
+import unittest
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).parent))
+
+import page  # noqa: E402
+import parts  # noqa: E402
+
+
+class Outputs(unittest.TestCase):
+    def test_ctest(self):
+        output = ("98% tests passed, 2 tests failed out of 426\n\nTotal Test time (real) =  12.50 sec\n\n"
+                  "The following tests did not run:\n\t  7 - Shared (Skipped)\n\n"
+                  "The following tests FAILED:\n\t  3 - Film (Failed)\n\t 12 - All/Exact.of/pt (Timeout)\n")
+        self.assertEqual(parts.tests_of(output), (426, 12.5, ["Film", "All/Exact.of/pt"]))
+        self.assertEqual(parts.tests_of("100% tests passed, 0 tests failed out of 9\n"), (9, 0.0, []))
+
+    def test_fuzzer(self):
+        output = ("#2\tINITED cov: 100 ft: 120 corp: 1/9b\n#900\tNEW    cov: 130 ft: 200 corp: 3/30b\n"
+                  "artifact_prefix='x'; Test unit written to out/findings/png-crash-ab\n"
+                  "stat::number_of_executed_units: 900\nstat::peak_rss_mb: 80\n")
+        self.assertEqual(parts.fuzzed(output), (900, 130, 200, ["out/findings/png-crash-ab"]))
+        self.assertEqual(parts.fuzzed("killed"), (0, 0, 0, []))
+
+    def test_faults(self):
+        output = "    12  render: writes that fail\n     3  kills\nrender, write 4: left .lacuna-1.tmp\n1 wrong\n"
+        self.assertEqual(parts.counted(output), ([["render: writes that fail", 12], ["kills", 3]],
+                                                 ["render, write 4: left .lacuna-1.tmp"]))
+
+    def test_random_scenes(self):
+        output = "scene 5, pt: mean: off by 3 errors\n8 scenes, 32 comparisons\nscene 5: 1 finds\n"
+        self.assertEqual(parts.compared(output), ("8 scenes, 32 comparisons", ["scene 5, pt: mean: off by 3 errors"]))
+
+
+class Page(unittest.TestCase):
+    def test_every_part_is_there_with_what_it_found(self):
+        ran = {"summary": "libFuzzer, 900 executions", "rows": [["parser", "executions"], ["`png`", 900]],
+               "findings": ["png: out/findings/png-crash-ab"], "seconds": 120.0, "date": "2026-11-26", "commit": "abc"}
+        text = page.text({"fuzz": ran, "hostile": ran | {"findings": [], "rows": []}})
+        for name in parts.PARTS:
+            self.assertIn(f"## {name}\n", text)
+        self.assertIn("2026-11-26, commit abc, 2 minutes: libFuzzer, 900 executions.", text)
+        self.assertIn("| parser | executions |\n|---|---|\n| `png` | 900 |\n", text)
+        self.assertIn("- png: out/findings/png-crash-ab", text)
+        self.assertEqual(text.count("Has not run."), len(parts.PARTS) - 2)
+        self.assertEqual(text.count("Found nothing."), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
