@@ -114,8 +114,8 @@ std::string whyNotByThisMethod(const MethodRow& method, const Encounters& e, boo
     }
     if (t.connects && !t.splats && !hittable && e.lightRough == 0) {
         return "the lamps have no size to be hit, and their light meets mirrors or smooth glass "
-               "first, where a shadow ray of " +
-               method.name + " ends" + bpt;
+               "first, over which " +
+               method.name + " finds few ways" + bpt;
     }
     return method.name + " found no light, a test with bpt finds some: use that, or give it time";
 }
@@ -138,8 +138,8 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
         "round or make its material doubleSided");
     add(!hittable && e.lightMeets > 0 && e.lightRough == 0 && e.eyeMeets > 0 && e.eyeRough == 0,
         "the lamps have no size, and there are mirrors or smooth glass before them and before the "
-        "camera, so that no connection can join the two: use vcm if anything else lies between "
-        "them, or small emissive spheres, or make the glass a little rough");
+        "camera: a way over more than four in a row is not found; use vcm if anything else lies "
+        "between them, or small emissive spheres, or make the glass a little rough");
     if (!text.empty()) return text;
     return "light meets surfaces (" + paths(e.lightMeets) +
            " light paths) and the camera sees some (" + paths(e.eyeMeets) +

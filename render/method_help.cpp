@@ -46,6 +46,11 @@ std::string methodHelp(const MethodRow& row) {
     if (t.hits) text += "\n  s = 0          eye paths that run into a light";
     if (t.connects) text += "\n  s >= 1, t >= 2  eye vertices connected with light vertices";
     if (t.splats) text += "\n  t = 1          light paths seen by the lens";
+    if (t.connects && t.chains) {
+        text +=
+            "\n  chains         mirrors and smooth glass between a light without a size and an eye "
+            "vertex, where nothing else joins the path";
+    }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {
         text += merges == Merges::FirstFromEye

@@ -34,7 +34,8 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     // Everything that may refuse the command line comes before the long work.
     const PixelRect crop = chooseCrop(options, filmOf(options, description));
 
-    Stage stage{buildStage(std::move(description), options, Look::Camera, &method, pool, progress),
+    const MethodRow row = asSet(method, settings);
+    Stage stage{buildStage(std::move(description), options, Look::Camera, &row, pool, progress),
                 {},
                 0.0,
                 {}};
@@ -57,7 +58,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
 
 void useMethod(Stage& stage, const RenderOptions& options, const MethodRow& method,
                const Settings& settings) {
-    useMethod(static_cast<SceneStage&>(stage), options, method);
+    useMethod(static_cast<SceneStage&>(stage), options, asSet(method, settings));
     stage.settings.lightPaths = lightPathsOf(settings);
     stage.settings.sampling = options.sampling;
 }

@@ -20,6 +20,7 @@ enum class StreamKind : std::uint32_t {
     User,        ///< tests and tools
     CachePath,   ///< eye paths that leave cache points, index = path
     CacheDraw,   ///< draws at a cache point, index = cache point
+    Chain,       ///< searches for specular chains along an eye path, index = pixel
 };
 
 /// A point of a sequence whose points lie evenly (owen.h).

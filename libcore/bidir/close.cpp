@@ -212,6 +212,17 @@ std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath ey
     return closed;
 }
 
+Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& atEye,
+                  const Rgb& contribution, FullPath& path) {
+    setEdges(path, light.size(), eye.size());
+    fillLightPart(path, light);
+    fillEyePart(path, eye);
+    path.delta[light.size()] = false;
+    path.scatter[light.size()] = atEye;
+    setSource(path, walker.scene(), light[0]);
+    return {contribution, Technique::chain(int(eye.size())), {}};
+}
+
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
                RayTally& tally) {
     if (light.infinite()) {

@@ -70,6 +70,11 @@ std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection
 /// here). Empty where its BSDF lets nothing through. Fills `path`.
 std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath eye, FullPath& path);
 
+/// A path through a specular chain, y_1 .. y_{s-1} with delta events all, to the eye subpath's last
+/// vertex, whose BSDF towards it is `atEye`. Fills `path`, but for densities: no weight asks.
+Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& atEye,
+                  const Rgb& contribution, FullPath& path);
+
 /// Whether the two vertices see each other.
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
                RayTally& tally);

@@ -50,8 +50,8 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
     if (techniqueFilm_) {
         const Technique made = c.closed.technique;
         const int s = made.firstOfEye(c.path.edges);
-        techniqueFilm_->add(
-            {s, made.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted, made.merges});
+        techniqueFilm_->add({s, made.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted,
+                             made.merges, made.chains});
     }
 }
 

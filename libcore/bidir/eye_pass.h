@@ -1,20 +1,24 @@
-// The eye subpaths of an iteration, one per pixel: hits, picks, connections, merges.
+// The eye subpaths of an iteration, one per pixel: hits, picks, connections, merges, chains.
 #pragma once
 
 #include "libcore/bidir/light_pass.h"
 #include "libcore/bidir/photon_grid.h"
+#include "libcore/bidir/specular_chains.h"
 
 namespace lacuna {
 
 class EyePass {
   public:
-    /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged.
+    /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged; `chains`
+    /// may be null.
     EyePass(const RenderSetup& setup, const LightPass& lightPass, const LightPool& pool,
-            const PhotonGrid& photons, Delivery& delivery, const Workers& workers)
+            const PhotonGrid& photons, const SpecularChains* chains, Delivery& delivery,
+            const Workers& workers)
         : setup_(setup),
           lightPass_(lightPass),
           pool_(pool),
           photons_(photons),
+          chains_(chains),
           delivery_(delivery),
           workers_(workers) {}
 
@@ -37,6 +41,8 @@ class EyePass {
                TaskResult& result) const;
     void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
+    void chain(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Rng& rng,
+               Worker& worker, TaskResult& result) const;
     void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                 TaskResult& result) const;
     void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
@@ -46,6 +52,7 @@ class EyePass {
     const LightPass& lightPass_;
     const LightPool& pool_;
     const PhotonGrid& photons_;
+    const SpecularChains* chains_;
     Delivery& delivery_;
     const Workers& workers_;
 };

@@ -6,12 +6,25 @@
 
 namespace lacuna {
 
+namespace {
+
+std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
+    const Techniques& techniques = setup.techniques;
+    if (!techniques.connects || !techniques.chains) return nullptr;
+    auto chains = std::make_unique<const SpecularChains>(setup.walker);
+    return chains->empty() ? nullptr : std::move(chains);
+}
+
+}  // namespace
+
 BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techniques techniques,
                                  Method& method, const RenderSettings& settings,
                                  const ThreadPool& threads)
     : setup_(scene, camera, techniques, settings, threads),
       method_(&method),
-      workers_(threads, settings.limits.maxDepth) {}
+      workers_(threads, settings.limits.maxDepth),
+      chains_(chainsOf(setup_)),
+      eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), delivery_, workers_) {}
 
 Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,
                                  IterationStatistics& statistics, const std::atomic<bool>& cancel) {

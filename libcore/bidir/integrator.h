@@ -1,8 +1,9 @@
-// The one integrator: light paths -> pool -> eye paths -> connections, merges -> weights -> film. It knows
+// The one integrator: light paths -> pool -> eye paths -> connections, merges, chains -> weights -> film. It knows
 // no method by name.
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -68,7 +69,8 @@ class BidirIntegrator {
     LightPass lightPass_{setup_, delivery_, workers_};
     LightPool pool_;
     PhotonGrid photons_;
-    EyePass eyePass_{setup_, lightPass_, pool_, photons_, delivery_, workers_};
+    std::unique_ptr<const SpecularChains> chains_;  // null: the row or the scene has none
+    EyePass eyePass_;
     std::optional<double> footprint_;  // once a radius comes from it
 };
 

@@ -78,6 +78,9 @@ struct Techniques {
     bool connects = false;      ///< t >= 2, s >= 1 through select()
     bool splats = false;        ///< t = 1: light paths seen by the lens
     bool ownLightPath = false;  ///< every pixel traces a light subpath of its own
+    /// With connections, and where nothing is merged: specular chains, for paths that none of all these
+    /// makes.
+    bool chains = true;
 };
 
 class Method {

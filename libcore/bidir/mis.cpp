@@ -113,6 +113,7 @@ double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique m
 }  // namespace
 
 double misWeight(FullPath& path, const TechniqueCounts& counts, Technique made) {
+    if (made.chains) return 1.0;
     if (!counts.connections || counts.constants) {
         return weightBy(path, counts, made, CountsByKind(path, counts));
     }

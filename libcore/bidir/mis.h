@@ -18,12 +18,19 @@
 
 namespace lacuna {
 
-/// What made a path: the strategy t, or a merge of light's last vertex with that of t from the eye.
+/// What made a path: the strategy t; a merge of light's last vertex with that of t from the eye; or a
+/// specular chain from a light to t vertices from the eye, which no other technique makes
+/// (specular_chains.h).
 struct Technique {
     int t;
-    bool merges = false;
+    bool merges = false, chains = false;
 
     Technique(int t_, bool merges_ = false) : t(t_), merges(merges_) {}
+    static Technique chain(int t_) {
+        Technique technique(t_);
+        technique.chains = true;
+        return technique;
+    }
     /// s: the first vertex of the eye's part (merges: the one that both walks have).
     int firstOfEye(int edges) const { return edges + 1 - t; }
     bool operator==(const Technique&) const = default;

@@ -61,6 +61,7 @@ struct Worker {
     std::vector<OpenConnection> open;       // of the proposals, those that are seen
     std::vector<const Proposal*> openedBy;  // by open connection
     std::vector<std::uint32_t> photons;     // around an eye vertex: vertices of the pool
+    std::vector<PathVertex> chain;          // from a light to an eye vertex
     FullPath fullPath;
 };
 

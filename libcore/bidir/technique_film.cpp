@@ -75,8 +75,9 @@ void TechniqueFilm::add(const TechniqueSample& sample) {
     technique.unweighted[sample.pixel] += sample.unweighted;
     const float value = lacuna::mean(sample.weighted);
     technique.moments.now[sample.pixel] += value;
-    const TechniqueGroup group = sample.merged
-                                     ? TechniqueGroup::ofMerge(sample.order)
+    const TechniqueGroup group = sample.merged ? TechniqueGroup::ofMerge(sample.order)
+                                 : sample.chained
+                                     ? TechniqueGroup::ofChain(sample.order)
                                      : TechniqueGroup::of(sample.s, sample.t, sample.order);
     groups_[group.index()].now[sample.pixel] += value;
 }

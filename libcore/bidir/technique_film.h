@@ -15,7 +15,8 @@ struct TechniqueSample {
     int s, t, order;  ///< Connection::order of the eye's end; t = 1 has none
     std::uint32_t pixel;
     Rgb weighted, unweighted;
-    bool merged = false;  ///< at x_s, the last of t vertices from the eye
+    bool merged = false;   ///< at x_s, the last of t vertices from the eye
+    bool chained = false;  ///< by a specular chain, which ends at x_s
 };
 
 /// Summed over a block's iterations: --techniques.

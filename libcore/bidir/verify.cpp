@@ -41,9 +41,10 @@ class Products {
     }
 
     double weight() const {
-        const double own = made_.merges ? logMerge(split_) : logTerm(made_.t);
+        // A chain: it has no density, and the weight one if nothing else makes the path.
+        const double own = made_.chains ? 0.0 : made_.merges ? logMerge(split_) : logTerm(made_.t);
         if (own == kNever) return 0.0;
-        double sum = 0.0;
+        double sum = made_.chains ? 1.0 : 0.0;
         for (int i = 1; i <= k_ + 1; ++i) sum += std::exp(logTerm(i) - own);
         for (int i = 1; i < k_; ++i) sum += std::exp(logMerge(i) - own);
         return 1.0 / sum;
@@ -100,7 +101,7 @@ class Products {
     /// two ends, or the merged vertex, scatter smoothly; every other one did what its walk says.
     void setScatter(int i) {
         const auto v = std::size_t(i);
-        const bool end = i == split_ || (i == split_ - 1 && !made_.merges);
+        const bool end = i == split_ || (i == split_ - 1 && !made_.merges && !made_.chains);
         event_[v] = end ? ScatterEvent::Smooth : x(i).event;
         BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
         if (const WalkGuide* guide = walker_.guide(); guide && x(i).connectable()) {

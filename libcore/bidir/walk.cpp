@@ -37,6 +37,12 @@ double Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out)
     return setLightVertex(seen.point, out) ? seen.samples : 0.0;
 }
 
+bool Walker::placeLight(std::uint32_t light, double pmf, PathVertex& out) const {
+    LightPoint point = lights_.punctualPoint(light);
+    point.pdf = float(pmf);
+    return setLightVertex(point, out);
+}
+
 double Walker::seenSamples(const PathVertex& light, const PathVertex& eye) const {
     return lights_.seenSamples(light.light, viewpointOf(eye));
 }

@@ -69,6 +69,9 @@ class Walker final : public LightSampler {
     bool sampleLight(Rng& rng, PathVertex& out) const override;
     double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
     double seenSamples(const PathVertex& light, const PathVertex& eye) const override;
+    /// y_0 on a light without an extent, which is picked with this probability. False where it is
+    /// dark.
+    bool placeLight(std::uint32_t light, double pmf, PathVertex& out) const;
     /// What happens at a surface vertex: the BSDF's value, and the densities that the two walks have
     /// for it. `event`: of the pair (Bsdf::evaluate).
     BsdfEvaluation scattering(const PathVertex& v, const Vec3& toEye, const Vec3& toLight,

@@ -146,6 +146,16 @@ class Bsdf {
     bool connectable() const {
         return has(kDiffuse | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
     }
+    /// Whether it has delta events of this kind.
+    bool has(ScatterEvent event) const;
+    /// w: of what this eye sees, how much is of the lobes about ng.
+    float shareAboutNg(const Vec3& toEye) const;
+    /// Whether smooth transmission bends rays; those through a sheet go straight on.
+    bool bends() const { return !has(kThin); }
+    /// Index of refraction on a side; a sheet has the same on both.
+    float indexOn(bool front) const { return front || has(kThin) ? 1.0f : ior_; }
+    /// Transmitted over incident index for light that arrives from this side.
+    float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
     /// Share of the rays along `direction` (of any length) that go on straight as if nothing were there,
     /// a pane's; the same from both sides. What scatters is of the others. (theory.md, "Panes")
     float passing(const Vec3& direction) const;
@@ -215,6 +225,9 @@ class Bsdf {
     Pair aboutNg(const Cosines& c) const { return {ng_, c.eyeG, c.lightG, 1.0f}; }
 
     bool has(unsigned flags) const { return (flags_ & flags) != 0; }
+    bool hasDeltaLayers() const { return has(kLayers) && !has(kRoughLayers); }
+    bool hasDeltaGlass() const { return has(kGlass) && !has(kRoughGlass); }
+    bool hasDeltaClearcoat() const { return clearcoat_ > 0.0f && !(clearcoatAlpha_ > 0.0f); }
     bool isTilted() const { return (ns_.x != ng_.x) | (ns_.y != ng_.y) | (ns_.z != ng_.z); }
     /// Diffuse and nothing else: there are no lobes to turn about ng.
     bool isLambert() const { return has(kDiffuse) && has(kOneLobe); }
@@ -259,9 +272,6 @@ class Bsdf {
     Choice choose(float mu) const;
     Rgb layersReflectance(float cosine) const;
     float glass() const { return 1.0f - plastic_ - metal_; }
-    float indexOn(bool front) const { return front || has(kThin) ? 1.0f : ior_; }
-    /// Transmitted over incident index for light that arrives from this side.
-    float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
 
     /// What an event at smooth glass is: a pane's of the rays that stop.
     struct Interface {

@@ -240,12 +240,29 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
                    [&](const Pair& pair) { return deltaAbout(pair, c, event); });
 }
 
+float Bsdf::shareAboutNg(const Vec3& toEye) const {
+    const float eyeG = dot(toEye, ng_);
+    return isTilted() ? eyeShare(eyeG + dot(toEye, ns_ - ng_), eyeG) : 0.0f;
+}
+
+bool Bsdf::has(ScatterEvent event) const {
+    switch (event) {
+        case ScatterEvent::Smooth:
+            return false;
+        case ScatterEvent::DeltaReflection:
+            return hasDeltaLayers() || hasDeltaGlass() || hasDeltaClearcoat();
+        case ScatterEvent::DeltaTransmission:
+            return hasDeltaGlass();
+    }
+    return false;
+}
+
 /// The delta event about pair.n.
 BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const {
     BsdfEvaluation out;
-    const bool deltaLayers = has(kLayers) && !has(kRoughLayers);
-    const bool deltaGlass = has(kGlass) && !has(kRoughGlass);
-    const bool deltaClearcoat = clearcoat_ > 0.0f && !(clearcoatAlpha_ > 0.0f);
+    const bool deltaLayers = hasDeltaLayers();
+    const bool deltaGlass = hasDeltaGlass();
+    const bool deltaClearcoat = hasDeltaClearcoat();
     const float ce = pair.eyeAbs();
     const float cl = pair.lightAbs();
     const bool front = pair.eye > 0.0f;

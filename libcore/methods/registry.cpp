@@ -106,6 +106,11 @@ bool isConsistentOnly(const MethodRow& row, const Settings& settings) {
     return row.create(settings)->merging().where != Merges::Nowhere;
 }
 
+MethodRow asSet(MethodRow row, const Settings& settings) {
+    if (isConsistentOnly(row, settings)) row.techniques.chains = false;
+    return row;
+}
+
 std::uint64_t lightPathsOf(const Settings& settings) {
     if (!settings.contains(splatOptions().rows()[0].option.name)) return 0;
     return splatOptions().read(settings).lightPaths;

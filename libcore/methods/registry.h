@@ -69,6 +69,8 @@ Settings resolve(const MethodRow& row, std::span<const std::string> assignments,
                  const std::string& title = {});
 /// Whether pictures with these settings are consistent but not unbiased, because they merge.
 bool isConsistentOnly(const MethodRow& row, const Settings& settings);
+/// The row with the techniques that it has with these settings: where it merges, no chains.
+MethodRow asSet(MethodRow row, const Settings& settings);
 /// L, the light subpaths per iteration that splat; 0: one per pixel, or none splat.
 std::uint64_t lightPathsOf(const Settings& settings);
 

@@ -26,7 +26,11 @@ MethodRow vcmRow() {
         {.name = "vcm",
          .reference = "Georgiev12b",
          .summary = "vertex connection and merging: bpt, and eye vertices with photons around them",
-         .techniques = {.hits = true, .connects = true, .splats = true, .ownLightPath = true}},
+         .techniques = {.hits = true,
+                        .connects = true,
+                        .splats = true,
+                        .ownLightPath = true,
+                        .chains = false}},
         table, [](const Options& o) {
             return makeOwnLightPath({o.nextEvent, o.lamps, {Merges::Everywhere, o.radius}});
         });

@@ -13,8 +13,8 @@
 namespace lacuna {
 
 const char* name(RayKind kind) {
-    static constexpr const char* kNames[kRayKinds] = {"camera",     "eye",   "light",
-                                                      "connection", "splat", "cache"};
+    static constexpr const char* kNames[kRayKinds] = {"camera", "eye",   "light", "connection",
+                                                      "splat",  "cache", "chain"};
     return kNames[std::size_t(kind)];
 }
 

@@ -113,6 +113,10 @@ class Lights {
     /// Draws y_0. Not to be called when empty().
     LightPoint samplePoint(Rng& rng) const;
 
+    /// The one point of a light without an extent (point, spot, directional); its pdf is the pmf of
+    /// the light.
+    LightPoint punctualPoint(std::uint32_t light) const { return pointOn(light, 0.0, {}); }
+
     /// The same on a light that is picked by what `from` sees of it. Its pdf is still that of
     /// samplePoint; `samples` says how many of those points it stands for.
     struct SeenPoint {

@@ -72,6 +72,12 @@ bool mayTransmit(const Material& m) {
     return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
 }
 
+bool mayBeSpecular(const Material& m) {
+    return (mayBeMirror(m) && !m.without.has(LobeKind::Mirror)) ||
+           (mayRefractSmoothly(m) && !m.without.has(LobeKind::SmoothRefraction)) ||
+           (mayPassSmoothly(m) && !m.without.has(LobeKind::SmoothThinTransmission));
+}
+
 bool mayBePane(const Material& m) {
     return m.thin && !mayBeRough(m) && !m.metallicRoughnessTexture && m.metallic == 0.0f &&
            m.transmission == 1.0f && !m.transmissionTexture && m.clearcoat == 0.0f &&

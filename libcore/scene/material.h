@@ -92,6 +92,8 @@ bool mayBeDiffuse(const Material& material);
 /// Metal, or a dielectric layer over a diffuse base.
 bool mayReflect(const Material& material);
 bool mayTransmit(const Material& material);
+/// Some perfectly smooth reflection or transmission, of lobes that are not left out.
+bool mayBeSpecular(const Material& material);
 /// Thin smooth glass and nothing else, with or without a colour: a pane where it is flat.
 bool mayBePane(const Material& material);
 /// A diffuse base, black or not, under a dielectric layer.

@@ -12,7 +12,16 @@
 namespace lacuna {
 
 /// What a ray is traced for; rays are counted by kind.
-enum class RayKind : std::uint8_t { Camera, EyeWalk, LightWalk, Connection, Splat, Cache, Count };
+enum class RayKind : std::uint8_t {
+    Camera,
+    EyeWalk,
+    LightWalk,
+    Connection,
+    Splat,
+    Cache,
+    Chain,  ///< in search of chains of mirrors and smooth glass, and along them
+    Count
+};
 inline constexpr std::size_t kRayKinds = std::size_t(RayKind::Count);
 const char* name(RayKind kind);
 

@@ -61,6 +61,11 @@ class Scene {
         return surfaces_.blocking(pool);
     }
 
+    /// The triangles of materials that are `wanted`, likewise.
+    std::vector<std::array<Vec3, 3>> trianglesOf(bool (*wanted)(const Material&)) const {
+        return surfaces_.of(wanted);
+    }
+
     /// Closest surface along a ray that leaves `origin` (offset off its surface; ng zero: no
     /// surface).
     std::optional<Hit> trace(const Vec3& origin, const Vec3& ng, const Vec3& direction,
@@ -68,7 +73,9 @@ class Scene {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels that bsdfAt will
     /// look at.
     void surfaceAt(const Hit& hit, SurfacePoint& out) const { surfaces_.pointAt(hit, out); }
-    /// Both, one after the other.
+    /// The surface's shape at a hit.
+    SurfaceShape shapeAt(const Hit& hit) const { return surfaces_.shapeAt(hit); }
+    /// Closest surface and its point, one after the other.
     std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,
                                           RayKind kind, RayTally& tally) const;
     /// Whether two points see each other; each is moved off its surface towards the other.

@@ -82,6 +82,55 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
     }
 }
 
+bool Surfaces::hasNormalMap(const BakedMesh& mesh) const {
+    const Material& material = description_.materials[mesh.material];
+    return material.normalTexture && !mesh.uvsOf(material.normalTexture).empty();
+}
+
+SurfaceShape Surfaces::shapeAt(const Hit& hit) const {
+    const SceneObject& object = baked_.objects[hit.object];
+    const BakedMesh& mesh = baked_.meshes[object.mesh];
+    SurfacePoint point;
+    pointAt(hit, point);
+    SurfaceShape shape;
+    const std::array<Vec3, 3> corners = baked_.corners(object, hit.primitive);
+    for (std::size_t i = 0; i < 3; ++i) shape.corners[i] = Vec3d(corners[i]);
+    const auto& [a, b, c] = shape.corners;
+    shape.ng = normalize(cross(b - a, c - a));
+    if (dot(shape.ng, Vec3d(point.ng)) < 0.0) shape.ng = -shape.ng;
+    shape.normals.fill(shape.ng);
+    if (point.ns == point.ng) return shape;  // flat, or its normals say nothing
+    const double u(hit.u), v(hit.v);
+    if (hasNormalMap(mesh)) {
+        constexpr float kStep = 0x1p-10f;  // of the triangle: enough of a texel for floats to tell
+        const auto normalAt = [&](float du, float dv) {
+            Hit near = hit;
+            near.u += du;
+            near.v += dv;
+            SurfacePoint other;
+            pointAt(near, other);
+            return Vec3d(other.ns);
+        };
+        constexpr double kInverse = 0.5 / double(kStep);
+        const Vec3d byU = (normalAt(kStep, 0) - normalAt(-kStep, 0)) * kInverse;
+        const Vec3d byV = (normalAt(0, kStep) - normalAt(0, -kStep)) * kInverse;
+        shape.normals[0] = Vec3d(point.ns) - byU * u - byV * v;
+        shape.normals[1] = shape.normals[0] + byU;
+        shape.normals[2] = shape.normals[0] + byV;
+        return shape;
+    }
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3& n = mesh.normals[t[i]];
+        shape.normals[i] = Vec3d(object.instanced ? object.normalTo(n) : n);
+    }
+    const auto& [n0, n1, n2] = shape.normals;
+    if (dot(n0 + (n1 - n0) * u + (n2 - n0) * v, shape.ng) < 0.0) {
+        for (Vec3d& n : shape.normals) n = -n;
+    }
+    return shape;
+}
+
 /// What a plain mesh has not. `turned`: the interpolated normal was.
 void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                         SurfacePoint& s) const {
@@ -130,6 +179,16 @@ Vec3 Surfaces::bumped(const SurfacePoint& point, const TextureUse& map, float sc
     // Normals that lead below the surface, and those of triangles without tangents (NaN), say
     // nothing.
     return dot(unit, point.ng) > 1e-3f ? unit : point.ns;
+}
+
+std::vector<std::array<Vec3, 3>> Surfaces::of(bool (*wanted)(const Material&)) const {
+    std::vector<std::array<Vec3, 3>> all;
+    for (const SceneObject& object : baked_.objects) {
+        if (!wanted(materialOf(object))) continue;
+        const std::size_t triangles = baked_.meshes[object.mesh].triangles.size();
+        for (std::uint32_t k = 0; k < triangles; ++k) all.push_back(baked_.corners(object, k));
+    }
+    return all;
 }
 
 bool Surfaces::mostlyHoles(const TriangleAlpha& alpha) const {

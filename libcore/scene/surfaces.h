@@ -23,6 +23,14 @@ struct SurfacePoint {
     std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
 };
 
+/// How a surface lies and bends around a hit, in double: what differentials of rays are made of.
+struct SurfaceShape {
+    std::array<Vec3d, 3> corners;  ///< of the triangle, in the order of the hit's coordinates
+    Vec3d ng;                      ///< unit, as SurfacePoint's
+    /// By corner: the shading normal, on ng's side, is along what lies between them.
+    std::array<Vec3d, 3> normals;
+};
+
 /// The scene's triangles. Both references must outlive it.
 class Surfaces {
   public:
@@ -31,6 +39,10 @@ class Surfaces {
 
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
     void pointAt(const Hit& hit, SurfacePoint& out) const;
+
+    /// The shape at a hit. Where a normal map bends it, that is its tangent plane, by differences of
+    /// texels.
+    SurfaceShape shapeAt(const Hit& hit) const;
 
     /// Alpha's: the share of the rays that find the point there.
     float opacity(const Hit& hit) const;
@@ -42,10 +54,13 @@ class Surfaces {
 
     /// Scene::blockingTriangles.
     std::vector<std::array<Vec3, 3>> blocking(const ThreadPool& pool) const;
+    /// Scene::trianglesOf.
+    std::vector<std::array<Vec3, 3>> of(bool (*wanted)(const Material&)) const;
 
   private:
     struct MapAxes;
 
+    bool hasNormalMap(const BakedMesh& mesh) const;
     void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                   SurfacePoint& out) const;
     Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,

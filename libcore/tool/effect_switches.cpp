@@ -74,6 +74,8 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
         to.techniques->connects = false;
     } else if (name == "splats") {
         to.techniques->splats = false;
+    } else if (name == "chains") {
+        to.techniques->chains = false;
     }
     for (const LobeRow& row : lobeTable()) {
         if (name != row.name) continue;

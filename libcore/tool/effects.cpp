@@ -154,6 +154,16 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Ef
               !t.splats  ? method.name + " has no technique t = 1"
               : anyLight ? "light paths are seen by the lens"
                          : "no light");
+    const bool noSize = simulated({"point_lights", "spot_lights", "directional_lights"});
+    const bool specular = simulated({"mirror", "smooth_refraction", "smooth_thin_transmission"});
+    table.add("chains", t.connects && t.chains && noSize && specular,
+              !t.connects ? method.name + " connects no vertices"
+              : !t.chains ? method.name + " merges: its photons make those paths"
+              : !noSize   ? "no light without a size"
+              : specular
+                  ? "lights without a size that are seen over up to four mirrors or surfaces of "
+                    "smooth glass, where no connection can be; over more they are missing"
+                  : "no mirror and no smooth glass");
     for (Effect& e : table.rows) e.ofScene = false;
     return table.rows;
 }

@@ -173,6 +173,20 @@ inline PunctualLight directionalLight(Vec3d direction, Rgb irradiance) {
     return l;
 }
 
+// Textures ----------------------------------------------------------------------------------------
+
+/// 8 x 8 texels of a normal map.
+inline Texture waves() {
+    Texture t;
+    t.width = t.height = 8;
+    for (int i = 0; i < 64; ++i) {
+        const std::uint8_t texel[] = {std::uint8_t(128 + 20 * ((i * 7) % 5 - 2)),
+                                      std::uint8_t(128 + 20 * ((i * 11) % 5 - 2)), 250, 255};
+        t.rgba.insert(t.rgba.end(), texel, texel + 4);
+    }
+    return t;
+}
+
 // Scenes ------------------------------------------------------------------------------------------
 
 /// One pool for all scenes of a test run.

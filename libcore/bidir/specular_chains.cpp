@@ -1,0 +1,113 @@
+#include "libcore/bidir/specular_chains.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/bidir/absorption.h"
+
+namespace lacuna {
+
+namespace {
+
+/// y_1 .. y_{s-1}, behind y_0.
+void appendVertices(const Chain& chain, std::vector<PathVertex>& light) {
+    for (std::size_t i = chain.size(); i-- > 0;) {
+        const ChainVertex& from = chain[i];
+        PathVertex& v = light.emplace_back();
+        v.index = std::uint8_t(light.size() - 1);
+        v.position = from.point.position;
+        v.ng = from.point.ng;
+        v.toPrevious = from.toLight;
+        v.bsdf = from.bsdf;
+        v.event = from.event.event;
+        v.scatter = from.bsdf.evaluateDelta(from.toEye, from.toLight, v.event).f;
+        v.light = from.point.light;
+        v.lightUv = from.point.barycentric;
+        v.material = from.point.material;
+        v.object = from.point.object;
+    }
+}
+
+}  // namespace
+
+SpecularChains::SpecularChains(const Walker& walker) : walker_(walker), search_(walker.scene()) {
+    const Lights& lights = walker.lights();
+    std::vector<double> powers;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (isHittable(lights.kind(i))) continue;
+        lights_.push_back(i);
+        powers.push_back(lights.powerShare(i));
+    }
+    byPower_ = DiscreteDistribution(powers);
+}
+
+bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
+    const PathVertex& z = eye.back();
+    if (z.kind != VertexKind::Surface || !z.connectable()) return false;
+    // The light's edges end in mirrors or glass; those of the eye's part are joined by splats, the
+    // first one, or by connections with s >= 2.
+    const bool connects =
+        counts.connections && !(counts.constants && counts.constants->indirect == 0.0);
+    const auto smooth = [&](std::size_t i) {
+        return i == 0 || i + 1 == eye.size() || !isDelta(eye[i].event);
+    };
+    for (std::size_t i = 0; i + 1 < eye.size(); ++i) {
+        const bool joined = i == 0 ? counts.splats > 0.0 : connects;
+        if (joined && smooth(i) && smooth(i + 1)) return false;
+    }
+    return true;
+}
+
+bool SpecularChains::reach(const FullPath& path) {
+    if (path.hittable) return false;
+    std::size_t deltas = 0;
+    for (int i = 1; i < path.edges && path.delta[std::size_t(i)]; ++i) ++deltas;
+    return deltas > 0 && deltas <= Chain::kMost && int(deltas) + 1 < path.edges;
+}
+
+bool SpecularChains::visible(Subpath light, const PathVertex& z, RayTally& tally) const {
+    const Scene& scene = walker_.scene();
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const PathVertex& eye = i + 1 < light.size() ? light[i + 1] : z;
+        if (!connected(scene, light[i], eye, RayKind::Chain, tally)) return false;
+    }
+    return true;
+}
+
+std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally,
+                                             std::vector<PathVertex>& light, FullPath& path) const {
+    const PathVertex& z = eye.back();
+    const int left = walker_.limits().maxDepth - int(eye.size());
+    if (left < 1) return std::nullopt;
+    const std::size_t most = std::min(std::size_t(left), Chain::kMost);
+
+    const DiscreteDistribution::Pick pick = byPower_.sample(rng.uniformDouble());
+    PathVertex y0;
+    if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return std::nullopt;
+    const ChainStart start{z.position, z.ng, scatteringSide(z)};
+    const ChainTarget target{y0.position, y0.infinite()};
+    const std::optional<FoundChain> found = search_.draw(start, target, most, rng, tally);
+    if (!found) return std::nullopt;
+
+    const Chain& chain = found->chain;
+    light.assign(1, y0);
+    appendVertices(chain, light);
+    const Vec3 toChain(chain.firstDirection());
+    const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
+    const float profile = walker_.lights().profile(y0.light, y0.ng, -Vec3(chain.last().direction));
+    const std::span<const Rgb> absorption = walker_.scene().absorption();
+    Rgb through = transmittance(absorption, z, toChain, light.back());
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const Subpath rest = Subpath(light).first(light.size() - i);
+        through *= chain[i].through *
+                   transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
+    }
+    const double spread = found->spread * measureCosine(z, toChain) * double(profile);
+    const Rgb contribution = z.throughput * atEye.f * through * y0.throughput * float(spread);
+    if (isBlack(contribution) || !visible(light, z, tally)) return std::nullopt;
+
+    const double repeats = search_.reciprocalProbability(*found, start, target, most, rng, tally);
+    return closeChain(walker_, light, eye, atEye.f, contribution * float(repeats), path);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,46 @@
+// Paths that no edge can be joined on, from lights that no ray can hit: light, mirrors and smooth glass, a
+// surface, mirrors and smooth glass, the eye. They have a technique of their own and, since no other one
+// makes them, the weight one. (theory.md, "Specular chains")
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "libcore/base/discrete.h"
+#include "libcore/bidir/close.h"
+#include "libcore/specular/chain_search.h"
+
+namespace lacuna {
+
+class SpecularChains {
+  public:
+    /// `walker` must outlive it.
+    explicit SpecularChains(const Walker& walker);
+
+    /// The scene has no such light, or nothing that a chain could be made of.
+    bool empty() const { return byPower_.empty() || search_.empty(); }
+
+    /// Whether chains begin at an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2: none of the
+    /// techniques that `counts` tells of could join an edge of a path that goes on from there through
+    /// a chain.
+    static bool begin(Subpath eye, const TechniqueCounts& counts);
+
+    /// Whether a path that no edge can be joined on ends in a chain to its light that sample() finds.
+    static bool reach(const FullPath& path);
+
+    /// A path through one chain, mostly none: E of what is found is the light of all chains of up to
+    /// Chain::kMost vertices. Fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and
+    /// `path`.
+    std::optional<Closed> sample(Subpath eye, Rng& rng, RayTally& tally,
+                                 std::vector<PathVertex>& light, FullPath& path) const;
+
+  private:
+    bool visible(Subpath light, const PathVertex& z, RayTally& tally) const;
+
+    const Walker& walker_;
+    ChainSearch search_;
+    std::vector<std::uint32_t> lights_;  ///< without an extent
+    DiscreteDistribution byPower_;       ///< over lights_
+};
+
+}  // namespace lacuna

@@ -1,0 +1,186 @@
+#include "libcore/specular/chain.h"
+
+#include <cmath>
+
+namespace lacuna {
+
+namespace {
+
+/// Two unit vectors at a right angle to the unit `n` and to each other.
+std::array<Vec3d, 2> across(const Vec3d& n) {
+    const Vec3d other = std::fabs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d s = normalize(cross(n, other));
+    return {s, cross(n, s)};
+}
+
+/// A place in space, and its change by the two parameters.
+struct Moving {
+    Vec3d at;
+    std::array<Vec3d, 2> by;
+};
+
+/// Where the ray meets the plane of a triangle.
+Moving meet(const MovingRay& ray, const SurfaceShape& shape) {
+    const double towards = dot(ray.direction, shape.ng);
+    const double t = dot(shape.corners[0] - ray.origin, shape.ng) / towards;
+    Moving meeting{ray.origin + ray.direction * t, {}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d moved = ray.originBy[i] + ray.directionBy[i] * t;
+        meeting.by[i] = moved - ray.direction * (dot(moved, shape.ng) / towards);
+    }
+    return meeting;
+}
+
+/// The unit shading normal at a point of the triangle's plane.
+Moving normalAt(const SurfaceShape& shape, const Moving& point) {
+    const auto& [c0, c1, c2] = shape.corners;
+    const auto& [n0, n1, n2] = shape.normals;
+    const Vec3d u = c1 - c0, v = c2 - c0;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
+    const double inverse = 1.0 / (uu * vv - uv * uv);
+    // Barycentric coordinates are linear in the point.
+    const auto across = [&](const Vec3d& way) {
+        const double alongU = dot(way, u), alongV = dot(way, v);
+        return (n1 - n0) * ((vv * alongU - uv * alongV) * inverse) +
+               (n2 - n0) * ((uu * alongV - uv * alongU) * inverse);
+    };
+    const Vec3d sum = n0 + across(point.at - c0);
+    const double scale = 1.0 / length(sum);
+    Moving normal{sum * scale, {}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d moved = across(point.by[i]) * scale;
+        normal.by[i] = moved - normal.at * dot(normal.at, moved);
+    }
+    return normal;
+}
+
+}  // namespace
+
+MovingRay MovingRay::from(const Vec3d& origin, const Vec3d& direction) {
+    return {origin, direction, {}, across(direction)};
+}
+
+std::optional<Chain::Step> Chain::stepAt(const SurfaceShape& shape, const Bsdf& bsdf,
+                                         SpecularEvent event) const {
+    if (!bsdf.has(event.event)) return std::nullopt;
+    const Vec3d& d = last_.direction;
+    const double side = dot(d, shape.ng) < 0.0 ? 1.0 : -1.0;
+    const Moving at = meet(last_, shape);
+    Moving normal{shape.ng, {}};
+    if (!event.aboutNg) normal = normalAt(shape, at);
+    const Vec3d n = normal.at * side;
+    const double cosine = -dot(d, n);
+    if (!(cosine >= double(kMinCosine))) return std::nullopt;
+
+    Step step;
+    step.event = event;
+    step.out = {at.at, d, at.by, last_.directionBy};
+    const bool straight =
+        event.event == ScatterEvent::DeltaTransmission && !bsdf.bends();  // about either normal
+    const float aboutNg = bsdf.shareAboutNg(Vec3(-d));
+    if (!straight && (event.aboutNg ? aboutNg <= 0.0f : aboutNg >= 1.0f)) return std::nullopt;
+    const bool transmits = event.event == ScatterEvent::DeltaTransmission;
+    if (!straight) {
+        // d + q n with q a function of the cosine [Igehy99 eq 15, 18].
+        double scale = 1.0, q = 2.0 * cosine, qByCosine = 2.0;
+        if (transmits) {
+            scale = 1.0 / double(bsdf.relativeIndex(side > 0.0));
+            const double squared = 1.0 - scale * scale * (1.0 - cosine * cosine);
+            if (!(squared > 0.0)) return std::nullopt;  // total internal reflection
+            const double transmitted = std::sqrt(squared);
+            q = scale * cosine - transmitted;
+            qByCosine = scale - scale * scale * cosine / transmitted;
+        }
+        step.out.direction = d * scale + n * q;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Vec3d nBy = normal.by[i] * side;
+            const double cosineBy = -dot(last_.directionBy[i], n) - dot(d, nBy);
+            step.out.directionBy[i] =
+                last_.directionBy[i] * scale + n * (qByCosine * cosineBy) + nBy * q;
+        }
+        step.out.direction = normalize(step.out.direction);
+    }
+    if ((dot(step.out.direction, shape.ng) * side < 0.0) != transmits) return std::nullopt;
+
+    step.toEye = Vec3(-d);
+    step.toLight = Vec3(step.out.direction);
+    const BsdfEvaluation e = bsdf.evaluateDelta(step.toEye, step.toLight, event.event);
+    // f with its cosine over what a walk's generalised density has but for its pmf (bsdf.h).
+    double density = std::fabs(dot(step.out.direction, n));
+    if (transmits) {
+        const double index = double(bsdf.indexOn(dot(step.out.direction, shape.ng) > 0.0));
+        density = straight ? std::fabs(dot(d, shape.ng)) : density * index * index;
+    }
+    step.through = e.f * float(std::fabs(dot(step.out.direction, shape.ng)) / density);
+    if (isBlack(step.through)) return std::nullopt;
+    return step;
+}
+
+/// The vertex to be, without its event; false where it has none.
+bool Chain::arriveAt(const Scene& scene, const Hit& hit, SurfaceShape& shape) {
+    if (size_ == kMost) return false;
+    ChainVertex& v = vertices_[size_];
+    scene.surfaceAt(hit, v.point);
+    v.bsdf = scene.bsdfAt(v.point);
+    if (!v.bsdf.has(ScatterEvent::DeltaReflection) &&
+        !v.bsdf.has(ScatterEvent::DeltaTransmission)) {
+        return false;
+    }
+    shape = scene.shapeAt(hit);
+    return true;
+}
+
+void Chain::take(const Step& step) {
+    ChainVertex& v = vertices_[size_++];
+    v.event = step.event;
+    v.toEye = step.toEye;
+    v.toLight = step.toLight;
+    v.through = step.through;
+    v.point.position = Vec3(step.out.origin);
+    last_ = step.out;
+}
+
+bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event) {
+    SurfaceShape shape;
+    if (!arriveAt(scene, hit, shape)) return false;
+    const std::optional<Step> step = stepAt(shape, vertices_[size_].bsdf, event);
+    if (step) take(*step);
+    return step.has_value();
+}
+
+bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
+    SurfaceShape shape;
+    if (!arriveAt(scene, hit, shape)) return false;
+    const Bsdf& bsdf = vertices_[size_].bsdf;
+    const bool tilted = !(bsdf.ns() == bsdf.ng());
+    std::array<std::optional<Step>, 4> steps;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const ScatterEvent event :
+         {ScatterEvent::DeltaReflection, ScatterEvent::DeltaTransmission}) {
+        const bool twice = tilted && (event == ScatterEvent::DeltaReflection || bsdf.bends());
+        for (const bool aboutNg : {false, true}) {
+            if (aboutNg && !twice) continue;
+            steps[count] = stepAt(shape, bsdf, {event, aboutNg});
+            if (steps[count]) sum += double(mean(steps[count++]->through));
+        }
+    }
+    double left = u * sum;
+    for (std::size_t i = 0; i < count; ++i) {
+        left -= double(mean(steps[i]->through));
+        if (left >= 0.0 && i + 1 < count) continue;
+        take(*steps[i]);
+        return true;
+    }
+    return false;
+}
+
+bool Chain::sameEventsAs(const Chain& other) const {
+    if (size_ != other.size_) return false;
+    for (std::size_t i = 0; i < size_; ++i) {
+        if (!(vertices_[i].event == other.vertices_[i].event)) return false;
+    }
+    return true;
+}
+
+}  // namespace lacuna

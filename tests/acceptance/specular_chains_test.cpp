@@ -1,0 +1,203 @@
+// Light that no edge can be joined for: over mirrors and through smooth glass to what is seen over
+// mirrors and through smooth glass, from lamps without a size. (theory.md, "Specular chains")
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "libcore/bidir/verify.h"
+#include "libcore/material/fresnel.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+std::vector<std::string> rowsWithChains() {
+    std::vector<std::string> names;
+    for (const std::string& name : rowNames()) {
+        const MethodRow row = rowNamed(name);
+        const MethodRow set = asSet(row, resolve(row, {}));
+        if (set.techniques.connects && set.techniques.chains) names.push_back(name);
+    }
+    return names;
+}
+
+class SpecularChainsOf : public RowTest {};
+INSTANTIATE_TEST_SUITE_P(All, SpecularChainsOf, testing::ValuesIn(rowsWithChains()), ByParameter());
+
+/// How far a ray at an angle to the vertical, by its sine, comes to the side through slabs and air.
+struct Stack {
+    double air, glass, index;
+    double across(double sine) const {
+        const double inside = sine / index;
+        return air * sine / std::sqrt(1 - sine * sine) +
+               glass * inside / std::sqrt(1 - inside * inside);
+    }
+    /// The sine of the ray that comes that far.
+    double sineOf(double distance) const {
+        double low = 0, high = 1;
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (low + high);
+            (across(middle) < distance ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+    }
+};
+
+/// Both faces of a slab.
+double openOf(double sine) {
+    const double f = fresnelDielectric(std::sqrt(1 - sine * sine), 1.5);
+    return (1 - f) * (1 - f);
+}
+
+/// A lamp and a camera above a slab of glass, a floor below it.
+TEST_P(SpecularChainsOf, pointLightThroughSolidGlassSeenThroughSolidGlass) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(quad({-30, 0, 30}, {60, 0, 0}, {0, 0, -60}));
+    const auto clear = b.add(glass());
+    b.add(box({-30, 1, -30}, {30, 1.5f, 30}, clear));
+    const Vec3d lamp{0.2, 2.0, 0};
+    b.add(pointLight(lamp, Rgb(2.0f)));
+    b.add(lookAt({0.3, 1.8, 2}, {0, 0, 0.2}, 40));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 6;  // no reflections inside
+    shot.iterations = 400;
+    shot.lightPaths = 1024;
+    const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
+    const Vec3d from = Vec3d(camera.position()) + scene->centre();
+    const Stack toEye{from.y - 0.5, 0.5, 1.5}, toLamp{lamp.y - 0.5, 0.5, 1.5};
+    const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
+        const double eyeSine = std::hypot(d.x, d.z);
+        const double shift = toEye.across(eyeSine) / eyeSine;
+        const Vec3d point{from.x + d.x * shift, 0, from.z + d.z * shift};
+        const double distance = std::hypot(lamp.x - point.x, lamp.z - point.z);
+        const double sine = toLamp.sineOf(distance);
+        // The power of a ring of directions, on the ring of the floor that it comes to.
+        const double by = 1e-6;
+        const double ring = (toLamp.across(sine + by) - toLamp.across(sine - by)) / (2 * by);
+        const double cosine = std::sqrt(1 - sine * sine);
+        const double irradiance = 2 * openOf(sine) * sine / (cosine * distance * ring);
+        const double radiance = irradiance * openOf(eyeSine) * 0.6 / std::numbers::pi;
+        return Vec3d{radiance, radiance, radiance};
+    });
+    expectRadiance(render(*scene, row(), shot), exact, row().name + ", lamp and slab",
+                   Judge::BlocksAndMean);
+}
+
+/// A floor that a mirror shows the sun to, seen in another mirror: against the sun's image itself.
+TEST_P(SpecularChainsOf, sunInAMirrorSeenInAMirror) {
+    const auto stage = [](bool mirrored) {
+        SceneBuilder b;
+        b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
+        b.add(quad({-9, 0, -3}, {18, 0, 0}, {0, 9, 0}, b.add(mirror(Rgb(0.9f)))));
+        // A wall keeps the sun from the floor but for the mirror opposite.
+        b.add(quad({-1.5f, 0, 2}, {0, 3, 0}, {0, 0, -4}));
+        if (mirrored) b.add(quad({3, 0, 9}, {0, 9, 0}, {0, 0, -18}, b.add(mirror(Rgb(0.8f)))));
+        b.add(directionalLight({mirrored ? 1.0 : -1.0, -0.8, 0}, Rgb(mirrored ? 3.0f : 2.4f)));
+        b.add(lookAt({0, 0.6f, 3}, {0, 0.2f, -3}, 0.8));
+        return b.build();
+    };
+    Shot shot;
+    shot.iterations = 400;
+    shot.lightPaths = 1024;
+    shot.maxDepth = 3;
+    static const Picture image = render(*stage(false), rowNamed("pt"), shot);
+    shot.maxDepth = 4;
+    expectSame(render(*stage(true), row(), shot), image, row().name + ", sun in mirrors");
+}
+
+/// From its middle, light leaves a ball as if there were no glass: what is reflected inside comes back
+/// and is refracted out behind.
+TEST(SpecularChains, aBallAboutALampTakesNothingAway) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(quad({-30, 0, 30}, {60, 0, 0}, {0, 0, -60}));
+    const Vec3d lamp{0.1, 1.5, 0.2};
+    b.add(sphere(Vec3(lamp), 0.4f, 24, b.add(glass()), true));
+    b.add(pointLight(lamp, Rgb(2.0f)));
+    b.add(lookAt({0.3, 1.0, 3}, {0, 0, 0.2}, 25));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 6;
+    shot.iterations = 400;
+    const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
+    const Vec3d from = Vec3d(camera.position()) + scene->centre();
+    const double inside = std::pow(fresnelDielectric(1.0, 1.5), 4);  // beyond four vertices
+    const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
+        const Vec3d toLamp = lamp - (from - d * (from.y / d.y));
+        const double distance = length(toLamp);
+        const double irradiance = 2 * (toLamp.y / distance) / (distance * distance);
+        const double radiance = irradiance * (1 - inside) * 0.6 / std::numbers::pi;
+        return Vec3d{radiance, radiance, radiance};
+    });
+    expectRadiance(render(*scene, rowNamed("pt"), shot), exact, "pt, lamp in a ball",
+                   Judge::BlocksAndMean);
+}
+
+/// Where the camera sees a caustic itself, splats make it, and a path tracer by chains. Of things that
+/// hardly focus: where a caustic is sharp, few samples hold most of it.
+class Caustics : public testing::TestWithParam<LightChoice> {};
+INSTANTIATE_TEST_SUITE_P(All, Caustics,
+                         testing::Values(LightChoice::Point, LightChoice::Spot,
+                                         LightChoice::Directional),
+                         [](const auto& test) { return testName(nameOf(test.param)); });
+
+SceneBuilder specularStage(LightChoice light) {
+    SceneBuilder b;
+    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(
+        sphere({-0.7f, 0.5f, 0}, 0.4f, 24, b.add(colouredGlass({0.2f, 0.5f, 0.1f}, 1.05f)), true));
+    b.add(sphere({0.7f, 0.5f, 0.2f}, 0.35f, 12, b.add(mirror({0.9f, 0.6f, 0.3f})), true));
+    // A smooth coat over a colour, and a sheet that is thin and bent.
+    b.add(sphere({0, 0.4f, 0.7f}, 0.3f, 12, b.add(plastic({0.3f, 0.2f, 0.6f}, 0)), true));
+    b.add(sphere({0, 0.6f, -0.7f}, 0.4f, 12, b.add(pane({0.7f, 0.9f, 0.8f})), true));
+    lacuna::Material bumpy = glass(1.2f);
+    bumpy.normalTexture = b.add(waves());
+    bumpy.normalScale = 0.2f;
+    const auto tile = b.add(box({-0.4f, 1.5f, -0.4f}, {0.4f, 1.6f, 0.4f}, b.add(bumpy)),
+                            translation({0.2, 0, 0}) * rotation({1, 0, 1}, 20));
+    b.instance(tile, translation({-1, 0.2, 0.8}) * scaling({1.2, 0.8, -0.7}));
+    addLight(b, light);
+    b.add(lookAt({0.3, 1.6, 3}, {0, 0.2, 0}, 45));
+    return b;
+}
+
+TEST_P(Caustics, areTheSameByChainsAndBySplats) {
+    const auto scene = specularStage(GetParam()).build();
+    Shot shot;
+    shot.maxDepth = 6;  // chains are of four vertices at most
+    shot.iterations = 3000;
+    const Picture splats = render(*scene, rowNamed("bpt"), shot);
+    shot.seed = 2;
+    expectSame(render(*scene, rowNamed("pt"), shot), splats, nameOf(GetParam()) + ", caustics",
+               Judge::BlocksAndMean);
+}
+
+/// A chain's path has no other technique in any row: its weight by products is one.
+TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
+    const auto scene = specularStage(LightChoice::Point).build();
+    Shot shot = quickShot(150);
+    shot.maxDepth = 8;
+    std::atomic<int> chains{0};
+    std::optional<Render> run;
+    shot.observer = [&](const PathEvent& event) {
+        if (!event.technique.chains) return;
+        ++chains;
+        EXPECT_EQ(event.weight, 1.0);
+        EXPECT_EQ(misWeightByProducts(run->integrator().walker(), event.path, event.counts,
+                                      event.technique),
+                  1.0);
+        EXPECT_FALSE(event.path.hittable);
+    };
+    run.emplace(*scene, row(), shot);
+    run->run();
+    EXPECT_GT(chains, 50);
+}
+
+}  // namespace
+}  // namespace lacuna::test

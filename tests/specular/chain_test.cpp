@@ -1,0 +1,204 @@
+// Chains of mirrors and smooth glass: how they move with their first ray, and how many a search finds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "libcore/specular/chain_search.h"
+#include "tests/material/statistics.h"
+#include "tests/scene/scene_builder.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A ball of triangles, of few so that normals change much within each.
+Mesh ball(Vec3 centre, float radius, std::uint32_t material) {
+    constexpr int kColumns = 12, kRows = 6;
+    Mesh m;
+    m.material = material;
+    for (int j = 0; j <= kRows; ++j) {
+        for (int i = 0; i <= kColumns; ++i) {
+            const double phi = 2 * std::numbers::pi * i / kColumns;
+            const double theta = std::numbers::pi * j / kRows;
+            const Vec3 n(Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta),
+                               std::sin(theta) * std::sin(phi)});
+            m.positions.push_back(centre + n * radius);
+            m.normals.push_back(n);
+            m.uvs.push_back({float(i) / kColumns, float(j) / kRows});
+        }
+    }
+    const auto at = [](int j, int i) { return std::uint32_t(j * (kColumns + 1) + i); };
+    for (int j = 0; j < kRows; ++j) {
+        for (int i = 0; i < kColumns; ++i) {
+            m.triangles.push_back({at(j, i), at(j, i + 1), at(j + 1, i)});
+            m.triangles.push_back({at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)});
+        }
+    }
+    return m;
+}
+
+/// The same chain along another first ray: hits on the same triangles, wherever they are met.
+std::optional<Chain> again(const Scene& scene, const Chain& chain, const Vec3d& direction) {
+    RayTally tally;
+    Chain moved(MovingRay::from(chain.first().origin, direction));
+    while (moved.size() < chain.size()) {
+        const auto hit = scene.trace(Vec3(moved.last().origin), moved.lastNormal(),
+                                     Vec3(moved.last().direction), RayKind::Chain, tally);
+        if (!hit || !moved.extend(scene, *hit, chain[moved.size()].event)) return std::nullopt;
+        // The change of a shading normal jumps from triangle to triangle.
+        const SurfacePoint& p = moved[moved.size() - 1].point;
+        const SurfacePoint& q = chain[moved.size() - 1].point;
+        if (!(p.ng == q.ng)) return std::nullopt;
+    }
+    return moved;
+}
+
+/// Rays through the ball by random events: the change of where each leads against a difference, which
+/// may be another one for `kinks` of the comparisons.
+void expectDerivatives(const Scene& scene, double step, double tolerance, double kinks = 0) {
+    RayTally tally;
+    Rng rng(1, 0, StreamKind::User, 0);
+    int compared = 0, different = 0;
+    for (int n = 0; n < 3000; ++n) {
+        const Vec3d target{rng.uniform() * 1.6 - 0.8, rng.uniform() * 1.6 - 0.8, 0};
+        const Vec3d origin{0.1, 0.2, 3};
+        Chain chain(MovingRay::from(origin - scene.centre(), normalize(target - origin)));
+        const std::size_t wanted = 1 + rng.below(3);
+        while (chain.size() < wanted) {
+            const auto hit = scene.trace(Vec3(chain.last().origin), chain.lastNormal(),
+                                         Vec3(chain.last().direction), RayKind::Chain, tally);
+            if (!hit || !chain.extend(scene, *hit, rng.uniformDouble())) break;
+        }
+        if (chain.size() == 0) continue;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Vec3d turn = chain.first().directionBy[i] * step;
+            const Vec3d along = chain.firstDirection();
+            const auto more = again(scene, chain, normalize(along + turn));
+            const auto less = again(scene, chain, normalize(along - turn));
+            if (!more || !less) continue;
+            const auto compare = [&](const Vec3d& by, const Vec3d& a, const Vec3d& b) {
+                const Vec3d difference = (a - b) * (0.5 / step);
+                ++compared;
+                different += length(by - difference) < tolerance * (1 + length(by)) ? 0 : 1;
+            };
+            const MovingRay& last = chain.last();
+            compare(last.directionBy[i], more->last().direction, less->last().direction);
+            // The origin moves along the surface, and the difference along a chord of it.
+            compare(last.originBy[i], more->last().origin, less->last().origin);
+        }
+    }
+    EXPECT_GT(compared, 2000);
+    EXPECT_LE(different, kinks * compared);
+}
+
+TEST(Chain, movesAsItsDerivativesSay) {
+    SceneBuilder b;
+    b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f))));
+    expectDerivatives(*b.build(), 1e-8, 1e-4);
+}
+
+TEST(Chain, movesAsItsDerivativesSayInAnInstance) {
+    SceneBuilder b;
+    const auto mesh = b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f))),
+                            rotation({1, 2, 3}, 40) * scaling({1, 0.8, 1.2}));
+    b.instance(mesh, translation({9, 0, 0}));
+    expectDerivatives(*b.build(), 1e-8, 1e-4);
+}
+
+TEST(Chain, movesAsItsDerivativesSayUnderANormalMap) {
+    SceneBuilder b;
+    lacuna::Material bumpy = glass(1.4f);
+    bumpy.normalTexture = b.add(waves());
+    b.add(ball({0, 0, 0}, 1, b.add(bumpy)));
+    // Bilinear texels, in float.
+    expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
+}
+
+/// From the file's origin, which looks up.
+ChainStart floorOf(const Scene& scene) {
+    return {-Vec3(scene.centre()), {0, 1, 0}, {0, 1, 0}};
+}
+/// By its place in the file.
+ChainTarget lampAt(const Scene& scene, Vec3d position) {
+    return {Vec3(position - scene.centre())};
+}
+
+/// Each search finds one chain at most; what it is worth is one over its probability, and its mean
+/// therefore the number of chains.
+void expectChains(const Scene& scene, const ChainTarget& target, std::size_t most, double chains,
+                  int searches) {
+    const ChainSearch search(scene);
+    const ChainStart start = floorOf(scene);
+    RayTally tally;
+    Rng rng(2, 0, StreamKind::User, 0);
+    Moments worth;
+    for (int i = 0; i < searches; ++i) {
+        const auto found = search.draw(start, target, most, rng, tally);
+        worth.add(found ? search.reciprocalProbability(*found, start, target, most, rng, tally)
+                        : 0.0);
+    }
+    EXPECT_LT(std::fabs(worth.mean() - chains), 5 * worth.standardError())  // 6e-7 by chance
+        << worth.mean() << " +- " << worth.standardError();
+    EXPECT_LT(worth.standardError(), 0.1 * chains);
+}
+
+/// One image of the lamp in either mirror, and two of both, one for each order.
+TEST(ChainSearch, findsEachImageInTwoMirrorsOnce) {
+    SceneBuilder b;
+    const auto silver = b.add(mirror());
+    b.add(quad({-1, -5, 5}, {0, 0, -10}, {0, 10, 0}, silver));
+    b.add(quad({1, -5, -5}, {0, 0, 10}, {0, 10, 0}, silver));
+    const auto scene = b.build();
+    const ChainTarget lamp = lampAt(*scene, {0.3, 1.5, 0.2});
+    expectChains(*scene, lamp, 1, 2, 4000);
+    expectChains(*scene, lamp, 2, 4, 8000);
+}
+
+/// A slab between: straight through, and with two reflections inside it; and either of them as if its
+/// upper face were not there behind the last vertex, since searches do not ask for visibility.
+TEST(ChainSearch, findsTheWayThroughASlab) {
+    SceneBuilder b;
+    const auto clear = b.add(glass());
+    b.add(quad({-50, 1.2f, 50}, {100, 0, 0}, {0, 0, -100}, clear));
+    b.add(quad({-50, 1, -50}, {100, 0, 0}, {0, 0, 100},
+               clear));  // faces down, and there are no sides
+    const auto scene = b.build();
+    const ChainTarget lamp = lampAt(*scene, {0.5, 2.5, 0.1});
+    const ChainTarget sun{normalize(Vec3{0.3f, 0.8f, 0.2f}), true};
+    for (const ChainTarget& target : {lamp, sun}) {
+        expectChains(*scene, target, 3, 3, 6000);
+        expectChains(*scene, target, 4, 4, 60000);
+    }
+}
+
+/// A convex mirror shows a lamp once from anywhere.
+TEST(ChainSearch, findsTheImageInABall) {
+    SceneBuilder b;
+    b.add(ball({0, 2, 0}, 1, b.add(mirror())));
+    const auto scene = b.build();
+    expectChains(*scene, lampAt(*scene, {2, 2.5, 0.5}), 1, 1, 6000);
+}
+
+/// The spread of a plane mirror is that of the straight way to the image.
+TEST(ChainSearch, knowsTheDistanceToAnImage) {
+    SceneBuilder b;
+    b.add(quad({-1, -50, 50}, {0, 0, -100}, {0, 100, 0}, b.add(mirror())));
+    const auto scene = b.build();
+    const ChainSearch search(*scene);
+    const ChainStart start = floorOf(*scene);
+    const ChainTarget lamp = lampAt(*scene, {0.3, 1.5, 0.2});
+    const Vec3d to{-2.3, 1.5, 0.2};  // the lamp's image
+    RayTally tally;
+    Rng rng(3, 0, StreamKind::User, 0);
+    for (int i = 0; i < 100; ++i) {
+        const auto found = search.draw(start, lamp, 1, rng, tally);
+        if (!found) continue;
+        EXPECT_NEAR(found->spread * lengthSquared(to), 1.0, 1e-6);
+        EXPECT_LT(length(found->chain.firstDirection() - normalize(to)), 1e-6);
+        return;
+    }
+    FAIL() << "nothing found in 100 searches";
+}
+
+}  // namespace
+}  // namespace lacuna::test
