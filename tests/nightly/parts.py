@@ -92,11 +92,15 @@ def fuzz(options):
 
 
 def counted(output):
-    """What hostile/run.py said: how often what was done, and what was wrong."""
-    lines = output.splitlines()
-    done = [re.match(r" *(\d+)  (.+)", line) for line in lines]
-    wrong = [line for line, match in zip(lines, done) if not match and line and not re.match(r"\d+ wrong$", line)]
-    return [[match[2], int(match[1])] for match in done if match], wrong
+    """What hostile/run.py said: how often what was done, and what was wrong. Before that, renders speak."""
+    rows, wrong = [], []
+    for line in output.splitlines():
+        done = re.match(r" *(\d+)  (.+)", line)
+        if done:
+            rows.append([done[2], int(done[1])])
+        elif rows and not re.match(r"\d+ wrong$", line):
+            wrong.append(line)
+    return rows, wrong
 
 
 def hostile(options):

@@ -27,7 +27,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(parts.fuzzed("killed"), (0, 0, 0, []))
 
     def test_faults(self):
-        output = "    12  render: writes that fail\n     3  kills\nrender, write 4: left .lacuna-1.tmp\n1 wrong\n"
+        output = "part0.exr: 24 x 24 pixels\n    12  render: writes that fail\n     3  kills\nrender, write 4: left .lacuna-1.tmp\n1 wrong\n"
         self.assertEqual(parts.counted(output), ([["render: writes that fail", 12], ["kills", 3]],
                                                  ["render, write 4: left .lacuna-1.tmp"]))
 
