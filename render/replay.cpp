@@ -51,16 +51,19 @@ class Printer {
 
     void contribution(const PathEvent& e) {
         const int k = e.path.edges, t = e.technique.t;
-        double sum = 0.0;
+        const char* const made = e.technique.merges   ? "merged at i"
+                                 : e.technique.chains ? "chain to i"
+                                                      : "s";
+        double sum = e.technique.chains ? 1.0 : 0.0;
         for (int i = 1; i <= k + 1; ++i) sum += misWeight(e.path, e.counts, i);
         for (int i = 1; i < k; ++i) sum += misWeight(e.path, e.counts, {k + 1 - i, true});
         std::printf(
             "contribution %d: %s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products "
             "%.9g, "
             "sum over strategies %.9g)",
-            ++contributions_, e.technique.merges ? "merged at i" : "s", e.technique.firstOfEye(k),
-            t, double(e.contribution.r), double(e.contribution.g), double(e.contribution.b),
-            e.weight, misWeightByProducts(walker_, e.path, e.counts, e.technique), sum);
+            ++contributions_, made, e.technique.firstOfEye(k), t, double(e.contribution.r),
+            double(e.contribution.g), double(e.contribution.b), e.weight,
+            misWeightByProducts(walker_, e.path, e.counts, e.technique), sum);
         if (e.proposal) {
             std::printf(", selector weight %.9g, label %u", e.proposal->weight, e.proposal->label);
         }

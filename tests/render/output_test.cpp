@@ -134,7 +134,7 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
     const std::vector<std::string> header{
         "iteration",  "seconds",    "setup_seconds", "rays",     "mae",        "rmse",
         "mape",       "relmse",     "rays_camera",   "rays_eye", "rays_light", "rays_connection",
-        "rays_splat", "rays_cache", "phases"};
+        "rays_splat", "rays_cache", "rays_chain",    "phases"};
     ASSERT_GE(plain.size(), 3u);
     EXPECT_EQ(plain[0], header);
     EXPECT_EQ(plain[1][0], "1");
@@ -145,9 +145,9 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
         ASSERT_EQ(plain[i].size(), header.size());
         for (std::size_t c = 4; c < 8; ++c) EXPECT_EQ(plain[i][c], "");
         std::uint64_t rays = 0;
-        for (std::size_t c = 8; c < 14; ++c) rays += std::stoull(plain[i][c]);
+        for (std::size_t c = 8; c < 15; ++c) rays += std::stoull(plain[i][c]);
         EXPECT_EQ(rays, std::stoull(plain[i][3]));
-        EXPECT_NE(plain[i][14].find("eye paths="), std::string::npos) << plain[i][14];
+        EXPECT_NE(plain[i][15].find("eye paths="), std::string::npos) << plain[i][15];
         if (i + 1 < plain.size()) ++perDecade[int(std::floor(std::log10(std::stod(plain[i][1]))))];
         if (i > 1) {
             EXPECT_GT(std::stod(plain[i][1]), std::stod(plain[i - 1][1]));
