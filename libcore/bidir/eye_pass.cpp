@@ -7,8 +7,8 @@ namespace lacuna {
 
 namespace {
 constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
-/// Of the vertices that chains begin at, where that is every one, those that search: four times the
-/// searches of a path tracer's iteration would take three times as long as all the rest.
+/// Of the vertices that chains begin at, those that search where that is nearly every one: searches at
+/// all of them would take more than three times as long as the rest of the path.
 constexpr double kShareWithoutSplats = 0.25;
 
 /// Of a light subpath of s vertices with this eye subpath.
@@ -94,7 +94,6 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
     };
     TechniqueClock& clock = result.clock;
     clock.start();
-    Rng chains = setup_.sampler.stream(iteration.number, StreamKind::Chain, paths.sample.number);
     std::size_t next = 0;
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
@@ -113,12 +112,10 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
             merge(paths, eye, iteration, worker, result);
             clock.lap([&] { return TechniqueGroup::ofMerge(connectionOrder(eye)); });
         }
-        // Merges make those paths as well.
-        if (chains_ && iteration.counts.merges == Merges::Nowhere &&
-            SpecularChains::begin(eye, iteration.counts)) {
-            chain(paths, eye, iteration, chains, worker, result);
-            clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
-        }
+    }
+    // Merges make those paths as well.
+    if (chains_ && iteration.counts.merges == Merges::Nowhere) {
+        chain(paths, iteration, worker, result);
     }
 }
 
@@ -142,17 +139,23 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
     }
 }
 
-/// An eye subpath's last vertex with a light that no ray can hit, over mirrors and through smooth
-/// glass.
-void EyePass::chain(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Rng& rng,
-                    Worker& worker, TaskResult& result) const {
+/// The eye path's vertices with lights that no ray can hit, over mirrors and through smooth glass.
+void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                    TaskResult& result) const {
     const double share = iteration.counts.onlyDirect() ? kShareWithoutSplats : 1.0;
-    if (share < 1.0 && rng.uniformDouble() >= share) return;
-    const auto closed = chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
-    if (!closed) return;
-    delivery_.toOwnPixel(
-        {*closed, worker.fullPath, paths.sample, paths.pixel, 1.0 / share, nullptr},
-        iteration.counts, paths.value, result);
+    Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Chain, paths.sample.number);
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        const Subpath eye = paths.eye.first(t);
+        if (!SpecularChains::begin(eye, iteration.counts)) continue;
+        if (share < 1.0 && rng.uniformDouble() >= share) continue;
+        const auto closed = chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
+        if (closed) {
+            delivery_.toOwnPixel(
+                {*closed, worker.fullPath, paths.sample, paths.pixel, 1.0 / share, nullptr},
+                iteration.counts, paths.value, result);
+        }
+        result.clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
+    }
 }
 
 /// For all vertices of the path before the first one is connected: light vertices lie anywhere in

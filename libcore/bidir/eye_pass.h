@@ -41,8 +41,8 @@ class EyePass {
                TaskResult& result) const;
     void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
-    void chain(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Rng& rng,
-               Worker& worker, TaskResult& result) const;
+    void chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+               TaskResult& result) const;
     void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                 TaskResult& result) const;
     void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,

@@ -54,8 +54,11 @@ struct TechniqueCounts {
 
     /// Whether there are none but s = 0 and s = 1.
     bool onlyDirect() const {
-        return splats == 0.0 && merges == Merges::Nowhere &&
-               (!connections || (constants && constants->indirect == 0.0));
+        return splats == 0.0 && merges == Merges::Nowhere && !connectsIndirect();
+    }
+    /// Whether there are any of t >= 2, s >= 2.
+    bool connectsIndirect() const {
+        return connections && !(constants && constants->indirect == 0.0);
     }
 
     void connectThrough(const ConnectionDensity& density, const LightSampler& lights) {

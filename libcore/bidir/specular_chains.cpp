@@ -46,8 +46,7 @@ bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
     if (z.kind != VertexKind::Surface || !z.connectable()) return false;
     // The light's edges end in mirrors or glass; those of the eye's part are joined by splats, the
     // first one, or by connections with s >= 2.
-    const bool connects =
-        counts.connections && !(counts.constants && counts.constants->indirect == 0.0);
+    const bool connects = counts.connectsIndirect();
     const auto smooth = [&](std::size_t i) {
         return i == 0 || i + 1 == eye.size() || !isDelta(eye[i].event);
     };
@@ -84,9 +83,9 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     const DiscreteDistribution::Pick pick = byPower_.sample(rng.uniformDouble());
     PathVertex y0;
     if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return std::nullopt;
-    const ChainStart start{z.position, z.ng, scatteringSide(z)};
-    const ChainTarget target{y0.position, y0.infinite()};
-    const std::optional<FoundChain> found = search_.draw(start, target, most, rng, tally);
+    const ChainQuery query{
+        {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
+    const std::optional<FoundChain> found = search_.draw(query, rng, tally);
     if (!found) return std::nullopt;
 
     const Chain& chain = found->chain;
@@ -106,7 +105,7 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     const Rgb contribution = z.throughput * atEye.f * through * y0.throughput * float(spread);
     if (isBlack(contribution) || !visible(light, z, tally)) return std::nullopt;
 
-    const double repeats = search_.reciprocalProbability(*found, start, target, most, rng, tally);
+    const double repeats = search_.reciprocalProbability(*found, query, rng, tally);
     return closeChain(walker_, light, eye, atEye.f, contribution * float(repeats), path);
 }
 

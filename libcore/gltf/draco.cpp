@@ -6,13 +6,12 @@
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 #include <draco/mesh/mesh.h>
-#include <tbb/parallel_for.h>
 
-#include <exception>
 #include <limits>
 #include <utility>
 
 #include "libcore/gltf/component_type.h"
+#include "libcore/gltf/in_parallel.h"
 
 // Draco 1.5.5 believes how many flags help to predict texture coordinates: a stream of a few bytes may
 // ask for 2^31, which take seconds and 256 MB for each attribute. Here is its own code with a bound: one
@@ -86,7 +85,6 @@ struct PackedPrimitive {
     std::uint64_t mostPoints = 0, mostFaces = 0;  ///< what the accessors have room for
     std::size_t points = 0, faces = 0;            ///< what the stream has
     Bytes plain;
-    std::exception_ptr error;
 };
 
 /// Draco's decoder, stopped before it allocates what the stream claims but the accessors do not say, or
@@ -441,17 +439,8 @@ void unpackDraco(Document& document, Warnings& warnings) {
             packed.push_back(readPackedPrimitive(document, m, p, primitive, (*extensions)[kDraco]));
         }
     }
-    tbb::parallel_for(std::size_t(0), packed.size(), [&](std::size_t i) {
-        try {
-            unpack(document, packed[i]);
-        } catch (...) {
-            packed[i].error = std::current_exception();
-        }
-    });
-    for (PackedPrimitive& entry : packed) {
-        if (entry.error) std::rethrow_exception(entry.error);
-        makePlain(document, entry, warnings);
-    }
+    inParallel(packed, [&](PackedPrimitive& entry) { unpack(document, entry); });
+    for (PackedPrimitive& entry : packed) makePlain(document, entry, warnings);
 }
 
 }  // namespace lacuna::gltf

@@ -1,16 +1,15 @@
 #include "libcore/gltf/image.h"
 
 #include <stb/stb_image.h>
-#include <tbb/parallel_for.h>
 #include <webp/decode.h>
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "libcore/gltf/in_parallel.h"
 #include "libcore/gltf/limits.h"
 
 namespace lacuna::gltf {
@@ -25,7 +24,6 @@ struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
     int uses = 0;  ///< textures still to be made of it
-    std::exception_ptr error;
 };
 
 /// The coded bytes of image `index`: a checked buffer view, a data URI or an external file.
@@ -231,16 +229,7 @@ std::vector<Texture> TextureTable::decode(Document& document) const {
                std::to_string(total), "scale the images down");
     }
 
-    tbb::parallel_for(std::size_t(0), pictures.size(), [&](std::size_t i) {
-        try {
-            decodePicture(document, pictures[i]);
-        } catch (...) {
-            pictures[i].error = std::current_exception();
-        }
-    });
-    for (const Picture& picture : pictures) {
-        if (picture.error) std::rethrow_exception(picture.error);
-    }
+    inParallel(pictures, [&](Picture& picture) { decodePicture(document, picture); });
 
     std::vector<Texture> textures;
     for (const Key& key : keys_) {

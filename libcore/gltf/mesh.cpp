@@ -1,15 +1,13 @@
 #include "libcore/gltf/mesh.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <map>
 
 #include "libcore/gltf/accessor.h"
+#include "libcore/gltf/in_parallel.h"
 #include "libcore/gltf/limits.h"
 
 namespace lacuna::gltf {
@@ -24,7 +22,6 @@ struct Task {
     Influences influences;
     std::size_t flatTriangles = 0, zeroNormals = 0;
     bool skippedMode = false, leftOver = false;
-    std::exception_ptr error;
 
     std::string place() const {
         return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
@@ -342,20 +339,13 @@ std::size_t dropFlatTriangles(Mesh& mesh) {
 
 MeshTable readMeshes(const Document& document, const std::vector<bool>& used, Warnings& warnings) {
     std::vector<Task> tasks = planTasks(document, used);
-    tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
-        if (tasks[i].skippedMode) return;
-        try {
-            readPrimitive(document, tasks[i]);
-        } catch (...) {
-            tasks[i].error = std::current_exception();
-        }
+    inParallel(tasks, [&](Task& task) {
+        if (!task.skippedMode) readPrimitive(document, task);
     });
 
     MeshTable table;
     table.ofPrimitive.resize(document.model.meshes.size());
     for (Task& task : tasks) {
-        // Which thread met an error first must not decide which one the user sees.
-        if (task.error) std::rethrow_exception(task.error);
         warnAbout(document, task, warnings);
         auto& ofPrimitive = table.ofPrimitive[task.mesh];
         if (task.result.triangles.empty()) {

@@ -1,11 +1,11 @@
 #include "libcore/gltf/meshopt.h"
 
 #include <meshoptimizer.h>
-#include <tbb/parallel_for.h>
 
 #include <array>
-#include <exception>
 #include <utility>
+
+#include "libcore/gltf/in_parallel.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -72,7 +72,6 @@ struct PackedView {
     const Codec* codec = nullptr;
     const Filter* filter = nullptr;
     Bytes plain;
-    std::exception_ptr error;
 };
 
 /// The entry of `table` that `name` is the `member` of.
@@ -156,15 +155,8 @@ void unpackMeshopt(Document& document) {
         if (extensions == (*views)[i].end() || !extensions->contains(kMeshopt)) continue;
         packed.push_back(readPackedView(document, i, (*extensions)[kMeshopt]));
     }
-    tbb::parallel_for(std::size_t(0), packed.size(), [&](std::size_t i) {
-        try {
-            decode(document, packed[i]);
-        } catch (...) {
-            packed[i].error = std::current_exception();
-        }
-    });
+    inParallel(packed, [&](PackedView& entry) { decode(document, entry); });
     for (PackedView& entry : packed) {
-        if (entry.error) std::rethrow_exception(entry.error);
         json& view = (*views)[entry.view];
         view["byteLength"] = entry.plain.size;
         view["byteOffset"] = 0;

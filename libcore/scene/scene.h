@@ -73,8 +73,10 @@ class Scene {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels that bsdfAt will
     /// look at.
     void surfaceAt(const Hit& hit, SurfacePoint& out) const { surfaces_.pointAt(hit, out); }
-    /// The surface's shape at a hit.
-    SurfaceShape shapeAt(const Hit& hit) const { return surfaces_.shapeAt(hit); }
+    /// The surface's shape at a hit, whose point is `point`.
+    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point) const {
+        return surfaces_.shapeAt(hit, point);
+    }
     /// Closest surface and its point, one after the other.
     std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,
                                           RayKind kind, RayTally& tally) const;

@@ -87,11 +87,9 @@ bool Surfaces::hasNormalMap(const BakedMesh& mesh) const {
     return material.normalTexture && !mesh.uvsOf(material.normalTexture).empty();
 }
 
-SurfaceShape Surfaces::shapeAt(const Hit& hit) const {
+SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point) const {
     const SceneObject& object = baked_.objects[hit.object];
     const BakedMesh& mesh = baked_.meshes[object.mesh];
-    SurfacePoint point;
-    pointAt(hit, point);
     SurfaceShape shape;
     const std::array<Vec3, 3> corners = baked_.corners(object, hit.primitive);
     for (std::size_t i = 0; i < 3; ++i) shape.corners[i] = Vec3d(corners[i]);
@@ -146,9 +144,9 @@ void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool
         };
         s.color = color(t[0]) * w + color(t[1]) * hit.u + color(t[2]) * hit.v;
     }
-    const Material& material = description_.materials[mesh.material];
-    const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
-    if (material.normalTexture && !uvs.empty()) {
+    if (hasNormalMap(mesh)) {
+        const Material& material = description_.materials[mesh.material];
+        const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
         MapAxes axes = MapAxes::byCoordinates(corners, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
         if (!mesh.tangents.empty()) {
             Vec3 right = mesh.tangentAt(t, hit.u, hit.v);

@@ -40,9 +40,9 @@ class Surfaces {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
     void pointAt(const Hit& hit, SurfacePoint& out) const;
 
-    /// The shape at a hit. Where a normal map bends it, that is its tangent plane, by differences of
+    /// The shape at a hit, whose point is `point`. Where a normal map bends it, that is its tangent plane, by differences of
     /// texels.
-    SurfaceShape shapeAt(const Hit& hit) const;
+    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point) const;
 
     /// Alpha's: the share of the rays that find the point there.
     float opacity(const Hit& hit) const;

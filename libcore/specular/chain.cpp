@@ -126,7 +126,7 @@ bool Chain::arriveAt(const Scene& scene, const Hit& hit, SurfaceShape& shape) {
         !v.bsdf.has(ScatterEvent::DeltaTransmission)) {
         return false;
     }
-    shape = scene.shapeAt(hit);
+    shape = scene.shapeAt(hit, v.point);
     return true;
 }
 

@@ -1,5 +1,6 @@
 #include "libcore/specular/chain_search.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacuna {
@@ -12,18 +13,19 @@ constexpr double kAccepted = 1e-6;     // where texels of a normal map end the d
 constexpr double kSame = 1e-5;         // two chains, by the miss that would lie between them
 constexpr double kShortestStep = 0.1;  // of a full one
 
+double determinantOf(const Jacobian& j) {
+    return j[0][0] * j[1][1] - j[0][1] * j[1][0];
+}
+
 /// By how much the last ray misses the target: the difference of two unit directions, and of it the
 /// two coordinates across the target's, by each parameter.
 struct Miss {
     Vec3d by;
     std::array<double, 2> across;
-    std::array<std::array<double, 2>, 2> acrossBy;  // [coordinate][parameter]
-    double distance;                                // to the target; 1 at infinity
+    Jacobian acrossBy;
+    double distance;  // to the target; 1 at infinity
 
     double size() const { return length(by); }
-    double determinant() const {
-        return acrossBy[0][0] * acrossBy[1][1] - acrossBy[0][1] * acrossBy[1][0];
-    }
 };
 
 Miss missOf(const MovingRay& ray, const ChainTarget& target) {
@@ -45,7 +47,7 @@ Miss missOf(const MovingRay& ray, const ChainTarget& target) {
 
 /// Newton's step: the angles that would take the miss away; at most a radian.
 std::optional<std::array<double, 2>> stepOf(const Miss& miss) {
-    const double determinant = miss.determinant();
+    const double determinant = determinantOf(miss.acrossBy);
     if (!(std::fabs(determinant) > 0.0)) return std::nullopt;
     const auto& [a, b] = miss.acrossBy;
     std::array<double, 2> step = {(b[1] * miss.across[0] - a[1] * miss.across[1]) / -determinant,
@@ -56,13 +58,10 @@ std::optional<std::array<double, 2>> stepOf(const Miss& miss) {
     return step;
 }
 
-/// Whether two searches for the same target, of the same events, found the same chain. Two solutions that lie close
-/// together, at a fold of a caustic, miss with opposite signs of the determinant.
+/// Whether two searches for the same target, of the same events, found the same chain. Two solutions
+/// that lie close together, at a fold of a caustic, have determinants of opposite signs.
 bool same(const FoundChain& a, const FoundChain& b) {
-    const auto determinant = [](const FoundChain& f) {
-        return f.missBy[0][0] * f.missBy[1][1] - f.missBy[0][1] * f.missBy[1][0];
-    };
-    if ((determinant(a) > 0.0) != (determinant(b) > 0.0)) return false;
+    if ((determinantOf(a.missBy) > 0.0) != (determinantOf(b.missBy) > 0.0)) return false;
     const Vec3d apart = b.chain.firstDirection() - a.chain.firstDirection();
     const auto& axes = a.chain.first().directionBy;
     const double u = dot(apart, axes[0]), v = dot(apart, axes[1]);
@@ -83,8 +82,9 @@ std::optional<Hit> ChainSearch::next(const ChainStart& start, const Chain& chain
 /// A third of the rays each: straight to the light, since glass before it turns rays a little; to the
 /// surfaces where chains may begin, wherever they are; and to what the start sees, so that what is near
 /// is found as well.
-Vec3d ChainSearch::seedDirection(const ChainStart& start, const ChainTarget& target,
-                                 Rng& rng) const {
+Vec3d ChainSearch::seedDirection(const ChainQuery& query, Rng& rng) const {
+    const ChainStart& start = query.start;
+    const ChainTarget& target = query.target;
     const std::uint32_t way = rng.below(3);
     if (way == 0) {
         return target.infinite ? Vec3d(target.position)
@@ -102,13 +102,13 @@ Vec3d ChainSearch::seedDirection(const ChainStart& start, const ChainTarget& tar
 
 /// A ray that scatters by the events' shares, from where it leads to specular surfaces. It may end at
 /// any vertex, and more seldom where another one follows, which then stands before the light.
-std::optional<Chain> ChainSearch::seed(const ChainStart& start, const ChainTarget& target,
-                                       std::size_t most, Rng& rng, RayTally& tally) const {
+std::optional<Chain> ChainSearch::seed(const ChainQuery& query, Rng& rng, RayTally& tally) const {
+    const ChainStart& start = query.start;
     constexpr float kEndsBefore = 0.1f;
-    const Vec3d direction = seedDirection(start, target, rng);
+    const Vec3d direction = seedDirection(query, rng);
     if (!(lengthSquared(direction) > 0.0)) return std::nullopt;
     Chain chain(MovingRay::from(Vec3d(start.position), direction));
-    while (chain.size() < most) {
+    while (chain.size() < query.most) {
         const std::optional<Hit> hit = next(start, chain, tally);
         if (!hit) break;
         if (chain.size() > 0 && rng.uniform() < kEndsBefore) break;
@@ -129,10 +129,10 @@ std::optional<Chain> ChainSearch::retrace(const ChainStart& start, const Vec3d& 
     return chain;
 }
 
-std::optional<FoundChain> ChainSearch::solve(const ChainStart& start, const ChainTarget& target,
-                                             const Chain& seed, RayTally& tally) const {
+std::optional<FoundChain> ChainSearch::solve(const ChainQuery& query, const Chain& seed,
+                                             RayTally& tally) const {
     Chain chain = seed;
-    Miss miss = missOf(chain.last(), target);
+    Miss miss = missOf(chain.last(), query.target);
     double scale = 1.0;
     for (int i = 0; i < kMostSteps && miss.size() > kConverged && scale > kShortestStep; ++i) {
         const auto step = stepOf(miss);
@@ -141,9 +141,9 @@ std::optional<FoundChain> ChainSearch::solve(const ChainStart& start, const Chai
         const Vec3d direction =
             normalize(first.direction + first.directionBy[0] * ((*step)[0] * scale) +
                       first.directionBy[1] * ((*step)[1] * scale));
-        const std::optional<Chain> moved = retrace(start, direction, chain, tally);
+        const std::optional<Chain> moved = retrace(query.start, direction, chain, tally);
         if (moved) {
-            const Miss now = missOf(moved->last(), target);
+            const Miss now = missOf(moved->last(), query.target);
             if (now.size() < miss.size()) {
                 chain = *moved;
                 miss = now;
@@ -154,29 +154,28 @@ std::optional<FoundChain> ChainSearch::solve(const ChainStart& start, const Chai
         }
         scale *= 0.5;
     }
-    const double determinant = std::fabs(miss.determinant());
+    const double determinant = std::fabs(determinantOf(miss.acrossBy));
     if (!(miss.size() < kAccepted) || !(determinant > 0.0)) return std::nullopt;
     return FoundChain{chain, 1.0 / (determinant * miss.distance * miss.distance), miss.acrossBy};
 }
 
-std::optional<FoundChain> ChainSearch::draw(const ChainStart& start, const ChainTarget& target,
-                                            std::size_t most, Rng& rng, RayTally& tally) const {
-    const std::optional<Chain> from = seed(start, target, most, rng, tally);
-    return from ? solve(start, target, *from, tally) : std::nullopt;
+std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query, Rng& rng,
+                                            RayTally& tally) const {
+    const std::optional<Chain> from = seed(query, rng, tally);
+    return from ? solve(query, *from, tally) : std::nullopt;
 }
 
-double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainStart& start,
-                                          const ChainTarget& target, std::size_t most, Rng& rng,
-                                          RayTally& tally) const {
+double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
+                                          Rng& rng, RayTally& tally) const {
     // 1 / p = sum over n >= 0 of (1 - p)^n: how often n searches in a row find something else. From
     // kAll on a roulette at each doubling, so that no single estimate takes minutes.
     constexpr std::uint64_t kAll = 1024;
     double sum = 1.0, worth = 1.0;
     for (std::uint64_t n = 1;; ++n) {
-        const std::optional<Chain> from = seed(start, target, most, rng, tally);
+        const std::optional<Chain> from = seed(query, rng, tally);
         // Newton's method keeps the events.
         if (from && from->sameEventsAs(found.chain)) {
-            const std::optional<FoundChain> again = solve(start, target, *from, tally);
+            const std::optional<FoundChain> again = solve(query, *from, tally);
             if (again && same(found, *again)) return sum;
         }
         if (n >= kAll && (n & (n - 1)) == 0) {

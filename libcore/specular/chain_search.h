@@ -24,6 +24,16 @@ struct ChainTarget {
     bool infinite = false;
 };
 
+/// What is searched for.
+struct ChainQuery {
+    ChainStart start;
+    ChainTarget target;
+    std::size_t most;  ///< vertices
+};
+
+/// Changes of two coordinates (rows) with two parameters.
+using Jacobian = std::array<std::array<double, 2>, 2>;
+
 /// A chain that meets its target.
 struct FoundChain {
     Chain chain;
@@ -31,7 +41,7 @@ struct FoundChain {
     /// what leaves the chain). What the light's intensity (irradiance) is multiplied by.
     double spread;
     /// How what misses the target changes with the first ray's two angles.
-    std::array<std::array<double, 2>, 2> missBy;
+    Jacobian missBy;
 };
 
 class ChainSearch {
@@ -42,23 +52,20 @@ class ChainSearch {
     /// Nothing in the scene that a chain could begin at.
     bool empty() const { return triangles_.empty(); }
 
-    /// One search from a random ray, for a chain of at most `most` vertices; empty where it finds none.
+    /// One search from a random ray; empty where it finds no chain.
     /// Whether the chain sees its start and the light is for the caller to ask.
-    std::optional<FoundChain> draw(const ChainStart& start, const ChainTarget& target,
-                                   std::size_t most, Rng& rng, RayTally& tally) const;
+    std::optional<FoundChain> draw(const ChainQuery& query, Rng& rng, RayTally& tally) const;
 
     /// An estimate of one over the probability that draw() finds `found`, without bias. It has no
     /// bound; the mean number of searches is at most that number.
-    double reciprocalProbability(const FoundChain& found, const ChainStart& start,
-                                 const ChainTarget& target, std::size_t most, Rng& rng,
+    double reciprocalProbability(const FoundChain& found, const ChainQuery& query, Rng& rng,
                                  RayTally& tally) const;
 
   private:
-    Vec3d seedDirection(const ChainStart& start, const ChainTarget& target, Rng& rng) const;
-    std::optional<Chain> seed(const ChainStart& start, const ChainTarget& target, std::size_t most,
-                              Rng& rng, RayTally& tally) const;
-    std::optional<FoundChain> solve(const ChainStart& start, const ChainTarget& target,
-                                    const Chain& seed, RayTally& tally) const;
+    Vec3d seedDirection(const ChainQuery& query, Rng& rng) const;
+    std::optional<Chain> seed(const ChainQuery& query, Rng& rng, RayTally& tally) const;
+    std::optional<FoundChain> solve(const ChainQuery& query, const Chain& seed,
+                                    RayTally& tally) const;
     std::optional<Chain> retrace(const ChainStart& start, const Vec3d& direction,
                                  const Chain& events, RayTally& tally) const;
     std::optional<Hit> next(const ChainStart& start, const Chain& chain, RayTally& tally) const;

@@ -128,14 +128,13 @@ ChainTarget lampAt(const Scene& scene, Vec3d position) {
 void expectChains(const Scene& scene, const ChainTarget& target, std::size_t most, double chains,
                   int searches) {
     const ChainSearch search(scene);
-    const ChainStart start = floorOf(scene);
+    const ChainQuery query{floorOf(scene), target, most};
     RayTally tally;
     Rng rng(2, 0, StreamKind::User, 0);
     Moments worth;
     for (int i = 0; i < searches; ++i) {
-        const auto found = search.draw(start, target, most, rng, tally);
-        worth.add(found ? search.reciprocalProbability(*found, start, target, most, rng, tally)
-                        : 0.0);
+        const auto found = search.draw(query, rng, tally);
+        worth.add(found ? search.reciprocalProbability(*found, query, rng, tally) : 0.0);
     }
     EXPECT_LT(std::fabs(worth.mean() - chains), 5 * worth.standardError())  // 6e-7 by chance
         << worth.mean() << " +- " << worth.standardError();
@@ -191,7 +190,7 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
     RayTally tally;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 100; ++i) {
-        const auto found = search.draw(start, lamp, 1, rng, tally);
+        const auto found = search.draw({start, lamp, 1}, rng, tally);
         if (!found) continue;
         EXPECT_NEAR(found->spread * lengthSquared(to), 1.0, 1e-6);
         EXPECT_LT(length(found->chain.firstDirection() - normalize(to)), 1e-6);
