@@ -65,7 +65,7 @@ struct PathVertex {
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
-static_assert(sizeof(PathVertex) == 208);  // pools hold millions of them
+static_assert(sizeof(PathVertex) == 240);  // pools hold millions of them
 
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
 /// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either

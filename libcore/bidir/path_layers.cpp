@@ -134,6 +134,7 @@ void PathLayers::addExpressions(const Scene& scene, std::span<const LayerExpress
                                        {{Reflection, Scattering::Diffuse, known},
                                         {Reflection, Scattering::Glossy, known},
                                         {Reflection, Scattering::Singular, known},
+                                        {Transmission, Scattering::Diffuse, known},
                                         {Transmission, Scattering::Glossy, known},
                                         {Transmission, Scattering::Singular, known}});
             letterAt(alphabet.scattering.size());  // the last of them fits as well
@@ -171,7 +172,8 @@ inline PathLayers::Scattered PathLayers::scatteredAt(const FullPath& path, int i
     if (v.bsdf.transmits()) {
         const Directions to(path, i);
         if ((dot(to.toEye, v.ng) > 0.0f) != (dot(to.toLight, v.ng) > 0.0f)) {
-            return of(kRoughTransmission);
+            if (!v.bsdf.transmitsDiffusely()) return of(kRoughTransmission);
+            return of(kDiffuseTransmission, v.bsdf.transmitsGlossily());
         }
     }
     if (!v.bsdf.isDiffuse()) return of(kGlossyReflection);

@@ -72,6 +72,7 @@ class PathLayers {
         kDiffuseReflection,
         kGlossyReflection,
         kMirror,
+        kDiffuseTransmission,
         kRoughTransmission,
         kSmoothTransmission
     };

@@ -20,7 +20,7 @@ void appendVertices(const Chain& chain, std::vector<PathVertex>& light) {
         v.toPrevious = from.toLight;
         v.bsdf = from.bsdf;
         v.event = from.event.event;
-        v.scatter = from.bsdf.evaluateDelta(from.toEye, from.toLight, v.event).f;
+        v.scatter = from.scatter;
         v.light = from.point.light;
         v.lightUv = from.point.barycentric;
         v.material = from.point.material;

@@ -126,7 +126,7 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     v.position = point.position;
     v.ng = point.ng;
     v.toPrevious = -direction;
-    ::new (&v.bsdf) Bsdf(scene_.bsdfAt(point));  // in place: 96 bytes are worth not copying
+    ::new (&v.bsdf) Bsdf(scene_.bsdfAt(point));  // in place: 128 bytes are worth not copying
     v.light = point.light;
     v.lightUv = point.barycentric;
     v.material = point.material;

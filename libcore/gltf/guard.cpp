@@ -11,13 +11,22 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 13> kSupported = {
-    "KHR_draco_mesh_compression", "KHR_lights_punctual",
-    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_mesh_quantization",      "KHR_texture_transform",
-    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
+constexpr std::array<std::string_view, 16> kSupported = {
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
 };
 /// Known extensions that are not read, and what is therefore lost; nothing where that is no part of a
@@ -29,13 +38,10 @@ constexpr std::array kUnread = {
     Unread{"EXT_lights_image_based", "name its sky by --env"},
     Unread{"EXT_texture_avif", "the plain images beside it are read"},
     Unread{"KHR_animation_pointer", ""},  // animations.. are ignored, says gltf.cpp
-    Unread{"KHR_materials_anisotropy", "highlights are round"},
-    Unread{"KHR_materials_diffuse_transmission", "no light shines through leaves and paper"},
     Unread{"KHR_materials_dispersion", "glass does not part colours"},
     Unread{"KHR_materials_iridescence", "thin films have no colours"},
     Unread{"KHR_materials_pbrSpecularGlossiness",
            "materials are what stands beside it, or white metal"},
-    Unread{"KHR_materials_sheen", "cloth has no sheen"},
     Unread{"KHR_materials_unlit", "its surfaces are lit as all others"},
     Unread{"KHR_materials_variants", ""},  // those of the file's own choice are rendered
     Unread{"KHR_node_visibility", "hidden objects are rendered"},

@@ -33,6 +33,9 @@ class Reader {
         readSurface();
         readEmission();
         readAlpha();
+        readSheen();
+        readAnisotropy();
+        readDiffuseTransmission();
         readTransmission();
         readClearcoat();
         readExtras();
@@ -113,6 +116,47 @@ class Reader {
         material_.alphaCutoff = clamped(source_.alphaCutoff, 0, 1e6, "alphaCutoff");
     }
 
+    void readSheen() {
+        const json* sheen = extension("KHR_materials_sheen");
+        if (!sheen) return;
+        material_.sheenColor = colorOf(*sheen, "sheenColorFactor", {0, 0, 0});
+        if (isBlack(material_.sheenColor)) return;
+        material_.sheenColorTexture = texture(sheen, "sheenColorTexture", true);
+        material_.sheenRoughness =
+            clamped(number(*sheen, "sheenRoughnessFactor", 0.0), 0, 1, "sheenRoughnessFactor");
+        if (material_.sheenRoughness > 0.0f) {
+            material_.sheenRoughnessTexture = texture(sheen, "sheenRoughnessTexture", false);
+        }
+    }
+
+    void readAnisotropy() {
+        const json* anisotropy = extension("KHR_materials_anisotropy");
+        if (!anisotropy) return;
+        material_.anisotropy =
+            clamped(number(*anisotropy, "anisotropyStrength", 0.0), 0, 1, "anisotropyStrength");
+        if (!(material_.anisotropy > 0.0f)) return;
+        constexpr double kMost = 1e6;  // radians
+        material_.anisotropyRotation = clamped(number(*anisotropy, "anisotropyRotation", 0.0),
+                                               -kMost, kMost, "anisotropyRotation");
+        material_.anisotropyTexture = texture(anisotropy, "anisotropyTexture", false);
+    }
+
+    void readDiffuseTransmission() {
+        const json* through = extension("KHR_materials_diffuse_transmission");
+        if (!through) return;
+        material_.diffuseTransmission = clamped(number(*through, "diffuseTransmissionFactor", 0.0),
+                                                0, 1, "diffuseTransmissionFactor");
+        if (!(material_.diffuseTransmission > 0.0f)) return;
+        material_.diffuseTransmissionTexture =
+            texture(through, "diffuseTransmissionTexture", false);
+        material_.diffuseTransmissionColor =
+            colorOf(*through, "diffuseTransmissionColorFactor", {1, 1, 1});
+        if (!isBlack(material_.diffuseTransmissionColor)) {
+            material_.diffuseTransmissionColorTexture =
+                texture(through, "diffuseTransmissionColorTexture", true);
+        }
+    }
+
     void readTransmission() {
         if (const json* transmission = extension("KHR_materials_transmission")) {
             material_.transmission = clamped(number(*transmission, "transmissionFactor", 0.0), 0, 1,
@@ -134,7 +178,8 @@ class Reader {
         const auto color = numbers<3>(volume, "attenuationColor", {1, 1, 1});
         const double distance = number(volume, "attenuationDistance", kNever);
         warn("attenuationDistance 0 is not a distance: nothing is absorbed", !(distance > 0.0));
-        if (material_.thin || !(material_.transmission > 0.0f)) return;
+        const bool entered = material_.transmission > 0.0f || material_.diffuseTransmission > 0.0f;
+        if (material_.thin || !entered) return;
         if (!(distance > 0.0) || distance == kNever) return;
         const auto coefficient = [&](double c) {
             const auto left = double(clamped(c, 0, 1, "attenuationColor"));
@@ -157,10 +202,12 @@ class Reader {
         if (material_.clearcoatRoughness > 0.0f) {
             material_.clearcoatRoughnessTexture = texture(coat, "clearcoatRoughnessTexture", false);
         }
-        warn(
-            "a clearcoat has the normals of what is under it: no normal map, or lack of one, of "
-            "its own",
-            coat->contains("clearcoatNormalTexture") || material_.normalTexture);
+        material_.clearcoatNormalTexture = texture(coat, "clearcoatNormalTexture", false);
+        if (material_.clearcoatNormalTexture) {
+            material_.clearcoatNormalScale =
+                clamped(number((*coat)["clearcoatNormalTexture"], "scale", 1.0), -1e6, 1e6,
+                        "clearcoatNormalTexture.scale");
+        }
     }
 
     void readExtras() {
@@ -220,6 +267,13 @@ class Reader {
                           place_ + "." + name);
         }
         return float(legal);
+    }
+
+    /// Three factors of [0, 1].
+    Rgb colorOf(const json& object, const char* name, std::array<double, 3> otherwise) {
+        const auto color = numbers<3>(object, name, otherwise);
+        return {clamped(color[0], 0, 1, name), clamped(color[1], 0, 1, name),
+                clamped(color[2], 0, 1, name)};
     }
 
     Rgb clampedRgb(const std::vector<double>& factors, const char* name) {

@@ -132,14 +132,17 @@ void repairNormals(Task& task) {
     }
 }
 
-/// TANGENT where it has a use: with a normal map and with normals (glTF 2.0, 3.7.2.1).
+/// TANGENT where it has a use: with normals, and with what turns a BSDF (glTF 2.0, 3.7.2.1).
 void readTangents(const Document& document, Task& task, std::size_t count,
                   const std::vector<std::uint32_t>& which) {
     const tinygltf::Primitive& primitive = primitiveOf(document, task);
     const int tangents = attribute(primitive, "TANGENT");
     if (tangents < 0 || primitive.material < 0 || task.result.normals.empty()) return;
     const auto& material = document.model.materials[std::size_t(primitive.material)];
-    if (material.normalTexture.index < 0) return;
+    const bool turns = material.normalTexture.index >= 0 ||
+                       material.extensions.contains("KHR_materials_anisotropy") ||
+                       material.extensions.contains("KHR_materials_clearcoat");
+    if (!turns) return;
     task.result.tangents =
         readVertices<std::array<float, 4>, 4>(document, task, "TANGENT", tangents, count, which);
 }

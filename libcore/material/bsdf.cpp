@@ -14,6 +14,7 @@
 #include "libcore/material/bsdf_inl.h"
 #include "libcore/material/fresnel.h"
 #include "libcore/material/refraction.h"
+#include "libcore/material/sheen.h"
 
 namespace lacuna {
 namespace {
@@ -65,6 +66,10 @@ bool refractsRoughly(float roughness, float ior) {
     return alpha > 0.0f && alpha * (legalIor(ior) - 1.0f) >= kMinRefractionSpread;
 }
 
+float Bsdf::roughnessOf(float roughness, float anisotropy) {
+    return anisotropy > 0.0f ? std::max(roughness, kMinBrushedRoughness) : roughness;
+}
+
 float Bsdf::layerIor(float ior, const Rgb& specularColor) {
     if (maxComponent(specularColor) == 1.0f) {
         return legalIor(ior);  // as it is, without rounding
@@ -88,28 +93,53 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     const Rgb coat = coatReflectance(ior_, parameters.specularColor);
     const float brightest = maxComponent(coat);
     tintLoss_ = (Rgb(brightest) - coat) * (1.0f / (1.0f - brightest));
-    alpha_ = alphaOf(parameters.roughness);
+    const float anisotropy = unit(parameters.anisotropy);
+    const float roughness = roughnessOf(parameters.roughness, anisotropy);
+    alpha_ = alphaOf(roughness);
+    unsigned flags = 0;
+    if (anisotropy > 0.0f) {
+        alphaAlong_ = PackedUnit(alpha_ + (1.0f - alpha_) * anisotropy * anisotropy);
+        const Vec3& tangent = parameters.tangent;
+        tangent_ = PackedDirection(lengthSquared(tangent) > 0.0f ? tangent : Frame(ns).s);
+        flags |= kBrushed;
+    }
 
     const LobeSet& without = parameters.without;
     const auto reflects = [&](float alpha) {
         return !without.has(alpha > 0.0f ? LobeKind::Glossy : LobeKind::Mirror);
     };
     if (!reflects(clearcoatAlpha_)) clearcoat_ = clearcoatAlpha_ = 0.0f;
+    const Vec3& coatNormal = parameters.clearcoatNormal;
+    if (clearcoat_ > 0.0f && lengthSquared(coatNormal) > 0.0f && !(coatNormal == ns)) {
+        coatNormal_ = PackedDirection(coatNormal);
+        flags |= kOwnCoatNormal;
+    }
     if (!reflects(alpha_)) specular_ = 0.0f;
 
-    unsigned flags = 0;
     const bool coated = specular_ > 0.0f && coatIor_ > 1.0f;
     if (plastic_ > 0.0f) {
-        const bool diffuse = !lacuna::isBlack(baseColor_) && !without.has(LobeKind::Diffuse);
+        diffuseThrough_ = unit(parameters.diffuseTransmission);
+        const bool diffuse = !lacuna::isBlack(reflectedColor()) && !without.has(LobeKind::Diffuse);
         flags |= diffuse ? unsigned(kDiffuse) : 0u;
         flags |= coated ? unsigned(kCoat) : 0u;
+        if (diffuseThrough_ > 0.0f) {
+            throughColor_ = PackedColor(unit(parameters.diffuseTransmissionColor));
+            const bool through =
+                !lacuna::isBlack(throughColor()) && !without.has(LobeKind::DiffuseTransmission);
+            flags |= through ? unsigned(kThrough) : 0u;
+        }
+    }
+    const Rgb sheen = unit(parameters.sheenColor);
+    if (!lacuna::isBlack(sheen) && !without.has(LobeKind::Sheen)) {
+        sheenColor_ = PackedColor(sheen);
+        sheenRoughness_ = PackedUnit(unit(parameters.sheenRoughness));
+        flags |= lacuna::isBlack(sheenColor_.value()) ? 0u : unsigned(kSheen);
     }
     if (metal_ > 0.0f && reflects(alpha_)) {
         flags |= kMetal;
     }
     const bool thin = parameters.thin;
-    const bool roughGlass =
-        thin ? alpha_ > 0.0f : refractsRoughly(parameters.roughness, parameters.ior);
+    const bool roughGlass = thin ? alpha_ > 0.0f : refractsRoughly(roughness, parameters.ior);
     const LobeKind glassKind =
         thin ? (roughGlass ? LobeKind::RoughThinTransmission : LobeKind::SmoothThinTransmission)
              : (roughGlass ? LobeKind::RoughRefraction : LobeKind::SmoothRefraction);
@@ -122,7 +152,8 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     if ((flags & kLayers) != 0 && alpha_ > 0.0f) {
         flags |= kRoughLayers;
     }
-    if ((flags & kDiffuse) != 0) {
+    if ((flags & (kDiffuse | kThrough)) != 0) {
+        flags_ = std::uint16_t(flags);
         float average = 0.0f;
         if (coated) {
             const AlbedoTable* exact = tables.find(coatIor_);
@@ -141,8 +172,8 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     }
     const int kinds =
         int((flags & kDiffuse) != 0) + int((flags & kLayers) != 0) + int((flags & kGlass) != 0);
-    const bool oneLobe = kinds == 1 && !(clearcoat_ > 0.0f);
-    flags_ = std::uint8_t(flags | (oneLobe ? unsigned(kOneLobe) : 0u));
+    const bool oneLobe = kinds == 1 && !(clearcoat_ > 0.0f) && (flags & (kThrough | kSheen)) == 0;
+    flags_ = std::uint16_t(flags | (oneLobe ? unsigned(kOneLobe) : 0u));
     isPane_ = parameters.pane && thin && !roughGlass && oneLobe && (flags & kGlass) != 0;
 }
 
@@ -152,9 +183,9 @@ Bsdf Bsdf::at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const {
     return b;
 }
 
-/// Cosine-weighted mean of what the coats leave to the diffuse base.
+/// Cosine-weighted mean of what the coats about ns leave to the diffuse base.
 float Bsdf::openAverage(float coatAverage) const {
-    if (!(clearcoat_ > 0.0f)) {
+    if (!(clearcoat_ > 0.0f) || has(kOwnCoatNormal)) {
         return 1.0f - specular_ * coatAverage;
     }
     // Gauss-Legendre in mu: nodes and weights about the middle of [-1, 1].
@@ -182,7 +213,8 @@ float Bsdf::passing(const Vec3& direction) const {
 float Bsdf::survivalAlbedo() const {
     const float color = maxComponent(baseColor_);
     const float dark = 1.0f - color;
-    float albedo = metal_ * (color + dark * (1.0f / 21.0f)) + plastic_ * color;
+    const float diffuse = maxComponent(reflectedColor()) + maxComponent(throughColor());
+    float albedo = metal_ * (color + dark * (1.0f / 21.0f)) + plastic_ * diffuse;
     // Hemispherical means of Fresnel's reflectance.
     const auto average = [](float ior) {
         const float f0 = normalReflectance(ior);
@@ -191,10 +223,13 @@ float Bsdf::survivalAlbedo() const {
     if (has(kCoat | kGlass)) {
         // Glass from its inside, where total internal reflection makes it largest:
         // 1 - (1 - F_avg) / ior^2.
-        albedo += has(kCoat) ? plastic_ * dark * specular_ * average(coatIor_) : 0.0f;
+        albedo += has(kCoat) ? plastic_ * (1.0f - diffuse) * specular_ * average(coatIor_) : 0.0f;
         const float outside = average(ior_);
         const float inside = has(kThin) ? outside : 1.0f - (1.0f - outside) / (ior_ * ior_);
         albedo += has(kGlass) ? glass() * (color + dark * inside) : 0.0f;
+    }
+    if (has(kSheen)) {
+        albedo += (1.0f - albedo) * maxComponent(sheenColor_.value()) * meanSheen();
     }
     if (clearcoat_ > 0.0f) {
         albedo += (1.0f - albedo) * clearcoat_ * average(kClearcoatIor);
@@ -205,8 +240,13 @@ float Bsdf::survivalAlbedo() const {
 Rgb Bsdf::layerAlbedo() const {
     const float f0 = has(kCoat) ? normalReflectance(coatIor_) : 0.0f;
     const Rgb coat = has(kCoat) ? (Rgb(f0) - tintLoss_ * (1.0f - f0)) * specular_ : Rgb{};
-    const Rgb under =
-        plastic_ * (baseColor_ * (1.0f - specular_ * f0) + coat) + (1.0f - plastic_) * baseColor_;
+    const Rgb diffuse = reflectedColor() + throughColor();
+    Rgb under =
+        plastic_ * (diffuse * (1.0f - specular_ * f0) + coat) + (1.0f - plastic_) * baseColor_;
+    if (has(kSheen)) {
+        const Rgb sheen = sheenColor_.value() * meanSheen();
+        under = under * (1.0f - maxComponent(sheen)) + sheen;
+    }
     const float clear = clearcoat_ * normalReflectance(kClearcoatIor);
     return under * (1.0f - clear) + Rgb(clear);
 }

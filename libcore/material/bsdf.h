@@ -12,6 +12,7 @@
 //   with f_ns the BSDF about the shading normal, in the radiance convention: refraction carries
 //   (eta_eye / eta_light)^2 of the radiance on the eye's side.
 //   A step of either walk multiplies its throughput by f |to . ng| / pdfW(to).
+// * A clearcoat with a normal of its own is a second Bsdf over the rest (bsdf_coat.cpp).
 // * Delta events (mirror, smooth glass, a smooth coat) are written with the same formulas after the
 //   common delta distribution has been dropped on both sides; this is the narrow-lobe limit, so the
 //   balance heuristic over generalised densities is the limit of the balance heuristic:
@@ -44,6 +45,8 @@
 #include "libcore/base/sampling.h"
 #include "libcore/base/vec.h"
 #include "libcore/material/lobes.h"
+#include "libcore/material/microfacet.h"
+#include "libcore/material/packed.h"
 
 namespace lacuna {
 
@@ -100,17 +103,32 @@ class Bsdf {
         bool pane = false;
         float clearcoat = 0.0f;  ///< weight of a layer of index kClearcoatIor over everything else
         float clearcoatRoughness = 0.0f;
+        /// The clearcoat's own shading normal, unit, on ng's side; zero: the one of what is under it.
+        Vec3 clearcoatNormal{};
+        /// Rougher along `tangent`: alpha there is mix(alpha, 1, anisotropy^2). Of metal, coat and
+        /// glass. [KHR_materials_anisotropy]
+        float anisotropy = 0.0f;
+        Vec3 tangent{};        ///< of any length, also off the surface; zero: any
+        Rgb sheenColor{0.0f};  ///< of cloth's fibres above everything but the clearcoat
+        float sheenRoughness = 0.0f;
+        /// What the diffuse base sends to the other side, and in which colour; the rest stays.
+        float diffuseTransmission = 0.0f;
+        Rgb diffuseTransmissionColor{1.0f};
         /// Lobes that are not there: a layer leaves its light to what is under it, the others'
         /// light is absorbed.
         LobeSet without = {};
     };
     static constexpr float kClearcoatIor = 1.5f;  // KHR_materials_clearcoat
+    /// A brushed surface (anisotropy above 0) is nowhere smoother: alpha .001.
+    static constexpr float kMinBrushedRoughness = 0.0316228f;
 
     Bsdf() = default;
     /// `tables` must outlive the Bsdf; it is read only where a dielectric layer lies over a diffuse
     /// base (a smooth layer merely gets its mean reflectance faster from it). A layer without a
     /// table of its own takes that of a larger index. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
+    /// The roughness that a surface has across its grain, where it is smoothest.
+    static float roughnessOf(float roughness, float anisotropy);
     /// Index of the layer that reflects, along the normal, what `ior` does times the largest
     /// channel of `specularColor`: the one whose table the constructor looks for.
     static float layerIor(float ior, const Rgb& specularColor);
@@ -144,12 +162,19 @@ class Bsdf {
 
     /// Whether any lobe has a density: only then may a path be connected here.
     bool connectable() const {
-        return has(kDiffuse | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
+        return has(kWide | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
     }
     /// Whether it has delta events of this kind.
     bool has(ScatterEvent event) const;
     /// w: of what this eye sees, how much is of the lobes about ng.
     float shareAboutNg(const Vec3& toEye) const;
+    /// Whether it is two layers about two normals: a clearcoat with one of its own and the rest. f is that of
+    /// clearcoatAlone() and, times underOwnClearcoat(), that of withoutClearcoat().
+    bool hasOwnClearcoat() const { return has(kOwnCoatNormal); }
+    Bsdf clearcoatAlone() const;
+    Bsdf withoutClearcoat() const;
+    /// What the clearcoat leaves to the rest, 1 where it has no normal of its own.
+    float underOwnClearcoat(const Vec3& toEye, const Vec3& toLight) const;
     /// Whether smooth transmission bends rays; those through a sheet go straight on.
     bool bends() const { return !has(kThin); }
     /// Index of refraction on a side; a sheet has the same on both.
@@ -160,15 +185,18 @@ class Bsdf {
     /// a pane's; the same from both sides. What scatters is of the others. (theory.md, "Panes")
     float passing(const Vec3& direction) const;
     /// Whether light may pass through.
-    bool transmits() const { return has(kGlass); }
-    /// What reflects in the Smooth event: a diffuse base, rough lobes, or both.
-    bool isDiffuse() const { return has(kDiffuse); }
+    bool transmits() const { return has(kGlass | kThrough); }
+    /// What reflects in the Smooth event: a diffuse base or sheen, rough lobes, or both.
+    bool isDiffuse() const { return has(kDiffuse | kSheen); }
     bool isGlossy() const { return has(kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f; }
-    /// Of evaluate().f what the diffuse base scatters; the rest is glossy.
+    /// What goes to the other side in the Smooth event: likewise.
+    bool transmitsDiffusely() const { return has(kThrough); }
+    bool transmitsGlossily() const { return has(kRoughGlass); }
+    /// Of evaluate().f what the diffuse base and the sheen scatter; the rest is glossy.
     Rgb diffusePart(const Vec3& toEye, const Vec3& toLight) const;
     /// Whether there is no lobe that is wide beside others of the same surface.
-    bool isNarrow() const { return !has(kDiffuse) && alpha_ < kNarrowAlpha; }
-    bool isBlack() const { return !has(kDiffuse | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
+    bool isNarrow() const { return !has(kWide) && alpha_ < kNarrowAlpha; }
+    bool isBlack() const { return !has(kWide | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;
     /// Diffuse and specular colour together, for the albedo.* image layer.
@@ -180,7 +208,7 @@ class Bsdf {
   private:
     static constexpr float kNarrowAlpha = 0.1f;
     // Which lobes exist. Layers: coat and metal share alpha, half vector and density.
-    enum Flag : std::uint8_t {
+    enum Flag : std::uint16_t {
         kDiffuse = 1,
         kCoat = 2,
         kMetal = 4,
@@ -189,20 +217,36 @@ class Bsdf {
         kThin = 16,
         kRoughLayers = 32,  ///< coat and metal have a density
         kRoughGlass = 64,
-        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass, no clearcoat: nothing to choose
+        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass, no other: nothing to choose
+        kThrough = 256,  ///< the diffuse base scatters to the other side too
+        kSheen = 512,
+        kBrushed = 1024,        ///< alpha depends on the direction
+        kOwnCoatNormal = 2048,  ///< the clearcoat's normal is not ns
+        kWide = kDiffuse | kThrough | kSheen,
     };
 
     /// Probabilities of the lobes given the one known direction, and what the coats leave to what
     /// is under them.
     struct Choice {
-        float diffuse = 0, layers = 0, glass = 0, clearcoat = 0;
+        float diffuse = 0;  ///< cosine-distributed, on the same side: base and sheen
+        float through = 0;  ///< likewise, on the other side
+        float layers = 0, glass = 0, clearcoat = 0;
         float open = 1;   ///< 1 - specular E(mu)
+        float sheen = 0;  ///< E(mu) of a white sheen
+        float bare = 1;   ///< what the sheen leaves
         float under = 1;  ///< 1 - clearcoat E(mu) of the clearcoat
     };
     /// What the clearcoat lets through, both ways, to anything but a diffuse base: the less open of
     /// the two, so that no base returns more than reaches it, and a mirror all of that.
-    static float through(const Choice& eye, const Choice& light) {
+    static float underCoat(const Choice& eye, const Choice& light) {
         return eye.under < light.under ? eye.under : light.under;
+    }
+    /// Likewise the sheen, to any base.
+    static float underSheen(const Choice& eye, const Choice& light) {
+        return eye.bare < light.bare ? eye.bare : light.bare;
+    }
+    static float through(const Choice& eye, const Choice& light) {
+        return underCoat(eye, light) * underSheen(eye, light);
     }
     /// A pair of directions: signed cosines about both normals.
     struct Cosines {
@@ -261,13 +305,36 @@ class Bsdf {
     BsdfEvaluation evaluateTilted(const Vec3& toEye, const Vec3& toLight, const Cosines& c) const;
     BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
                               const Cosines& c) const;
-    Rgb diffuseValue(const Choice& eye, const Choice& base, const Cosines& c) const {
-        return baseColor_ * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
-                             (c.lightS / c.lightG));
+    /// Of a diffuse base of this colour.
+    Rgb diffuseValue(const Rgb& color, const Choice& eye, const Choice& base,
+                     const Cosines& c) const {
+        return color * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
+                        (c.lightS / c.lightG) * underSheen(eye, base));
     }
+    Rgb reflectedColor() const { return baseColor_ * (1.0f - diffuseThrough_); }
+    Rgb throughColor() const { return throughColor_.value() * diffuseThrough_; }
+    Rgb widePart(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
+                 const Choice& light, const Choice& base, const Cosines& c) const;
+    Rgb sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
+                   const Choice& light) const;
+    /// The lobe of layers and glass for a half vector of any length.
+    struct Lobe;
+    Lobe baseLobe(Vec3 h, const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
+    /// How the surface is brushed as lobes about the normal n see it.
+    ggx::Grain grainAbout(const Vec3& n) const;
+
+    // A clearcoat with a normal of its own: two BSDFs, one over the other (bsdf_coat.cpp).
+    float coatShare(const Vec3& direction) const;
+    BsdfEvaluation evaluateUnderCoat(const Vec3& toEye, const Vec3& toLight,
+                                     ScatterEvent event) const;
+    Rgb diffusePartUnderCoat(const Vec3& toEye, const Vec3& toLight) const;
+    std::optional<BsdfSample> sampleUnderCoat(Side side, const Vec3& from, float uLobe, float u1,
+                                              float u2) const;
     BsdfEvaluation deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent event) const;
     float coatAlbedo(float mu) const;
     float clearcoatAlbedo(float mu) const;
+    float sheenAlbedo(float mu) const;
+    float meanSheen() const;
     float openAverage(float coatAverage) const;
     Choice choose(float mu) const;
     Rgb layersReflectance(float cosine) const;
@@ -287,11 +354,12 @@ class Bsdf {
     void addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                            const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
     void addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                                  const Choice& eye, const Choice& light,
                                   BsdfEvaluation& out) const;
     void addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
-                            BsdfEvaluation& out) const;
+                            const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
 
-    // 96 bytes: it lives in every path vertex.
+    // 128 bytes: it lives in every path vertex.
     const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse
     Vec3 ng_, ns_;
     Rgb baseColor_;
@@ -304,11 +372,16 @@ class Bsdf {
     float specular_ = 0;
     float diffuseScale_ = 0;  ///< plastic / (pi times the mean of what all coats leave)
     float clearcoat_ = 0, clearcoatAlpha_ = 0;
-    std::uint8_t flags_ = 0;
+    std::uint16_t flags_ = 0;
     std::uint8_t rowIndex_ : 7 = 0;  ///< AlbedoTable::Row
     std::uint8_t isPane_ : 1 = 0;
     std::uint16_t rowFraction_ = 0;
+    float diffuseThrough_ = 0;  ///< share of the diffuse base
+    PackedColor throughColor_, sheenColor_;
+    PackedUnit sheenRoughness_;
+    PackedUnit alphaAlong_;  ///< along the tangent; across it alpha_
+    PackedDirection tangent_, coatNormal_;
 };
-static_assert(sizeof(Bsdf) <= 96);
+static_assert(sizeof(Bsdf) <= 128);
 
 }  // namespace lacuna

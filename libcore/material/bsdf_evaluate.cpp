@@ -21,28 +21,58 @@
 
 namespace lacuna {
 
-namespace {
-
 /// A GGX lobe at the half vector of two directions on one side (or one of them mirrored there).
-struct Lobe {
+struct Bsdf::Lobe {
     float cosine;          ///< e.h = l.h
     float k;               ///< D / 4
     float g2;              ///< G2 / (c_e c_l)
     float g1Eye, g1Light;  ///< G1 / c_e, G1 / c_l
+
+    /// From H = e + l, of any length, and both |cosines| about n.
+    static Lobe isotropic(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
+        const float hn = ce + cl;
+        const float cross2 = lengthSquared(cross(h, n));
+        const float se = ggx::smithS(ce, alpha * alpha);
+        const float sl = ggx::smithS(cl, alpha * alpha);
+        return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2)),  // |H| / 2
+                0.25f * ggx::distribution(alpha, hn, cross2), ggx::g2OverCosines(ce, se, cl, sl),
+                ggx::g1OverCosine(ce, se), ggx::g1OverCosine(cl, sl)};
+    }
 };
 
-/// From H = e + l, of any length, and both |cosines| about n.
-inline Lobe lobeOf(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
+ggx::Grain Bsdf::grainAbout(const Vec3& n) const {
+    const Vec3 tangent = tangent_.value();
+    const Vec3 flat = tangent - n * dot(tangent, n);
+    const Vec3 t = lengthSquared(flat) > 1e-6f ? normalize(flat) : Frame(n).s;
+    return {t, cross(n, t), alphaAlong_.value(), alpha_};
+}
+
+/// The mirrored one of two directions through a sheet only differs along n, which a grain does not see.
+inline Bsdf::Lobe Bsdf::baseLobe(Vec3 h, const Vec3& toEye, const Vec3& toLight,
+                                 const Pair& pair) const {
+    const float ce = pair.eyeAbs(), cl = pair.lightAbs();
+    if (!has(kBrushed)) return Lobe::isotropic(h, pair.n, ce, cl, alpha_);
+    const ggx::Grain grain = grainAbout(pair.n);
     const float hn = ce + cl;
-    const float cross2 = lengthSquared(cross(h, n));
-    const float se = ggx::smithS(ce, alpha * alpha);
-    const float sl = ggx::smithS(cl, alpha * alpha);
-    return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2)),  // |H| / 2
-            0.25f * ggx::distribution(alpha, hn, cross2), ggx::g2OverCosines(ce, se, cl, sl),
+    const float se = ggx::smithS(ce, toEye, grain), sl = ggx::smithS(cl, toLight, grain);
+    return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + lengthSquared(cross(h, pair.n)))),
+            0.25f * ggx::distribution(h, hn, grain), ggx::g2OverCosines(ce, se, cl, sl),
             ggx::g1OverCosine(ce, se), ggx::g1OverCosine(cl, sl)};
 }
 
-}  // namespace
+/// Without the light that the surface's own normal does not see.
+Rgb Bsdf::sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
+                     const Choice& light) const {
+    const float ce = pair.eyeAbs(), cl = pair.lightAbs();
+    const float across2 = lengthSquared(cross(toEye + toLight, pair.n));
+    const float alpha = sheen::alphaOf(sheenRoughness_.value());
+    const sheen::Shadowing<float> shadowing(alpha);
+    const float d = sheen::distribution(alpha, across2 / (across2 + (ce + cl) * (ce + cl)));
+    const float v = 0.25f / ((1.0f + shadowing.lambda(ce) + shadowing.lambda(cl)) * ce * cl);
+    // A white sheen returns no more than arrives, wherever it is seen from.
+    const float bound = 1.0f / std::max(1.0f, std::max(eye.sheen, light.sheen));
+    return sheenColor_.value() * (d * v * bound * pair.adjoint * underCoat(eye, light));
+}
 
 /// All lobes that have a density, those of layers and glass about pair.n. The diffuse base keeps ns
 /// for the light, and ng for the eye.
@@ -51,27 +81,28 @@ inline Lobe lobeOf(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
                                                               const Vec3& toLight,
                                                               const Cosines& c) const {
     BsdfEvaluation out;
-    if (!c.reflects()) {
-        if (has(kRoughGlass)) {
-            if (has(kThin)) {
-                addRoughThinTransmission(toEye, toLight, pair, out);
-            } else {
-                addRoughRefraction(toEye, toLight, pair, out);
-            }
-        }
-        return out;
-    }
+    const bool reflects = c.reflects();
+    if (!reflects && !has(kRoughGlass | kThrough)) return out;
     const Choice eye = choose(pair.eyeAbs());
     const Choice light = choose(pair.lightAbs());
-    if (has(kDiffuse)) {
+    if (reflects ? has(kDiffuse | kSheen) : has(kThrough)) {
         // Light that ns does not see is scattered into nothing, but a walk from there may draw it.
-        out.pdfWToEye = light.diffuse * std::abs(c.eyeG) * kInvPi;
+        out.pdfWToEye = (reflects ? light.diffuse : light.through) * std::abs(c.eyeG) * kInvPi;
         if (c.lightSeen()) {
             const float lightS = std::abs(c.lightS);
             const Choice base = lightS == pair.lightAbs() ? light : choose(lightS);
-            out.f = diffuseValue(eye, base, c);
-            out.pdfWToLight = eye.diffuse * lightS * kInvPi;
+            out.f = widePart(toEye, toLight, pair, eye, light, base, c);
+            out.pdfWToLight = (reflects ? eye.diffuse : eye.through) * lightS * kInvPi;
         }
+    }
+    if (!reflects) {
+        if (!has(kRoughGlass)) return out;
+        if (has(kThin)) {
+            addRoughThinTransmission(toEye, toLight, pair, eye, light, out);
+        } else {
+            addRoughRefraction(toEye, toLight, pair, eye, light, out);
+        }
+        return out;
     }
     if (has(kRoughLayers | kRoughGlass)) {
         addRoughReflection(toEye, toLight, pair, eye, light, out);
@@ -87,6 +118,9 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
     if (!connectable() || !makeCosines(toEye, toLight, c)) {
         return {};
     }
+    if (has(kOwnCoatNormal)) {
+        return evaluateUnderCoat(toEye, toLight, ScatterEvent::Smooth);
+    }
     if (!isTilted()) {
         return lobesAbout(aboutNg(c), toEye, toLight, c);
     }
@@ -95,12 +129,14 @@ BsdfEvaluation Bsdf::evaluateLobes(const Vec3& toEye, const Vec3& toLight) const
 
 Rgb Bsdf::diffusePart(const Vec3& toEye, const Vec3& toLight) const {
     Cosines c;
-    if (!has(kDiffuse) || !makeCosines(toEye, toLight, c) || !c.lightSeen() || !c.reflects()) {
+    if (!has(kWide) || !makeCosines(toEye, toLight, c) || !c.lightSeen()) {
         return Rgb{};
     }
+    if (has(kOwnCoatNormal)) return diffusePartUnderCoat(toEye, toLight);
     const Choice base = choose(std::abs(c.lightS));
     const auto about = [&](const Pair& pair) {
-        return diffuseValue(choose(pair.eyeAbs()), base, c);
+        return widePart(toEye, toLight, pair, choose(pair.eyeAbs()), choose(pair.lightAbs()), base,
+                        c);
     };
     if (!isTilted()) return about(aboutNg(c));
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
@@ -108,6 +144,19 @@ Rgb Bsdf::diffusePart(const Vec3& toEye, const Vec3& toLight) const {
     if (eyeNg < 1.0f) part += about(aboutNs(c)) * (1.0f - eyeNg);
     if (eyeNg > 0.0f) part += about(aboutNg(c)) * eyeNg;
     return part;
+}
+
+/// Diffuse base and sheen. `base`: as the surface's own normal sees the light, whatever the pair's is.
+inline Rgb Bsdf::widePart(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                          const Choice& eye, const Choice& light, const Choice& base,
+                          const Cosines& c) const {
+    if (!c.reflects()) {
+        return has(kThrough) ? diffuseValue(throughColor(), eye, base, c) : Rgb{};
+    }
+    Rgb value;
+    if (has(kDiffuse)) value = diffuseValue(reflectedColor(), eye, base, c);
+    if (has(kSheen)) value += sheenValue(toEye, toLight, pair, eye, light);
+    return value;
 }
 
 /// The mixture of both normals' parts, partAbout(pair) each; `byNs`, `byNg`: which of them have one.
@@ -138,7 +187,7 @@ BsdfEvaluation Bsdf::evaluateTilted(const Vec3& toEye, const Vec3& toLight,
 
 void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                               const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
-    const Lobe lobe = lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), alpha_);
+    const Lobe lobe = baseLobe(toEye + toLight, toEye, toLight, pair);
 
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;  // given toEye, given toLight
@@ -162,7 +211,7 @@ void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair
 void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                              const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
     const Lobe lobe =
-        lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
+        Lobe::isotropic(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
     const float reflectance = clearcoat_ * fresnelDielectric(lobe.cosine, kClearcoatIor);
     out.f += Rgb(reflectance * lobe.k * lobe.g2 * pair.adjoint);
     out.pdfWToLight += eye.clearcoat * lobe.k * lobe.g1Eye;
@@ -172,18 +221,18 @@ void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair&
 // The reflection lobe mirrored through the surface [glTF 2.0, KHR_materials_transmission].
 // Mirroring toLight about n leaves its tangential part, hence H x n, as it is.
 void Bsdf::addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
+                                    const Choice& eye, const Choice& light,
                                     BsdfEvaluation& out) const {
-    const Lobe lobe = lobeOf(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), alpha_);
+    const Lobe lobe = baseLobe(toEye + toLight, toEye, toLight, pair);
     const float transmit = 1.0f - fresnelDielectric(lobe.cosine, ior_);
-    const Choice eye = choose(pair.eyeAbs()), light = choose(pair.lightAbs());
-    out.f =
+    out.f +=
         baseColor_ * (glass() * transmit * through(eye, light) * lobe.k * lobe.g2 * pair.adjoint);
-    out.pdfWToLight = eye.glass * transmit * lobe.k * lobe.g1Eye;
-    out.pdfWToEye = light.glass * transmit * lobe.k * lobe.g1Light;
+    out.pdfWToLight += eye.glass * transmit * lobe.k * lobe.g1Eye;
+    out.pdfWToEye += light.glass * transmit * lobe.k * lobe.g1Light;
 }
 
 void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
-                              BsdfEvaluation& out) const {
+                              const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
     const bool eyeOutside = pair.eye > 0.0f;
     const Vec3 o = eyeOutside ? toEye : toLight;
     const Vec3 i = eyeOutside ? toLight : toEye;
@@ -197,22 +246,31 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
     if (!(hn > 0.0f && oh > 0.0f && ih < 0.0f)) {
         return;  // no microfacet refracts one into the other
     }
-    const float cross2 = lengthSquared(cross(o + i * ior_, pair.n));
+    const Vec3 h = o + i * ior_;
+    const float cross2 = lengthSquared(cross(h, pair.n));
     const float h2 = hn * hn + cross2;
     const float cosine = std::min(1.0f, oh / std::sqrt(h2));
     // |eta_o o.h + eta_i i.h| = |H|: K = D |o.h| |i.h| / |H|^2 = D oh |ih| / |H|^4.
-    const float k = ggx::distribution(alpha_, hn, cross2) * oh * -ih / (h2 * h2);
-    const float se = ggx::smithS(ce, alpha_ * alpha_);
-    const float sl = ggx::smithS(cl, alpha_ * alpha_);
+    float d, se, sl;
+    if (has(kBrushed)) {
+        const ggx::Grain grain = grainAbout(pair.n);
+        d = ggx::distribution(h, hn, grain);
+        se = ggx::smithS(ce, toEye, grain);
+        sl = ggx::smithS(cl, toLight, grain);
+    } else {
+        d = ggx::distribution(alpha_, hn, cross2);
+        se = ggx::smithS(ce, alpha_ * alpha_);
+        sl = ggx::smithS(cl, alpha_ * alpha_);
+    }
+    const float k = d * oh * -ih / (h2 * h2);
     const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
     const float etaEye = indexOn(eyeOutside);
     const float etaLight = indexOn(!eyeOutside);
 
-    const Choice eye = choose(ce), light = choose(cl);
-    out.f = baseColor_ * (glass() * transmit * through(eye, light) * etaEye * etaEye * k *
-                          ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
-    out.pdfWToLight = eye.glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
-    out.pdfWToEye = light.glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
+    out.f += baseColor_ * (glass() * transmit * through(eye, light) * etaEye * etaEye * k *
+                           ggx::g2OverCosines(ce, se, cl, sl) * pair.adjoint);
+    out.pdfWToLight += eye.glass * transmit * etaLight * etaLight * k * ggx::g1OverCosine(ce, se);
+    out.pdfWToEye += light.glass * transmit * etaEye * etaEye * k * ggx::g1OverCosine(cl, sl);
 }
 
 BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
@@ -222,6 +280,7 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         c.reflects() != (event == ScatterEvent::DeltaReflection)) {
         return {};
     }
+    if (has(kOwnCoatNormal)) return evaluateUnderCoat(toEye, toLight, event);
     if (!isTilted()) {
         return deltaAbout(aboutNg(c), c, event);
     }

@@ -8,6 +8,7 @@
 #include "libcore/material/albedo_tables.h"
 #include "libcore/material/bsdf.h"
 #include "libcore/material/fresnel.h"
+#include "libcore/material/sheen.h"
 
 namespace lacuna {
 
@@ -22,6 +23,16 @@ inline float Bsdf::clearcoatAlbedo(float mu) const {
     return clearcoatAlpha_ > 0.0f
                ? clearcoatTable().directional(AlbedoTable::row(clearcoatAlpha_), mu)
                : fresnelDielectric(mu, kClearcoatIor);
+}
+
+/// E(mu) of a white sheen.
+inline float Bsdf::sheenAlbedo(float mu) const {
+    return sheenTable().directional(sheenRoughness_.value(), mu);
+}
+
+/// Upper estimate of the cosine-weighted mean of E.
+inline float Bsdf::meanSheen() const {
+    return std::min(1.0f, sheenAlbedo(0.5f));
 }
 
 /// w: how much of what an eye sees is of the lobes about ng (bsdf.h). With m the cosine between ng
@@ -48,7 +59,7 @@ inline float Bsdf::lightShare(float lightS, float lightG) const {
 /// and nothing else.
 inline Bsdf::Choice Bsdf::choose(float mu) const {
     Choice c;
-    if ((flags_ & (kDiffuse | kCoat)) == (kDiffuse | kCoat)) {
+    if (has(kDiffuse | kThrough) && has(kCoat)) {
         c.open = 1.0f - specular_ * coatAlbedo(mu);
     } else if (has(kOneLobe)) {
         c.diffuse = has(kDiffuse) ? 1.0f : 0.0f;
@@ -59,7 +70,10 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
         c.open = 1.0f - specular_ * fresnelDielectric(mu, coatIor_);
     }
     if (has(kDiffuse)) {
-        c.diffuse = plastic_ * mean(baseColor_) * c.open;
+        c.diffuse = plastic_ * mean(baseColor_) * c.open * (1.0f - diffuseThrough_);
+    }
+    if (has(kThrough)) {
+        c.through = plastic_ * mean(throughColor()) * c.open;
     }
     if (has(kCoat)) {
         c.layers = plastic_ * (1.0f - c.open);
@@ -72,19 +86,28 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     if (has(kGlass)) {
         c.glass = glass() * std::max(0.1f, mean(baseColor_));
     }
+    const auto scale = [&c](float by) {
+        c.diffuse *= by;
+        c.through *= by;
+        c.layers *= by;
+        c.glass *= by;
+    };
+    if (has(kSheen)) {
+        const Rgb color = sheenColor_.value();
+        c.sheen = sheenAlbedo(mu);
+        c.bare = 1.0f - maxComponent(color) * std::min(1.0f, c.sheen);
+        scale(c.bare);
+        c.diffuse += mean(color) * std::min(1.0f, c.sheen);
+    }
     if (clearcoat_ > 0.0f) {
         c.clearcoat = clearcoat_ * clearcoatAlbedo(mu);
         c.under = 1.0f - c.clearcoat;
-        c.diffuse *= c.under;
-        c.layers *= c.under;
-        c.glass *= c.under;
+        scale(c.under);
     }
-    const float sum = c.diffuse + c.layers + c.glass + c.clearcoat;
+    const float sum = c.diffuse + c.layers + c.glass + c.clearcoat + c.through;
     const float inverse = sum > 0.0f ? 1.0f / sum : 0.0f;
     c.clearcoat *= inverse;
-    c.diffuse *= inverse;
-    c.layers *= inverse;
-    c.glass *= inverse;
+    scale(inverse);
     return c;
 }
 

@@ -47,6 +47,7 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
     if (isBlack() || !(std::abs(fromG) >= kMinCosine)) {
         return result;
     }
+    if (has(kOwnCoatNormal)) return sampleUnderCoat(side, from, uLobe, u1, u2);
     // The normal, by uLobe, which is uniform again then.
     const bool tilted = isTilted() && !isLambert();
     float shareNg = 0.0f, u = uLobe;
@@ -73,21 +74,29 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
     // The probabilities add up to 1 but for rounding: the last lobe that exists takes the rest.
     const bool clearcoat = u < choice.clearcoat;
     const float uBase = u - choice.clearcoat;
-    if (!clearcoat && (uBase < choice.diffuse || !has(kLayers | kGlass))) {
-        to = Frame((side == Side::Eye ? ns_ : ng_) * sign).toWorld(cosineHemisphere(u1, u2));
+    const float wide = choice.diffuse + choice.through;
+    if (!clearcoat && (uBase < wide || !has(kLayers | kGlass))) {
+        transmits = has(kThrough) && !(uBase < choice.diffuse);
+        const float hemisphere = transmits ? -sign : sign;
+        to = Frame((side == Side::Eye ? ns_ : ng_) * hemisphere).toWorld(cosineHemisphere(u1, u2));
     } else {
-        const bool glass = !clearcoat && has(kGlass) && !(uBase < choice.diffuse + choice.layers);
+        const bool glass = !clearcoat && has(kGlass) && !(uBase < wide + choice.layers);
         const float alpha = clearcoat ? clearcoatAlpha_ : alpha_;
         const bool rough =
             clearcoat ? clearcoatAlpha_ > 0.0f : has(glass ? kRoughGlass : kRoughLayers);
-        const Vec3 h = rough ? visibleNormal(from, n, cosine, alpha, u1, u2) : n;
+        Vec3 h = n;
+        if (rough) {
+            h = has(kBrushed) && !clearcoat
+                    ? ggx::visibleNormal(from, n, cosine, grainAbout(n), concentricDisk(u1, u2))
+                    : visibleNormal(from, n, cosine, alpha, u1, u2);
+        }
         const float hCosine = rough ? std::min(1.0f, dot(from, h)) : cosine;
         if (!(hCosine > 0.0f)) {
             return result;
         }
         if (glass) {
             // What is left of uBase decides between reflection (F) and transmission.
-            const float uGlass = (uBase - choice.diffuse - choice.layers) / choice.glass;
+            const float uGlass = (uBase - wide - choice.layers) / choice.glass;
             // Never transmission where F is 1, though rounding may bring uGlass up to 1.
             const float reflects = interfaceAt(hCosine, relativeIndex(front)).pmf;
             transmits = !(uGlass < reflects) && reflects < 1.0f;

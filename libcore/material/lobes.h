@@ -13,18 +13,20 @@ enum class LobeKind : std::uint8_t {
     RoughRefraction,  ///< of solid glass, with what the glass reflects; so are the next three
     SmoothRefraction,
     RoughThinTransmission,
-    SmoothThinTransmission
+    SmoothThinTransmission,
+    DiffuseTransmission,
+    Sheen
 };
 
 class LobeSet {
   public:
-    void add(LobeKind kind) { bits_ = std::uint8_t(bits_ | bit(kind)); }
+    void add(LobeKind kind) { bits_ = std::uint16_t(bits_ | bit(kind)); }
     bool has(LobeKind kind) const { return (bits_ & bit(kind)) != 0; }
 
   private:
     static unsigned bit(LobeKind kind) { return 1u << unsigned(kind); }
 
-    std::uint8_t bits_ = 0;
+    std::uint16_t bits_ = 0;
 };
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Isotropic GGX with Smith's height-correlated masking and shadowing, written so that nothing
+// GGX with Smith's height-correlated masking and shadowing, written so that nothing
 // cancels: D from the unnormalised half vector H and H x n (never 1 - cos^2), G already divided by
 // the cosines.
 #pragma once
@@ -49,6 +49,42 @@ inline Vec3 visibleNormal(float sine, float cosine, float alpha, Vec2 disk) {
     // A floor on the height keeps h off the tangent plane, where it would be the zero vector.
     return normalize(
         Vec3{alpha * (z * vx - y * vz), alpha * disk.x, std::max(1e-7f, z * vz + y * vx)});
+}
+
+/// A brushed surface: alpha along t and along b, which are unit and perpendicular to the normal.
+struct Grain {
+    Vec3 t, b;
+    float alphaT, alphaB;
+};
+
+/// S of a unit direction whose |cosine| is c.
+inline float smithS(float c, const Vec3& v, const Grain& grain) {
+    const float x = grain.alphaT * dot(v, grain.t), y = grain.alphaB * dot(v, grain.b);
+    return std::sqrt(c * c + x * x + y * y);
+}
+/// D(h) [Heitz14 eq 85] from H of any length with hDotN = H.n.
+inline float distribution(const Vec3& h, float hDotN, const Grain& grain) {
+    const float t = dot(h, grain.t), b = dot(h, grain.b);
+    const float x = t / grain.alphaT, y = b / grain.alphaB, n2 = hDotN * hDotN;
+    const float k = (n2 + t * t + b * b) / (n2 + x * x + y * y);
+    return k * k * kInvPi / (grain.alphaT * grain.alphaB);
+}
+
+/// As above, seen from the unit v with |cosine| > 0; `n` is on its side.
+inline Vec3 visibleNormal(const Vec3& v, const Vec3& n, float cosine, const Grain& grain,
+                          Vec2 disk) {
+    const Vec3 vh =
+        normalize(Vec3{grain.alphaT * dot(v, grain.t), grain.alphaB * dot(v, grain.b), cosine});
+    const float across = vh.x * vh.x + vh.y * vh.y;
+    const float inverse = across > 1e-12f ? 1.0f / std::sqrt(across) : 0.0f;
+    const Vec3 t1 = across > 1e-12f ? Vec3{-vh.y * inverse, vh.x * inverse, 0.0f} : Vec3{1, 0, 0};
+    const Vec3 t2 = cross(vh, t1);
+    const float s = 0.5f * (1.0f + vh.z);
+    const float y = (1.0f - s) * std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x)) + s * disk.y;
+    const float z = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x - y * y));
+    const Vec3 h = t1 * disk.x + t2 * y + vh * z;
+    return normalize(grain.t * (grain.alphaT * h.x) + grain.b * (grain.alphaB * h.y) +
+                     n * std::max(1e-7f, h.z));
 }
 
 }  // namespace lacuna::ggx

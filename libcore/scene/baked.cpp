@@ -250,8 +250,9 @@ BakedScene bake(SceneDescription& d, const ThreadPool& pool) {
         to.uvs = std::move(from.uvs);
         if (usesSecondSet(material)) to.uvs1 = std::move(from.uvs1);
         to.colors = std::move(from.colors);
-        to.plain =
-            to.colors.empty() && to.uvs1.empty() && !(material.normalTexture && !to.uvs.empty());
+        const bool turns = material.normalTexture && !to.uvs.empty();
+        to.plain = to.colors.empty() && to.uvs1.empty() && !turns &&
+                   !(material.anisotropy > 0.0f) && !hasOwnClearcoatNormal(material);
         to.farTextures = farTexturesOf(material, d.textures);
         takeTriangles(uses[m], mayBePane(material) ? kPaneFlatness : kFlatness, from, to);
         from = Mesh{};

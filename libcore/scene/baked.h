@@ -24,7 +24,7 @@ struct BakedMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> faceNormals;  // world-space meshes only: looked up at every hit
     std::uint32_t material = 0;
-    bool plain = true;  ///< neither vertex colours, nor a normal map, nor a second set
+    bool plain = true;  ///< neither vertex colours, nor a second set, nor what turns its BSDF
     /// Those of the BSDF that the processor's nearer caches do not hold.
     std::vector<TextureUse> farTextures;
 

@@ -18,11 +18,16 @@ bool mayHaveBase(const Material& m) {
 bool isRough(float roughness) {
     return roughness * roughness >= kMinAlpha;
 }
+/// Where it is smoothest by its factors.
+float roughnessOf(const Material& m) {
+    return Bsdf::roughnessOf(m.roughness, m.anisotropy);
+}
 bool mayBeRough(const Material& m) {
-    return isRough(m.roughness);
+    return isRough(roughnessOf(m));
 }
 bool mayBeSmooth(const Material& m) {
-    return !mayBeRough(m) || m.metallicRoughnessTexture;
+    const bool alwaysBrushed = m.anisotropy > 0.0f && !m.anisotropyTexture;
+    return !alwaysBrushed && (!isRough(m.roughness) || m.metallicRoughnessTexture);
 }
 bool mayHaveRoughClearcoat(const Material& m) {
     return m.clearcoat > 0.0f && isRough(m.clearcoatRoughness);
@@ -38,10 +43,10 @@ bool mayBeMirror(const Material& m) {
     return (mayReflect(m) && mayBeSmooth(m)) || mayHaveSmoothClearcoat(m);
 }
 bool mayRefractRoughly(const Material& m) {
-    return mayTransmit(m) && !m.thin && refractsRoughly(m.roughness, m.ior);
+    return mayTransmit(m) && !m.thin && refractsRoughly(roughnessOf(m), m.ior);
 }
 bool mayRefractSmoothly(const Material& m) {
-    return mayTransmit(m) && !m.thin && (!mayRefractRoughly(m) || m.metallicRoughnessTexture);
+    return mayTransmit(m) && !m.thin && (mayBeSmooth(m) || !refractsRoughly(m.roughness, m.ior));
 }
 bool mayPassRoughly(const Material& m) {
     return mayTransmit(m) && m.thin && mayBeRough(m);
@@ -57,11 +62,25 @@ bool usesSecondSet(const Material& m) {
         return m.*texture && (m.*texture).secondSet;
     };
     return std::any_of(kBsdfTextures.begin(), kBsdfTextures.end(), second) ||
-           second(&Material::normalTexture) || second(&Material::emissiveTexture);
+           std::any_of(kTurningTextures.begin(), kTurningTextures.end(), second) ||
+           second(&Material::emissiveTexture);
+}
+
+bool hasOwnClearcoatNormal(const Material& m) {
+    return m.clearcoat > 0.0f && (m.normalTexture || m.clearcoatNormalTexture);
 }
 
 bool mayBeDiffuse(const Material& m) {
-    return !isBlack(m.baseColor) && mayHaveBase(m);
+    const bool stays = m.diffuseTransmission < 1.0f || m.diffuseTransmissionTexture;
+    return !isBlack(m.baseColor) && stays && mayHaveBase(m);
+}
+
+bool mayTransmitDiffusely(const Material& m) {
+    return m.diffuseTransmission > 0.0f && !isBlack(m.diffuseTransmissionColor) && mayHaveBase(m);
+}
+
+bool hasSheen(const Material& m) {
+    return !isBlack(m.sheenColor);
 }
 
 bool mayReflect(const Material& m) {
@@ -81,7 +100,7 @@ bool mayBeSpecular(const Material& m) {
 bool mayBePane(const Material& m) {
     return m.thin && !mayBeRough(m) && !m.metallicRoughnessTexture && m.metallic == 0.0f &&
            m.transmission == 1.0f && !m.transmissionTexture && m.clearcoat == 0.0f &&
-           isBlack(m.emission) && !m.normalTexture &&
+           !hasSheen(m) && isBlack(m.emission) && !m.normalTexture &&
            !m.without.has(LobeKind::SmoothThinTransmission);
 }
 
@@ -97,7 +116,9 @@ std::span<const LobeRow> lobeTable() {
         {LobeKind::RoughRefraction, "rough_refraction", mayRefractRoughly},
         {LobeKind::SmoothRefraction, "smooth_refraction", mayRefractSmoothly},
         {LobeKind::RoughThinTransmission, "rough_thin_transmission", mayPassRoughly},
-        {LobeKind::SmoothThinTransmission, "smooth_thin_transmission", mayPassSmoothly}};
+        {LobeKind::SmoothThinTransmission, "smooth_thin_transmission", mayPassSmoothly},
+        {LobeKind::DiffuseTransmission, "diffuse_transmission", mayTransmitDiffusely},
+        {LobeKind::Sheen, "sheen", hasSheen}};
     return kRows;
 }
 

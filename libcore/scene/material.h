@@ -37,8 +37,8 @@ struct TextureUse {
     Vec2 at(Vec2 uv) const { return uAxis * uv.x + vAxis * uv.y + offset; }
 };
 
-/// glTF metallic-roughness with specular, clearcoat, ior, transmission and volume; factors are
-/// linear.
+/// glTF metallic-roughness with specular, clearcoat, sheen, anisotropy, ior, transmission, diffuse
+/// transmission and volume; factors are linear.
 struct Material {
     enum class Alpha : std::uint8_t { Opaque, Mask, Blend };
 
@@ -57,6 +57,19 @@ struct Material {
     TextureUse clearcoatTexture;  ///< linear: R
     float clearcoatRoughness = 0.0f;
     TextureUse clearcoatRoughnessTexture;  ///< linear: G
+    TextureUse clearcoatNormalTexture;     ///< as normalTexture; none: the mesh's own normals
+    float clearcoatNormalScale = 1.0f;
+    Rgb sheenColor;                ///< KHR_materials_sheen; black: none
+    TextureUse sheenColorTexture;  ///< sRGB
+    float sheenRoughness = 0.0f;
+    TextureUse sheenRoughnessTexture;  ///< linear: alpha
+    float anisotropy = 0.0f;           ///< KHR_materials_anisotropy: strength
+    float anisotropyRotation = 0.0f;   ///< radians from the tangent to the bitangent
+    TextureUse anisotropyTexture;  ///< linear: direction as (x + 1) / 2 in R and G; B = strength
+    float diffuseTransmission = 0.0f;  ///< KHR_materials_diffuse_transmission: of the diffuse base
+    TextureUse diffuseTransmissionTexture;  ///< linear: alpha
+    Rgb diffuseTransmissionColor{1.0f};
+    TextureUse diffuseTransmissionColorTexture;  ///< sRGB
     float ior = 1.5f;
     float transmission = 0.0f;
     TextureUse transmissionTexture;  ///< linear: R
@@ -76,12 +89,24 @@ struct Material {
     bool pane = false;  ///< rays pass it straight (theory.md, "Panes"); the scene finds out
 };
 
-/// The textures that a BSDF is made of, the base colour first. (Normal maps and emission are not.)
-inline constexpr std::array kBsdfTextures = {
-    &Material::baseColorTexture,         &Material::metallicRoughnessTexture,
-    &Material::transmissionTexture,      &Material::specularTexture,
-    &Material::specularColorTexture,     &Material::clearcoatTexture,
-    &Material::clearcoatRoughnessTexture};
+/// The textures that a BSDF is made of, the base colour first. (What turns it is not, and emission.)
+inline constexpr std::array kBsdfTextures = {&Material::baseColorTexture,
+                                             &Material::metallicRoughnessTexture,
+                                             &Material::transmissionTexture,
+                                             &Material::specularTexture,
+                                             &Material::specularColorTexture,
+                                             &Material::clearcoatTexture,
+                                             &Material::clearcoatRoughnessTexture,
+                                             &Material::sheenColorTexture,
+                                             &Material::sheenRoughnessTexture,
+                                             &Material::diffuseTransmissionTexture,
+                                             &Material::diffuseTransmissionColorTexture};
+/// Those that turn it, which need axes on the surface.
+inline constexpr std::array kTurningTextures = {
+    &Material::normalTexture, &Material::clearcoatNormalTexture, &Material::anisotropyTexture};
+
+/// Whether the clearcoat's normals are not those of what is under it.
+bool hasOwnClearcoatNormal(const Material& material);
 
 /// Whether the material asks for any texture by TEXCOORD_1.
 bool usesSecondSet(const Material& material);
@@ -89,6 +114,8 @@ bool usesSecondSet(const Material& material);
 // What a material may hold anywhere on its surface: textures lower factors, so that they can switch
 // lobes off as well as on. Lobes that are left out by force (Material::without) do not count.
 bool mayBeDiffuse(const Material& material);
+bool mayTransmitDiffusely(const Material& material);
+bool hasSheen(const Material& material);
 /// Metal, or a dielectric layer over a diffuse base.
 bool mayReflect(const Material& material);
 bool mayTransmit(const Material& material);

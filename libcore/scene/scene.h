@@ -74,8 +74,8 @@ class Scene {
     /// look at.
     void surfaceAt(const Hit& hit, SurfacePoint& out) const { surfaces_.pointAt(hit, out); }
     /// The surface's shape at a hit, whose point is `point`.
-    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point) const {
-        return surfaces_.shapeAt(hit, point);
+    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const {
+        return surfaces_.shapeAt(hit, point, clearcoat);
     }
     /// Closest surface and its point, one after the other.
     std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,

@@ -47,12 +47,16 @@ Bsdf Shading::bsdfAt(const SurfacePoint& point) const {
     }
     Bsdf::Parameters p = parametersAt(material, point.uv, point.uv1);
     p.baseColor *= point.color;
+    p.anisotropy = length(point.grain);
+    p.tangent = point.grain;
+    p.clearcoatNormal = point.clearcoatNs;
     return Bsdf(p, point.ng, point.ns, *tables_);
 }
 
 Shading::Prepared Shading::prepared(const Material& m, bool vertexColors) const {
     if (std::any_of(kBsdfTextures.begin() + 1, kBsdfTextures.end(),
-                    [&](TextureUse Material::*texture) { return bool(m.*texture); })) {
+                    [&](TextureUse Material::*texture) { return bool(m.*texture); }) ||
+        m.anisotropy > 0.0f || hasOwnClearcoatNormal(m)) {
         return {};
     }
     Prepared out;
@@ -81,6 +85,10 @@ Bsdf::Parameters Shading::parametersAt(const Material& m, Vec2 uv, Vec2 uv1) con
     p.pane = m.pane;
     p.clearcoat = m.clearcoat;
     p.clearcoatRoughness = m.clearcoatRoughness;
+    p.sheenColor = m.sheenColor;
+    p.sheenRoughness = m.sheenRoughness;
+    p.diffuseTransmission = m.diffuseTransmission;
+    p.diffuseTransmissionColor = m.diffuseTransmissionColor;
     p.without = m.without;
     const auto sample = [&](const TextureUse& use) {
         return sampleTexture(description_.textures, use, uv, uv1);
@@ -96,6 +104,14 @@ Bsdf::Parameters Shading::parametersAt(const Material& m, Vec2 uv, Vec2 uv1) con
     if (m.clearcoatTexture) p.clearcoat *= sample(m.clearcoatTexture).rgb.r;
     if (m.clearcoatRoughnessTexture) {
         p.clearcoatRoughness *= sample(m.clearcoatRoughnessTexture).rgb.g;
+    }
+    if (m.sheenColorTexture) p.sheenColor *= sample(m.sheenColorTexture).rgb;
+    if (m.sheenRoughnessTexture) p.sheenRoughness *= sample(m.sheenRoughnessTexture).alpha;
+    if (m.diffuseTransmissionTexture) {
+        p.diffuseTransmission *= sample(m.diffuseTransmissionTexture).alpha;
+    }
+    if (m.diffuseTransmissionColorTexture) {
+        p.diffuseTransmissionColor *= sample(m.diffuseTransmissionColorTexture).rgb;
     }
     return p;
 }

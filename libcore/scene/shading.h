@@ -18,7 +18,7 @@ class Shading {
     /// `description` must outlive it.
     Shading(const SceneDescription& description, std::span<const BakedMesh> meshes);
 
-    /// Evaluates the material's textures at the point.
+    /// Evaluates the material's textures at the point; what turns the BSDF is there already.
     Bsdf bsdfAt(const SurfacePoint& point) const;
     const AlbedoTables& albedoTables() const { return *tables_; }
 

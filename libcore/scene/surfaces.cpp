@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/sampling.h"
 #include "libcore/scene/texture.h"
 #include "libcore/scene/triangle.h"
 
@@ -75,6 +76,7 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
     s.light = object.firstLight != kNone ? object.firstLight + hit.primitive : kNone;
     s.uv1 = {};
     s.color = Rgb(1.0f);
+    s.clearcoatNs = s.grain = {};
     if (!mesh.plain) decorate(hit, p, turned, s);
     for (const TextureUse& use : mesh.farTextures) {
         prefetchTexture(description_.textures[std::size_t(use.value)],
@@ -82,12 +84,11 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
     }
 }
 
-bool Surfaces::hasNormalMap(const BakedMesh& mesh) const {
-    const Material& material = description_.materials[mesh.material];
-    return material.normalTexture && !mesh.uvsOf(material.normalTexture).empty();
+bool Surfaces::hasMap(const BakedMesh& mesh, const TextureUse& map) const {
+    return map && !mesh.uvsOf(map).empty();
 }
 
-SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point) const {
+SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const {
     const SceneObject& object = baked_.objects[hit.object];
     const BakedMesh& mesh = baked_.meshes[object.mesh];
     SurfaceShape shape;
@@ -97,9 +98,11 @@ SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point) const 
     shape.ng = normalize(cross(b - a, c - a));
     if (dot(shape.ng, Vec3d(point.ng)) < 0.0) shape.ng = -shape.ng;
     shape.normals.fill(shape.ng);
-    if (point.ns == point.ng) return shape;  // flat, or its normals say nothing
+    Vec3 SurfacePoint::*const normal = clearcoat ? &SurfacePoint::clearcoatNs : &SurfacePoint::ns;
+    if (point.*normal == point.ng) return shape;  // flat, or its normals say nothing
     const double u(hit.u), v(hit.v);
-    if (hasNormalMap(mesh)) {
+    const Material& material = description_.materials[mesh.material];
+    if (hasMap(mesh, clearcoat ? material.clearcoatNormalTexture : material.normalTexture)) {
         constexpr float kStep = 0x1p-10f;  // of the triangle: enough of a texel for floats to tell
         const auto normalAt = [&](float du, float dv) {
             Hit near = hit;
@@ -107,12 +110,12 @@ SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point) const 
             near.v += dv;
             SurfacePoint other;
             pointAt(near, other);
-            return Vec3d(other.ns);
+            return Vec3d(other.*normal);
         };
         constexpr double kInverse = 0.5 / double(kStep);
         const Vec3d byU = (normalAt(kStep, 0) - normalAt(-kStep, 0)) * kInverse;
         const Vec3d byV = (normalAt(0, kStep) - normalAt(0, -kStep)) * kInverse;
-        shape.normals[0] = Vec3d(point.ns) - byU * u - byV * v;
+        shape.normals[0] = Vec3d(point.*normal) - byU * u - byV * v;
         shape.normals[1] = shape.normals[0] + byU;
         shape.normals[2] = shape.normals[0] + byV;
         return shape;
@@ -144,23 +147,75 @@ void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool
         };
         s.color = color(t[0]) * w + color(t[1]) * hit.u + color(t[2]) * hit.v;
     }
-    if (hasNormalMap(mesh)) {
-        const Material& material = description_.materials[mesh.material];
-        const std::vector<Vec2>& uvs = mesh.uvsOf(material.normalTexture);
-        MapAxes axes = MapAxes::byCoordinates(corners, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
-        if (!mesh.tangents.empty()) {
-            Vec3 right = mesh.tangentAt(t, hit.u, hit.v);
-            bool over = (mesh.tangents[t[0]][3] < 0.0f) != turned;
-            if (object.instanced) {
-                right = object.vector(right);
-                over = over != object.mirrored;
-            }
-            // Tangents that say nothing (zero or NaN) leave it to the coordinates.
-            const Vec3 up = cross(s.ns, right) * (over ? -1.0f : 1.0f);
-            if (lengthSquared(up) > 0.0f) axes = {right, up};
-        }
-        s.ns = bumped(s, material.normalTexture, material.normalScale, axes);
+    const Material& material = description_.materials[mesh.material];
+    const auto axesOfMap = [&](const TextureUse& map) {
+        return axesOf(hit, corners, map, turned, s.ns);
+    };
+    if (material.anisotropy > 0.0f) {
+        // The tangents are those of the normal map, where there is one [glTF 2.0, 3.7.2.1].
+        const TextureUse& map =
+            material.normalTexture ? material.normalTexture : material.anisotropyTexture;
+        s.grain = grainAt(s, material, axesOfMap(map));
     }
+    if (hasOwnClearcoatNormal(material)) {
+        s.clearcoatNs = s.ns;
+        const TextureUse& map = material.clearcoatNormalTexture;
+        if (hasMap(mesh, map)) {
+            s.clearcoatNs = bumped(s, map, material.clearcoatNormalScale, axesOfMap(map));
+        }
+    }
+    if (const TextureUse& map = material.normalTexture; hasMap(mesh, map)) {
+        s.ns = bumped(s, map, material.normalScale, axesOfMap(map));
+    }
+}
+
+/// Axes by the mesh's tangents, else by the coordinates of the map; zero where it has neither.
+/// `turned`: the interpolated normal was, which is now `ns`.
+Surfaces::MapAxes Surfaces::axesOf(const Hit& hit, const std::array<Vec3, 3>& corners,
+                                   const TextureUse& map, bool turned, const Vec3& ns) const {
+    const SceneObject& object = baked_.objects[hit.object];
+    const BakedMesh& mesh = baked_.meshes[object.mesh];
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[hit.primitive];
+    const std::vector<Vec2>& uvs = mesh.uvsOf(map);
+    MapAxes axes{};
+    if (!uvs.empty()) {
+        axes = MapAxes::byCoordinates(corners, {uvs[t[0]], uvs[t[1]], uvs[t[2]]});
+    }
+    if (!mesh.tangents.empty()) {
+        Vec3 right = mesh.tangentAt(t, hit.u, hit.v);
+        bool over = (mesh.tangents[t[0]][3] < 0.0f) != turned;
+        if (object.instanced) {
+            right = object.vector(right);
+            over = over != object.mirrored;
+        }
+        // Tangents that say nothing (zero or NaN) leave it to the coordinates.
+        const Vec3 up = cross(ns, right) * (over ? -1.0f : 1.0f);
+        if (lengthSquared(up) > 0.0f) axes = {right, up};
+    }
+    return axes;
+}
+
+/// The direction along which the surface is rougher, as long as the strength.
+Vec3 Surfaces::grainAt(const SurfacePoint& point, const Material& m, const MapAxes& axes) const {
+    Vec2 direction{1.0f, 0.0f};
+    float strength = m.anisotropy;
+    if (m.anisotropyTexture) {
+        const Rgb texel =
+            sampleTexture(description_.textures, m.anisotropyTexture, point.uv, point.uv1).rgb;
+        direction = {2.0f * texel.r - 1.0f, 2.0f * texel.g - 1.0f};
+        strength *= texel.b;
+    }
+    const float c = std::cos(m.anisotropyRotation), s = std::sin(m.anisotropyRotation);
+    Vec3 tangent = axes.right - point.ns * dot(point.ns, axes.right);
+    // Without axes any direction will do, but the same everywhere around.
+    if (!(lengthSquared(tangent) > 0.0f)) tangent = Frame(point.ns).s;
+    tangent = normalize(tangent);
+    Vec3 bitangent = cross(point.ns, tangent);
+    if (dot(bitangent, axes.up) < 0.0f) bitangent = -bitangent;
+    const Vec3 along = tangent * (c * direction.x - s * direction.y) +
+                       bitangent * (s * direction.x + c * direction.y);
+    const float length2 = lengthSquared(along);
+    return (length2 > 0.0f ? along * (1.0f / std::sqrt(length2)) : tangent) * strength;
 }
 
 /// Shading normal by a normal map, whose axes are made perpendicular to the interpolated normal.

@@ -13,10 +13,12 @@ namespace lacuna {
 /// Where a ray met a surface.
 struct SurfacePoint {
     Vec3 position;
-    Vec3 ng;          ///< unit, by the winding (sign of the transform's determinant included)
-    Vec3 ns;          ///< unit, on ng's side
-    Vec2 uv, uv1;     ///< texture coordinates of either set
-    Rgb color{1.0f};  ///< the vertices', a factor on the base colour
+    Vec3 ng;           ///< unit, by the winding (sign of the transform's determinant included)
+    Vec3 ns;           ///< unit, on ng's side
+    Vec3 clearcoatNs;  ///< unit, on ng's side, where the clearcoat's normals are its own; else zero
+    Vec3 grain;        ///< along a brushed surface; its length is the anisotropy's strength
+    Vec2 uv, uv1;      ///< texture coordinates of either set
+    Rgb color{1.0f};   ///< the vertices', a factor on the base colour
     Vec2 barycentric;
     std::uint32_t object = kNone;
     std::uint32_t material = 0;
@@ -40,9 +42,9 @@ class Surfaces {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
     void pointAt(const Hit& hit, SurfacePoint& out) const;
 
-    /// The shape at a hit, whose point is `point`. Where a normal map bends it, that is its tangent plane, by differences of
-    /// texels.
-    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point) const;
+    /// The shape at a hit, whose point is `point`: of the surface, or of a clearcoat that has normals of its own. Where a
+    /// normal map bends it, that is its tangent plane, by differences of texels.
+    SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const;
 
     /// Alpha's: the share of the rays that find the point there.
     float opacity(const Hit& hit) const;
@@ -60,11 +62,14 @@ class Surfaces {
   private:
     struct MapAxes;
 
-    bool hasNormalMap(const BakedMesh& mesh) const;
+    bool hasMap(const BakedMesh& mesh, const TextureUse& map) const;
     void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                   SurfacePoint& out) const;
+    MapAxes axesOf(const Hit& hit, const std::array<Vec3, 3>& corners, const TextureUse& map,
+                   bool turned, const Vec3& ns) const;
     Vec3 bumped(const SurfacePoint& point, const TextureUse& map, float scale,
                 const MapAxes& axes) const;
+    Vec3 grainAt(const SurfacePoint& point, const Material& material, const MapAxes& axes) const;
     bool mostlyHoles(const TriangleAlpha& alpha) const;
 
     const SceneDescription& description_;

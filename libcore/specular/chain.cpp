@@ -60,8 +60,8 @@ MovingRay MovingRay::from(const Vec3d& origin, const Vec3d& direction) {
     return {origin, direction, {}, across(direction)};
 }
 
-std::optional<Chain::Step> Chain::stepAt(const SurfaceShape& shape, const Bsdf& bsdf,
-                                         SpecularEvent event) const {
+std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event) const {
+    const auto& [shape, bsdf, isClearcoat] = layer;
     if (!bsdf.has(event.event)) return std::nullopt;
     const Vec3d& d = last_.direction;
     const double side = dot(d, shape.ng) < 0.0 ? 1.0 : -1.0;
@@ -111,23 +111,32 @@ std::optional<Chain::Step> Chain::stepAt(const SurfaceShape& shape, const Bsdf& 
         const double index = double(bsdf.indexOn(dot(step.out.direction, shape.ng) > 0.0));
         density = straight ? std::fabs(dot(d, shape.ng)) : density * index * index;
     }
-    step.through = e.f * float(std::fabs(dot(step.out.direction, shape.ng)) / density);
+    step.scatter = e.f;
+    if (!isClearcoat) {
+        step.scatter *= vertices_[size_].bsdf.underOwnClearcoat(step.toEye, step.toLight);
+    }
+    step.through = step.scatter * float(std::fabs(dot(step.out.direction, shape.ng)) / density);
     if (isBlack(step.through)) return std::nullopt;
     return step;
 }
 
 /// The vertex to be, without its event; false where it has none.
-bool Chain::arriveAt(const Scene& scene, const Hit& hit, SurfaceShape& shape) {
+bool Chain::arriveAt(const Scene& scene, const Hit& hit) {
     if (size_ == kMost) return false;
     ChainVertex& v = vertices_[size_];
     scene.surfaceAt(hit, v.point);
     v.bsdf = scene.bsdfAt(v.point);
-    if (!v.bsdf.has(ScatterEvent::DeltaReflection) &&
-        !v.bsdf.has(ScatterEvent::DeltaTransmission)) {
-        return false;
+    return v.bsdf.has(ScatterEvent::DeltaReflection) || v.bsdf.has(ScatterEvent::DeltaTransmission);
+}
+
+Chain::Layer Chain::layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const {
+    const ChainVertex& v = vertices_[size_];
+    Layer layer{{}, v.bsdf, clearcoat};
+    if (v.bsdf.hasOwnClearcoat()) {
+        layer.bsdf = clearcoat ? v.bsdf.clearcoatAlone() : v.bsdf.withoutClearcoat();
     }
-    shape = scene.shapeAt(hit, v.point);
-    return true;
+    layer.shape = scene.shapeAt(hit, v.point, clearcoat);
+    return layer;
 }
 
 void Chain::take(const Step& step) {
@@ -136,33 +145,38 @@ void Chain::take(const Step& step) {
     v.toEye = step.toEye;
     v.toLight = step.toLight;
     v.through = step.through;
+    v.scatter = step.scatter;
     v.point.position = Vec3(step.out.origin);
     last_ = step.out;
 }
 
 bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event) {
-    SurfaceShape shape;
-    if (!arriveAt(scene, hit, shape)) return false;
-    const std::optional<Step> step = stepAt(shape, vertices_[size_].bsdf, event);
+    if (!arriveAt(scene, hit)) return false;
+    if (event.onClearcoat && !vertices_[size_].bsdf.hasOwnClearcoat()) return false;
+    const std::optional<Step> step = stepAt(layerAt(scene, hit, event.onClearcoat), event);
     if (step) take(*step);
     return step.has_value();
 }
 
 bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
-    SurfaceShape shape;
-    if (!arriveAt(scene, hit, shape)) return false;
-    const Bsdf& bsdf = vertices_[size_].bsdf;
-    const bool tilted = !(bsdf.ns() == bsdf.ng());
-    std::array<std::optional<Step>, 4> steps;
+    if (!arriveAt(scene, hit)) return false;
+    std::array<std::optional<Step>, 8> steps;
     double sum = 0.0;
     std::size_t count = 0;
-    for (const ScatterEvent event :
-         {ScatterEvent::DeltaReflection, ScatterEvent::DeltaTransmission}) {
-        const bool twice = tilted && (event == ScatterEvent::DeltaReflection || bsdf.bends());
-        for (const bool aboutNg : {false, true}) {
-            if (aboutNg && !twice) continue;
-            steps[count] = stepAt(shape, bsdf, {event, aboutNg});
-            if (steps[count]) sum += double(mean(steps[count++]->through));
+    const bool twoLayers = vertices_[size_].bsdf.hasOwnClearcoat();
+    for (const bool clearcoat : {false, true}) {
+        if (clearcoat && !twoLayers) continue;
+        const Layer layer = layerAt(scene, hit, clearcoat);
+        const Bsdf& bsdf = layer.bsdf;
+        const bool tilted = !(bsdf.ns() == bsdf.ng());
+        for (const ScatterEvent event :
+             {ScatterEvent::DeltaReflection, ScatterEvent::DeltaTransmission}) {
+            const bool twice = tilted && (event == ScatterEvent::DeltaReflection || bsdf.bends());
+            for (const bool aboutNg : {false, true}) {
+                if (aboutNg && !twice) continue;
+                steps[count] = stepAt(layer, {event, aboutNg, clearcoat});
+                if (steps[count]) sum += double(mean(steps[count++]->through));
+            }
         }
     }
     double left = u * sum;

@@ -28,6 +28,7 @@ struct MovingRay {
 struct SpecularEvent {
     ScatterEvent event = ScatterEvent::DeltaReflection;
     bool aboutNg = false;
+    bool onClearcoat = false;  ///< of a clearcoat that has normals of its own
     bool operator==(const SpecularEvent&) const = default;
 };
 
@@ -39,6 +40,7 @@ struct ChainVertex {
     /// Share of the radiance from toLight that leaves along toEye, with the square of the index that
     /// refraction changes it by.
     Rgb through;
+    Rgb scatter;  ///< f of the event (bsdf.h)
 };
 
 /// From the eye's side. A value type: searches keep several.
@@ -74,11 +76,17 @@ class Chain {
         SpecularEvent event;
         MovingRay out;
         Vec3 toEye, toLight;
-        Rgb through;
+        Rgb through, scatter;
     };
-    bool arriveAt(const Scene& scene, const Hit& hit, SurfaceShape& shape);
-    std::optional<Step> stepAt(const SurfaceShape& shape, const Bsdf& bsdf,
-                               SpecularEvent event) const;
+    /// What mirrors and refracts at a hit: all that is there, or one of two layers.
+    struct Layer {
+        SurfaceShape shape;
+        Bsdf bsdf;
+        bool isClearcoat = false;
+    };
+    bool arriveAt(const Scene& scene, const Hit& hit);
+    Layer layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const;
+    std::optional<Step> stepAt(const Layer& layer, SpecularEvent event) const;
     void take(const Step& step);
 
     MovingRay first_, last_;

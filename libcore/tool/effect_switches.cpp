@@ -56,12 +56,17 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
             m.specularColor = Rgb(1.0f);
             m.specularColorTexture = {};
         }
+    } else if (name == "anisotropy") {
+        for (Material& m : scene.materials) {
+            m.anisotropy = 0.0f;
+            m.anisotropyTexture = {};
+        }
     } else if (name == "alpha_mask") {
         makeOpaque(scene, Material::Alpha::Mask);
     } else if (name == "alpha_blend") {
         makeOpaque(scene, Material::Alpha::Blend);
     } else if (name == "normal_maps") {
-        for (Material& m : scene.materials) m.normalTexture = {};
+        for (Material& m : scene.materials) m.normalTexture = m.clearcoatNormalTexture = {};
     } else if (name == "vertex_colors") {
         for (Mesh& m : scene.meshes) m.colors = {};
     } else if (name == "attenuation") {

@@ -93,13 +93,18 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           have.count([](const Material& m) { return m.alphaMode == Material::Alpha::Blend; }),
           "material", " with alphaMode BLEND: a share of the rays passes",
           "no material with alphaMode BLEND");
-    t.add("normal_maps", have.count([](const Material& m) { return bool(m.normalTexture); }),
+    t.add("normal_maps",
+          have.count([](const Material& m) { return m.normalTexture || m.clearcoatNormalTexture; }),
           "material", " with a normal map", "no normal map");
     t.add("vertex_colors", have.coloredPrimitives, "coloured primitive", "",
           "no mesh with COLOR_0");
 
     t.add("diffuse", have.count(withLobes(LobeKind::Diffuse)), "material", " with a diffuse lobe",
           "no diffuse material");
+    t.add("diffuse_transmission", have.count(withLobes(LobeKind::DiffuseTransmission)), "material",
+          " that light shines through diffusely", "nothing like leaves or paper");
+    t.add("sheen", have.count(withLobes(LobeKind::Sheen)), "material", " with the sheen of cloth",
+          "no sheen");
     t.add("glossy", have.count(withLobes(LobeKind::Glossy)), "material", " with a rough reflection",
           "no rough metal or coat");
     t.add("clearcoat", have.count([](const Material& m) { return m.clearcoat > 0.0f; }), "material",
@@ -108,6 +113,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
         return mayReflect(m) && (m.specularColor != Rgb(1.0f) || m.specularColorTexture);
     }),
           "material", " with a coloured coat", "no coat with a colour of its own");
+    t.add("anisotropy", have.count([](const Material& m) { return m.anisotropy > 0.0f; }),
+          "brushed material", "", "no brushed material");
     t.add("mirror", have.count(withLobes(LobeKind::Mirror)), "material",
           " with a perfectly smooth reflection", "no metal or coat of roughness 0");
     const char* none = "no transmissive solid of that kind: no refraction, no eta factor";

@@ -28,6 +28,7 @@ constexpr Weight kWeights[] = {
     {"dielectric layer", &Material::specular, &Material::specularTexture},
     {"share of metal", &Material::metallic, nullptr},
     {"share of glass", &Material::transmission, &Material::transmissionTexture},
+    {"diffuse transmission", &Material::diffuseTransmission, &Material::diffuseTransmissionTexture},
 };
 
 /// "2 clearcoats of weight up to 0.0001", or nothing.

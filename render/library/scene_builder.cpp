@@ -220,6 +220,19 @@ SceneBuilder::Index SceneBuilder::addMaterial(const Material& m) {
         extend("KHR_materials_clearcoat", {{"clearcoatFactor", m.clearcoat},
                                            {"clearcoatRoughnessFactor", m.clearcoatRoughness}});
     }
+    if (m.sheen != Colour{0, 0, 0}) {
+        extend("KHR_materials_sheen",
+               {{"sheenColorFactor", m.sheen}, {"sheenRoughnessFactor", m.sheenRoughness}});
+    }
+    if (m.anisotropy > 0.0) {
+        extend("KHR_materials_anisotropy", {{"anisotropyStrength", m.anisotropy},
+                                            {"anisotropyRotation", m.anisotropyRotation}});
+    }
+    if (m.diffuseTransmission > 0.0) {
+        extend("KHR_materials_diffuse_transmission",
+               {{"diffuseTransmissionFactor", m.diffuseTransmission},
+                {"diffuseTransmissionColorFactor", m.diffuseTransmissionColour}});
+    }
     return content_->append("materials", std::move(material));
 }
 

@@ -52,6 +52,24 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
     stabilityCase("film-border", worstDeviation(), kOfAllowed);
 }
 
+/// Leaves, some of them coloured below, send on what they do not reflect: a box of them glows inside
+/// as it does outside.
+TEST_P(Exact, furnaceOfLeaves) {
+    SceneBuilder b = furnace(0.5f);
+    lacuna::Material leaf = emitter(Rgb(0.5f), true, Rgb(0.5f));
+    leaf.diffuseTransmission = 0.4f;
+    leaf.diffuseTransmissionColor = Rgb(0.5f);
+    const auto leaves = b.add(leaf);
+    b.add(box({0.3f, -0.6f, -0.6f}, {0.7f, 0.1f, -0.1f}, leaves));
+    b.add(quad({-0.5f, 0.2f, 0.2f}, {0.5f, 0.1f, 0}, {0, 0.3f, 0.1f}, leaves));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 5;
+    shot.iterations = 150;
+    expectRadiance(render(*scene, row(), shot), 1 - std::pow(0.5, shot.maxDepth),
+                   row().name + ", furnace of leaves");
+}
+
 // Direct light on a plane
 // --------------------------------------------------------------------------
 
@@ -79,6 +97,21 @@ void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>&
         return Vec3d{e, e, e} * (0.6 / std::numbers::pi);
     });
     expectRadiance(render(*scene, row, shot), exact, row.name + ", " + what, judge);
+}
+
+/// The floor is paper, and the sun below it.
+TEST_P(Exact, sunShinesThroughPaper) {
+    const double cosine = 0.8;
+    expectFloor(
+        row(),
+        [&](SceneBuilder& b) {
+            lacuna::Material& paper = b.d.materials[0];
+            paper.baseColor = Rgb(0.9f);
+            paper.diffuseTransmission = 0.5f;
+            b.add(directionalLight({0.6, cosine, 0}, Rgb(3.0f)));
+        },
+        // The closed form is of a floor of .6, half of the light goes through this one.
+        [&](double, double) { return 3 * cosine * 0.5 / 0.6; }, "sun through paper");
 }
 
 /// Of a rectangle [0, a] x [0, b] at distance 1, seen from below its corner at the origin.

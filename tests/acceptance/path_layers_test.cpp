@@ -206,6 +206,48 @@ TEST(PathLayers, OfLobesAreThePicturesOfThoseLobes) {
     EXPECT_GT(sums[1], 1.0);
 }
 
+// Glass that is half a leaf: what goes through is diffuse and glossy light, and together it is all.
+TEST(PathLayers, TransmissionIsDividedAsReflectionIs) {
+    const auto sheet = [](bool base, bool rough) {
+        SceneBuilder b;
+        lacuna::Material m = glass(1.5f, 0.6f);
+        m.thin = true;
+        m.transmission = 0.5f;
+        m.specular = 0;
+        m.diffuseTransmission = 0.8f;
+        if (!base) {
+            m.without.add(LobeKind::Diffuse);
+            m.without.add(LobeKind::DiffuseTransmission);
+        }
+        if (!rough) m.without.add(LobeKind::RoughThinTransmission);
+        b.add(quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, b.add(m)));
+        b.add(directionalLight({0.3, 0.2, 1}, {3, 2, 1}));
+        b.add(lookAt({0, 0.3, 3}, {0, 0, 0}, 45));
+        return b.build();
+    };
+    Shot shot;
+    shot.maxDepth = 2;
+    shot.iterations = 16;
+    const auto both = sheet(true, true);
+    const PathLayers paths(*both, false,
+                           expressions({{"base", "C<TD>L"}, {"glass", "C<TG>L"}, {"all", "C.L"}}));
+    shot.layers = &paths;
+    const Layers layers = render(*both, rowNamed("pt"), shot).layers;
+    shot.layers = nullptr;
+    const Image base = render(*sheet(true, false), rowNamed("pt"), shot).pixels.image();
+    const Image rough = render(*sheet(false, true), rowNamed("pt"), shot).pixels.image();
+    double sums[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < base.pixels.size(); ++i) {
+        EXPECT_NEAR(layers.at("base.G")[i], base.pixels[i].g, 1e-5f + 1e-4f * base.pixels[i].g);
+        EXPECT_NEAR(layers.at("glass.G")[i], rough.pixels[i].g, 1e-5f + 1e-4f * rough.pixels[i].g);
+        EXPECT_NEAR(layers.at("all.G")[i], layers.at("base.G")[i] + layers.at("glass.G")[i], 1e-5f);
+        sums[0] += double(base.pixels[i].g);
+        sums[1] += double(rough.pixels[i].g);
+    }
+    EXPECT_GT(sums[0], 1.0);
+    EXPECT_GT(sums[1], 1.0);
+}
+
 // A smooth coat mirrors nothing of a sun, which no walk can hit: all that connections find is of the
 // base, though walks go on from there by the coat as well.
 TEST(PathLayers, OfConnectionsAreOfWhatTheyEvaluate) {

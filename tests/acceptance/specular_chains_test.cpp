@@ -178,6 +178,34 @@ TEST_P(Caustics, areTheSameByChainsAndBySplats) {
                Judge::BlocksAndMean);
 }
 
+/// Mirrors with a little relief under flat lacquer, and flat mirrors under lacquer with a relief: two images of
+/// the lamp each.
+TEST_P(Caustics, ofLacquerAreTheSameByChainsAndBySplats) {
+    SceneBuilder b;
+    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    const TextureUse relief = b.add(waves());
+    lacuna::Material lacquer = mirror({0.3f, 0.4f, 0.5f});
+    lacquer.clearcoat = 1.0f;
+    lacquer.normalTexture = relief;
+    lacquer.normalScale = 0.1f;
+    b.add(box({-1, 0, -0.4f}, {-0.4f, 0.7f, 0.2f}, b.add(lacquer)), rotation({0, 1, 0}, 25));
+    lacquer.normalTexture = {};
+    lacquer.clearcoatNormalTexture = relief;
+    lacquer.clearcoatNormalScale = 0.1f;
+    b.add(box({0.4f, 0, -0.4f}, {1, 0.7f, 0.2f}, b.add(lacquer)), rotation({0, 1, 0}, -25));
+    addLight(b, GetParam());
+    b.add(lookAt({0.3, 1.6, 3}, {0, 0.2, 0}, 45));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 4;
+    shot.iterations = 2000;
+    const Picture splats = render(*scene, rowNamed("bpt"), shot);
+    shot.seed = 2;
+    expectSame(render(*scene, rowNamed("pt"), shot), splats, nameOf(GetParam()) + ", lacquer",
+               Judge::BlocksAndMean);
+}
+
 /// A chain's path has no other technique in any row: its weight by products is one.
 TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
     const auto scene = specularStage(LightChoice::Point).build();

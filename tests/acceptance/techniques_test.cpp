@@ -152,6 +152,28 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
+        // A leaf between light and floor, cloth, a brushed ball under lacquer that is smoother than it.
+        TechniqueScene s{"leaf, cloth, brushed metal and lacquer", plates(true), 2, 3};
+        SceneBuilder& b = s.builder;
+        lacuna::Material cloth = matte({0.5f, 0.3f, 0.3f});
+        cloth.sheenColor = {0.9f, 0.8f, 0.4f};
+        cloth.sheenRoughness = 0.5f;
+        b.d.meshes[0].material = b.add(cloth);
+        lacuna::Material paper = plastic({0.5f, 0.6f, 0.2f}, 0.7f);
+        paper.diffuseTransmission = 0.6f;
+        paper.diffuseTransmissionColor = {0.4f, 0.9f, 0.3f};
+        b.add(quad({-0.8f, 0.9f, -0.6f}, {1.6f, 0, 0}, {0, 0.1f, 1.4f}, b.add(paper)));
+        lacuna::Material brushed = metal({0.9f, 0.7f, 0.5f}, 0.6f);
+        brushed.anisotropy = 0.6f;
+        brushed.anisotropyRotation = 0.5f;
+        brushed.normalTexture = b.add(strongBumps());
+        brushed.clearcoat = 0.8f;
+        brushed.clearcoatRoughness = 0.6f;
+        b.add(sphere({0.3f, 0.45f, 0.2f}, 0.35f, 12, b.add(brushed), true));
+        addQuadLight(b);
+        scenes.push_back(s);
+    }
+    {
         // A plate of coloured glass with a leaf in it, between light and floor: edges from face to
         // face, and from either face to what says nothing about the glass.
         TechniqueScene s{"coloured rough glass", plates(false), 2, 4};

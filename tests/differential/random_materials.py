@@ -119,6 +119,7 @@ class Materials(Draws):
         if glass or self.chance(0.15):
             self.transmission(m, glass)
         self.coats(m)
+        self.fabrics(m)
         if lamp:
             self.emission(m)
         self.material_extras(m)
@@ -160,8 +161,33 @@ class Materials(Draws):
             coat = {"clearcoatFactor": self.share(), "clearcoatRoughnessFactor": r.choice((0, r.random(), r.random()))}
             self.textured(coat, "clearcoatTexture")
             self.textured(coat, "clearcoatRoughnessTexture")
-            self.textured(coat, "clearcoatNormalTexture", 0.1)
+            if self.chance(0.2):
+                coat["clearcoatNormalTexture"] = self.placed()
+                if self.chance(0.6):
+                    coat["clearcoatNormalTexture"]["scale"] = r.choice((0, -1, r.uniform(0, 2)))
             self.extension(m, "KHR_materials_clearcoat", coat)
+
+    def fabrics(self, m):
+        """Cloth, brushed metal, leaves."""
+        r = self.r
+        if self.chance(0.15):
+            sheen = {"sheenColorFactor": self.colour(), "sheenRoughnessFactor": self.share()}
+            self.textured(sheen, "sheenColorTexture")
+            self.textured(sheen, "sheenRoughnessTexture")
+            self.extension(m, "KHR_materials_sheen", sheen)
+        if self.chance(0.15):
+            grain = {"anisotropyStrength": self.share()}
+            if self.chance(0.6):
+                grain["anisotropyRotation"] = r.uniform(-7, 7)
+            self.textured(grain, "anisotropyTexture")
+            self.extension(m, "KHR_materials_anisotropy", grain)
+        if self.chance(0.15):
+            leaf = {"diffuseTransmissionFactor": self.share()}
+            if self.chance(0.7):
+                leaf["diffuseTransmissionColorFactor"] = self.colour()
+            self.textured(leaf, "diffuseTransmissionTexture")
+            self.textured(leaf, "diffuseTransmissionColorTexture")
+            self.extension(m, "KHR_materials_diffuse_transmission", leaf)
 
     def emission(self, m):
         m["emissiveFactor"] = self.colour()

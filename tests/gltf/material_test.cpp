@@ -156,13 +156,107 @@ TEST(Material, ClearcoatAndItsTextures) {
     ASSERT_TRUE(m.clearcoatTexture && m.clearcoatRoughnessTexture);
     EXPECT_FALSE(scene.textures[std::size_t(m.clearcoatTexture.value)].srgb);
     EXPECT_FALSE(scene.materials[1].clearcoatTexture);
-    // One normal for all layers.
+    EXPECT_FALSE(hasOwnClearcoatNormal(m));
+    EXPECT_FALSE(hasOwnClearcoatNormal(scene.materials[1]));
+    // Lacquer is as smooth as the mesh over a normal map, or has one of its own.
     coat["clearcoatFactor"] = 1;
     b.add("materials",
           {{"normalTexture", info}, {"extensions", {{"KHR_materials_clearcoat", coat}}}});
-    coat["clearcoatNormalTexture"] = info;
+    coat["clearcoatNormalTexture"] = {{"index", info["index"]}, {"scale", 0.5}};
     b.add("materials", {{"extensions", {{"KHR_materials_clearcoat", coat}}}});
-    EXPECT_EQ(warningsWith(b.load(), "clearcoat has the normals of what is under it"), 1);
+    const SceneDescription lacquers = b.load();
+    EXPECT_TRUE(lacquers.warnings.empty());
+    EXPECT_TRUE(hasOwnClearcoatNormal(lacquers.materials[2]));
+    EXPECT_FALSE(lacquers.materials[2].clearcoatNormalTexture);
+    EXPECT_TRUE(hasOwnClearcoatNormal(lacquers.materials[3]));
+    ASSERT_TRUE(lacquers.materials[3].clearcoatNormalTexture);
+    EXPECT_EQ(lacquers.materials[3].clearcoatNormalScale, 0.5f);
+}
+
+TEST(Material, SheenAndItsTextures) {
+    TriangleBuilder b;
+    const json info = {{"index", b.texture(redBlue())}};
+    json sheen = {{"sheenColorFactor", {0.5, 0.25, 2}},
+                  {"sheenColorTexture", info},
+                  {"sheenRoughnessFactor", 0.75},
+                  {"sheenRoughnessTexture", info}};
+    b.root["extensionsRequired"] = {"KHR_materials_sheen"};
+    b.add("materials", {{"extensions", {{"KHR_materials_sheen", sheen}}}});
+    sheen.erase("sheenColorFactor");  // black by default
+    b.add("materials", {{"extensions", {{"KHR_materials_sheen", sheen}}}});
+    const SceneDescription scene = b.load();
+    EXPECT_EQ(warningsWith(scene, "clamped"), 1);
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.sheenColor, Rgb(0.5f, 0.25f, 1.0f));
+    EXPECT_EQ(m.sheenRoughness, 0.75f);
+    ASSERT_TRUE(m.sheenColorTexture && m.sheenRoughnessTexture);
+    EXPECT_TRUE(scene.textures[std::size_t(m.sheenColorTexture.value)].srgb);
+    EXPECT_FALSE(scene.textures[std::size_t(m.sheenRoughnessTexture.value)].srgb);
+    EXPECT_TRUE(hasSheen(m));
+    EXPECT_FALSE(hasSheen(scene.materials[1]));
+    EXPECT_FALSE(scene.materials[1].sheenColorTexture);
+    expectRefused(
+        withMaterial(
+            {{"extensions",
+              {{"KHR_materials_sheen",
+                {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", {{"index", 7}}}}}}}}),
+        {"sheenColorTexture.index", "textures"});
+    expectRefused(
+        withMaterial({{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1}}}}}}}),
+        {"sheenColorFactor", "3 numbers"});
+}
+
+TEST(Material, AnisotropyAndItsTexture) {
+    TriangleBuilder b;
+    const json info = {{"index", b.texture(redBlue())}};
+    b.root["extensionsRequired"] = {"KHR_materials_anisotropy"};
+    b.add("materials", {{"extensions",
+                         {{"KHR_materials_anisotropy",
+                           {{"anisotropyStrength", 0.5},
+                            {"anisotropyRotation", -7.5},
+                            {"anisotropyTexture", info}}}}}});
+    b.add("materials",
+          {{"extensions",
+            {{"KHR_materials_anisotropy", {{"anisotropyTexture", info}}}}}});  // of strength 0
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.anisotropy, 0.5f);
+    EXPECT_EQ(m.anisotropyRotation, -7.5f);
+    ASSERT_TRUE(m.anisotropyTexture);
+    EXPECT_FALSE(scene.textures[std::size_t(m.anisotropyTexture.value)].srgb);
+    EXPECT_FALSE(scene.materials[1].anisotropyTexture);
+    expectRefused(
+        withMaterial(
+            {{"extensions", {{"KHR_materials_anisotropy", {{"anisotropyStrength", "much"}}}}}}),
+        {"anisotropyStrength", "a number"});
+}
+
+TEST(Material, DiffuseTransmissionAndItsTextures) {
+    TriangleBuilder b;
+    const json info = {{"index", b.texture(redBlue())}};
+    b.root["extensionsRequired"] = {"KHR_materials_diffuse_transmission"};
+    b.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                        {"extensions",
+                         {{"KHR_materials_diffuse_transmission",
+                           {{"diffuseTransmissionFactor", 0.25},
+                            {"diffuseTransmissionTexture", info},
+                            {"diffuseTransmissionColorFactor", {1, 0.5, 0}},
+                            {"diffuseTransmissionColorTexture", info}}},
+                          {"KHR_materials_volume",
+                           {{"thicknessFactor", 1},
+                            {"attenuationDistance", 1},
+                            {"attenuationColor", {1, 1, 0.5}}}}}}});
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.diffuseTransmission, 0.25f);
+    EXPECT_EQ(m.diffuseTransmissionColor, Rgb(1.0f, 0.5f, 0.0f));
+    ASSERT_TRUE(m.diffuseTransmissionTexture && m.diffuseTransmissionColorTexture);
+    EXPECT_FALSE(scene.textures[std::size_t(m.diffuseTransmissionTexture.value)].srgb);
+    EXPECT_TRUE(scene.textures[std::size_t(m.diffuseTransmissionColorTexture.value)].srgb);
+    EXPECT_TRUE(mayTransmitDiffusely(m));
+    EXPECT_NEAR(m.absorption.b, std::log(2.0), 1e-6);  // of light that went in diffusely
 }
 
 TEST(Material, AttenuationOfSolidGlass) {
@@ -259,12 +353,14 @@ TEST(Material, DefaultsOfUnrenderedExtensionsAreNoNews) {
 
 TEST(Material, UnknownExtensions) {
     TriangleBuilder b;
-    b.root["extensionsUsed"] = {"VENDOR_bar", "KHR_materials_ior", "EXT_foo", "KHR_materials_sheen",
-                                "KHR_xmp_json_ld"};
+    b.root["extensionsUsed"] = {"VENDOR_bar", "KHR_materials_ior", "EXT_foo",
+                                "KHR_materials_iridescence", "KHR_xmp_json_ld"};
     const SceneDescription scene = b.load();
     EXPECT_EQ(scene.warnings.size(), 2u);
     EXPECT_EQ(warningsWith(scene, "VENDOR_bar, EXT_foo"), 1);
-    EXPECT_EQ(warningsWith(scene, "KHR_materials_sheen is not rendered: cloth has no sheen"), 1);
+    EXPECT_EQ(warningsWith(scene,
+                           "KHR_materials_iridescence is not rendered: thin films have no colours"),
+              1);
     b.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_mesh_quantization"};
     EXPECT_NO_THROW(b.load());
     b.root["extensionsRequired"] = {"KHR_materials_ior", "EXT_texture_avif"};

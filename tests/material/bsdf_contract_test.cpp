@@ -53,7 +53,10 @@ TEST(BsdfContract, DiffusePartIsWhatIsMissingWithoutTheBase) {
     int mixed = 0;
     for (const Case& c : grid()) {
         Bsdf::Parameters p = c.parameters;
+        // Without a sheen there is more of what is under it.
+        if (!isBlack(p.sheenColor)) continue;
         p.without.add(LobeKind::Diffuse);
+        p.without.add(LobeKind::DiffuseTransmission);
         const Bsdf rest(p, c.bsdf.ng(), c.bsdf.ns(), tables());
         for (int i = 0; i < 10; ++i) {
             const Vec3 to = uniformDirection(random);
@@ -64,8 +67,13 @@ TEST(BsdfContract, DiffusePartIsWhatIsMissingWithoutTheBase) {
             const Rgb glossy = rest.evaluate(toEye, toLight).f;
             ASSERT_LE(std::abs(base.r + glossy.r - all.r), 2e-5f * all.r) << c.name;
             ASSERT_LE(std::abs(base.b + glossy.b - all.b), 2e-5f * all.b) << c.name;
-            ASSERT_TRUE(c.bsdf.isDiffuse() || base == Rgb{}) << c.name;
-            ASSERT_TRUE(c.bsdf.isGlossy() || glossy == Rgb{}) << c.name;
+            const bool through = (dot(to, c.bsdf.ng()) > 0) != (dot(c.from, c.bsdf.ng()) > 0);
+            const Bsdf& b = c.bsdf;
+            ASSERT_TRUE((through ? b.transmitsDiffusely() : b.isDiffuse()) || base == Rgb{})
+                << c.name;
+            ASSERT_TRUE((through ? b.transmitsGlossily() : b.isGlossy()) || glossy == Rgb{})
+                << c.name;
+            ASSERT_TRUE(!through || b.transmits() || all == Rgb{}) << c.name;
             mixed += base.r > 0.0f && glossy.r > 0.0f ? 1 : 0;
         }
     }
@@ -118,7 +126,12 @@ TEST(BsdfContract, TiltedLobesAreAMixtureOfBothNormals) {
         for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
             Bsdf::Parameters p = m.parameters;
             p.roughness = roughness;
-            p.without.add(LobeKind::Diffuse);
+            // These keep ns for the light; a clearcoat of its own is two mixtures.
+            for (const LobeKind kind :
+                 {LobeKind::Diffuse, LobeKind::DiffuseTransmission, LobeKind::Sheen}) {
+                p.without.add(kind);
+            }
+            if (lengthSquared(p.clearcoatNormal) > 0) continue;
             for (int tilt = 0; tilt < 40; ++tilt) {
                 const Vec3 ng = uniformDirection(random);
                 const double degrees = 80 * random.real() * random.real();
@@ -351,6 +364,18 @@ TEST(BsdfContract, FuzzedInputsStayFinite) {
             p.clearcoat = random.next() < 0.1f ? 1e-30f : extreme(1);
             p.clearcoatRoughness = extreme(1);
         }
+        if (random.next() < 0.3f) {
+            p.anisotropy = random.next() < 0.1f ? 1e-30f : extreme(1);
+            p.tangent = uniformDirection(random) * (random.next() < 0.1f ? 0.0f : 2.0f);
+        }
+        if (random.next() < 0.3f) {
+            p.sheenColor = {extreme(1), extreme(1e-6f), extreme(1)};
+            p.sheenRoughness = extreme(1);
+        }
+        if (random.next() < 0.3f) {
+            p.diffuseTransmission = random.next() < 0.1f ? 1e-30f : extreme(1);
+            p.diffuseTransmissionColor = {extreme(1), extreme(1e-6f), extreme(1)};
+        }
         const float roughness[] = {0, 0.0099f, 0.01f, 0.010001f, 0.02f, random.next(), 1};
         p.roughness = roughness[std::size_t(random.next() * 7)];
         const float ior[] = {1,  1.0000001f, 1.00001f, 1.001f, 1.5f, 1 + random.next(),
@@ -359,6 +384,11 @@ TEST(BsdfContract, FuzzedInputsStayFinite) {
         const Vec3 ns = uniformDirection(random);
         const Vec3 other = uniformDirection(random);
         const Vec3 ng = random.next() < 0.5f ? ns : dot(other, ns) > 0 ? other : -other;
+        if (random.next() < 0.3f) {
+            const Vec3 coat = uniformDirection(random);
+            if (std::abs(dot(coat, ng)) > 1e-3f)
+                p.clearcoatNormal = dot(coat, ng) > 0 ? coat : -coat;
+        }
         const Bsdf bsdf(p, ng, ns, tables());
         const Vec3 a = direction(ns);
         const Vec3 near = normalize(ns * (2 * dot(a, ns)) - a);

@@ -193,6 +193,137 @@ TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
     EXPECT_GT(compared, 400);
 }
 
+/// [Heitz14 eq 85] and Smith's Lambda of a surface that is as rough as `along` in x and `across` in y.
+double brushedD(Vec3d h, double along, double across) {
+    const double q = std::pow(h.x / along, 2) + std::pow(h.y / across, 2) + h.z * h.z;
+    return 1 / (kPiD * along * across * q * q);
+}
+double brushedLambda(Vec3d v, double along, double across) {
+    const double slope2 = (std::pow(v.x * along, 2) + std::pow(v.y * across, 2)) / (v.z * v.z);
+    return (std::sqrt(1 + slope2) - 1) / 2;
+}
+
+TEST(BsdfReference, BrushedMetalIsRougherAlongItsGrain) {
+    Random random(28);
+    for (const double roughness : {0.3, 0.6}) {
+        for (const double anisotropy : {0.3, 1.0}) {
+            Bsdf::Parameters p = makeParameters(Rgb(1.0f), 1, 0);
+            p.roughness = float(roughness);
+            p.anisotropy = float(anisotropy);
+            p.tangent = {-2, 0, 5};  // what of it lies on the surface counts, either way
+            const Bsdf metal(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+            const double across = roughness * roughness;
+            const double along = across + (1 - across) * anisotropy * anisotropy;
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3d e = randomAbove(random), l = randomAbove(random);
+                const Vec3d h = normalize(e + l);
+                const double le = brushedLambda(e, along, across),
+                             ll = brushedLambda(l, along, across);
+                const double d = brushedD(h, along, across);
+                const double f = d / (1 + le + ll) / (4 * e.z * l.z);
+                const double density = d / (1 + le) / (4 * e.z);
+                const BsdfEvaluation found = metal.evaluate(Vec3(e), Vec3(l));
+                ASSERT_NEAR(double(found.f.g), f, 2e-3 * f);
+                ASSERT_NEAR(double(found.pdfWToLight), density, 2e-3 * density);
+            }
+        }
+    }
+}
+
+TEST(BsdfReference, SheenIsCharlies) {
+    Random random(29);
+    for (const double roughness : {0.4, 0.7, 1.0}) {
+        Bsdf::Parameters p = withSheen(makeParameters(Rgb(0.0f), 0, 0, 0), Rgb(1, 0.5f, 0), 0);
+        p.sheenRoughness = float(roughness);
+        const Bsdf cloth(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
+        const double alpha = roughness * roughness, k = std::pow(1 - alpha, 2);
+        // [Estevez17, table 1], exponents as they are printed.
+        const double coefficients[5] = {
+            k * 25.3245 + (1 - k) * 21.5473, k * 3.32435 + (1 - k) * 3.82987,
+            k * 0.16801 + (1 - k) * 0.19823, k * -1.27393 + (1 - k) * -1.97760,
+            k * -4.85967 + (1 - k) * -4.32054};
+        const auto fit = [&](double x) {
+            const auto& c = coefficients;
+            return c[0] / (1 + c[1] * std::pow(x, c[2])) + c[3] * x + c[4];
+        };
+        const auto shadow = [&](double cosine) {
+            return cosine < 0.5 ? std::exp(fit(cosine)) : std::exp(2 * fit(0.5) - fit(1 - cosine));
+        };
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3d e = randomAbove(random), l = randomAbove(random);
+            const double hz = normalize(e + l).z, sine = std::sqrt(std::max(0.0, 1 - hz * hz));
+            const double d = (2 + 1 / alpha) * std::pow(sine, 1 / alpha) / (2 * kPiD);
+            const double f = d / ((1 + shadow(e.z) + shadow(l.z)) * 4 * e.z * l.z);
+            const BsdfEvaluation found = cloth.evaluate(Vec3(e), Vec3(l));
+            ASSERT_NEAR(double(found.f.r), f, 1e-3 * f + 1e-6);
+            ASSERT_NEAR(double(found.f.g), f / 2, 1e-3 * f + 1e-6);
+            ASSERT_EQ(found.f.b, 0.0f);
+        }
+    }
+}
+
+// A sheen leaves to what is under it what it does not return itself, and a white one on white returns no
+// more than arrives, however narrow it is.
+TEST(BsdfReference, SheenOnWhiteGainsNothing) {
+    Random random(30);
+    for (const float roughness : {0.0f, 0.1f, 0.2f, 0.5f, 1.0f}) {
+        const Bsdf cloth(withSheen(makeParameters(Rgb(1.0f), 0, 0, 0), Rgb(1.0f), roughness),
+                         world().n, world().n, tables());
+        for (const double degrees : {0.0, 40.0, 80.0, 88.0, 89.9}) {
+            const Vec3 eye = world().toWorld(polar(degrees, 30));
+            const Moments seen = albedoSeenFrom(cloth, eye, 40000, random);
+            SCOPED_TRACE(std::to_string(roughness) + " " + std::to_string(degrees));
+            EXPECT_LT(seen.mean(), 1.002 + 5 * seen.standardError());
+            EXPECT_GT(seen.mean(), 0.4);
+        }
+    }
+}
+
+TEST(BsdfReference, LeavesDivideTheirBase) {
+    const Rgb above(0.8f, 0.4f, 0.2f), below(0.1f, 0.6f, 0.9f);
+    const Vec3 n = world().n, e = world().toWorld(polar(30, 10));
+    for (const float share : {0.25f, 1.0f}) {
+        const Bsdf bsdf(leaf(makeParameters(above, 0, 0, 0), share, below), n, n, tables());
+        for (const double degrees : {10.0, 70.0}) {
+            const Vec3 l = world().toWorld(polar(degrees, 250));
+            const auto near = [](const Rgb& found, const Rgb& expected) {
+                EXPECT_NEAR(found.r, expected.r, 1e-5);
+                EXPECT_NEAR(found.g, expected.g, 1e-5);
+                EXPECT_NEAR(found.b, expected.b, 1e-5);
+            };
+            near(bsdf.evaluate(e, l).f, above * ((1 - share) * kInvPi));
+            near(bsdf.evaluate(e, -l).f, below * (share * kInvPi));
+            near(bsdf.evaluate(-e, l).f, below * (share * kInvPi));
+        }
+        EXPECT_EQ(bsdf.isDiffuse(), share < 1.0f);
+        EXPECT_TRUE(bsdf.transmitsDiffusely() && bsdf.transmits());
+    }
+}
+
+// Lacquer of weight 1 with a normal of its own: a smooth one mirrors about that normal what Fresnel says,
+// and the base keeps the rest, about its own.
+TEST(BsdfReference, ClearcoatOfItsOwnMirrorsAboutItsNormal) {
+    const Vec3 n = world().n, coat = world().toWorld(polar(15, 120));
+    Bsdf::Parameters p = clearcoated(makeParameters(Rgb(0.5f), 0, 0, 0), 1, 0);
+    p.clearcoatNormal = coat;
+    const Bsdf bsdf(p, n, n, tables());
+    for (const double degrees : {10.0, 40.0, 65.0}) {
+        const Vec3 e = world().toWorld(polar(degrees, 80));
+        const float cosine = dot(e, coat);
+        const Vec3 mirrored = coat * (2 * cosine) - e;
+        const BsdfEvaluation d = bsdf.evaluate(e, mirrored, ScatterEvent::DeltaReflection);
+        // f carries |to . coat| / |to . n| of a normal that is not the surface's.
+        const double fresnel = fresnelDielectric(double(cosine), 1.5);
+        EXPECT_NEAR(d.f.r, fresnel * double(cosine / dot(mirrored, n)), 1e-3 * double(d.f.r));
+        EXPECT_EQ(bsdf.evaluate(e, n * (2 * dot(e, n)) - e, ScatterEvent::DeltaReflection).f,
+                  Rgb(0.0f));
+        const Vec3 l = world().toWorld(polar(20, 200));
+        const double left = 1 - std::max(fresnelDielectric(double(cosine), 1.5),
+                                         fresnelDielectric(double(dot(l, coat)), 1.5));
+        EXPECT_NEAR(bsdf.evaluate(e, l).f.r, 0.5 / kPiD * left, 1e-4);
+    }
+}
+
 TEST(BsdfReference, CoatOverDiffuse) {
     // Smooth: rho/pi (1 - F)(1 - F)/(1 - F_avg), everything reflected where rho is 1.
     Random random(23);

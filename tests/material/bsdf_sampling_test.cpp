@@ -6,7 +6,9 @@
 // a suite that passes once passes always).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/material/half_vector_bins.h"
@@ -26,7 +28,7 @@ struct Integrals {
     std::vector<double> deltaPmf;
 };
 
-/// Where a delta event about one of the two normals leads.
+/// Where a delta event about one of the normals leads.
 struct DeltaEvent {
     ScatterEvent event;
     Vec3 to;
@@ -37,13 +39,22 @@ struct DeltaEvent {
 std::vector<DeltaEvent> deltaEvents(const Case& c) {
     std::vector<DeltaEvent> out;
     const Vec3d v = Vec3d(c.from), ng = Vec3d(c.bsdf.ng()), ns = Vec3d(c.bsdf.ns());
-    for (const bool byNg : {false, true}) {
-        const Vec3d n = (byNg ? ng : ns) * (c.front ? 1.0 : -1.0);
+    const Vec3d coat(c.parameters.clearcoatNormal);
+    const bool ownCoat = length(coat) > 0;
+    for (const auto& [normal, byNg] :
+         {std::pair(ns, false), std::pair(ng, true), std::pair(coat, false)}) {
+        const Vec3d n = normal * (c.front ? 1.0 : -1.0);
         const double cosine = dot(v, n);
         if (cosine <= 0) continue;
         const auto add = [&](ScatterEvent event, Vec3d to, double toCosine) {
-            const double eyeNg = shareOfNg(c.side == Side::Eye ? v : to, ng, ns);
-            if (byNg ? eyeNg > 0 : eyeNg < 1) out.push_back({event, Vec3(to), toCosine});
+            const Vec3d eye = c.side == Side::Eye ? v : to;
+            const bool seen =
+                byNg ? shareOfNg(eye, ng, ns) > 0 || (ownCoat && shareOfNg(eye, ng, coat) > 0)
+                     : shareOfNg(eye, ng, normal) < 1;
+            const bool known = std::any_of(out.begin(), out.end(), [&](const DeltaEvent& other) {
+                return other.event == event && length(Vec3d(other.to) - to) < 1e-5;
+            });
+            if (seen && !known) out.push_back({event, Vec3(to), toCosine});
         };
         add(ScatterEvent::DeltaReflection, normalize(n * (2 * cosine) - v), cosine);
         const double eta = c.indexOn(!c.front) / c.indexOn(c.front);

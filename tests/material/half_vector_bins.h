@@ -31,7 +31,14 @@ class HalfVectorBins {
         s_ = normalize(tangent - n_ * dot(tangent, n_));
         t_ = cross(n_, s_);
         v_ = {dot(v, s_), dot(v, t_), dot(v, n_)};
-        const double alpha = std::max(1e-4, std::pow(double(c.parameters.roughness), 2));
+        double alpha = std::max(1e-4, std::pow(double(c.parameters.roughness), 2));
+        if (c.parameters.anisotropy > 0) {
+            alpha = std::max(1e-3, alpha);
+            const Vec3d along(c.parameters.tangent);
+            const Vec3d flat{dot(along, s_), dot(along, t_), 0};
+            along_ = normalize(flat);
+            stretch_ = 1 + (1 / alpha - 1) * std::pow(double(c.parameters.anisotropy), 2);
+        }
         // GGX falls off with the fourth power of the slope: rings by factors where alpha is small.
         for (double k : {0.3, 0.6, 1.0, 1.6, 3.0, 8.0, 24.0, 72.0, 216.0, 648.0}) {
             if (k <= 8 || alpha * k < 0.1) {
@@ -51,8 +58,9 @@ class HalfVectorBins {
         unresolved_ =
             std::size_t(std::upper_bound(edges_.begin(), edges_.end(), core) - edges_.begin() - 1);
         unresolved_ += core > 0 ? 1 : 0;
-        const bool glass = c.parameters.transmission > 0;
-        kinds_ = glass ? 2 : 1;
+        const bool passes = c.parameters.transmission > 0 || c.parameters.diffuseTransmission > 0 ||
+                            length(Vec3d(c.parameters.clearcoatNormal)) > 0;
+        kinds_ = passes ? 2 : 1;
         eta_ = c.indexOn(!c.front) / c.indexOn(c.front);
         // ior 1 transmits straight on: delta, without half vectors
         if (!c.parameters.thin && eta_ == 1.0) {
@@ -78,6 +86,7 @@ class HalfVectorBins {
         if (transmits && kinds_ == 1) {
             return size();
         }
+        h = stretched(h, 1 / stretch_);
         const double tangent = h.z > 0 ? std::sqrt(h.x * h.x + h.y * h.y) / h.z : kInfinity;
         const auto at = std::upper_bound(tangents_.begin(), tangents_.end(), tangent);
         const std::size_t ring = std::clamp<std::ptrdiff_t>(at - tangents_.begin() - 1, 0,
@@ -143,9 +152,13 @@ class HalfVectorBins {
         SineCosine at, less, more;
     };
 
+    /// Bins are of the half vectors of a surface that is as rough along its grain as it is across.
+    Vec3d stretched(Vec3d h, double by) const { return h + along_ * ((by - 1) * dot(h, along_)); }
+
     /// The direction that a half vector (given by its angles) leads to; false if there is none.
     bool direction(int kind, const SineCosine& theta, const SineCosine& phi, Vec3d& to) const {
-        const Vec3d h{theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
+        const Vec3d h = normalize(
+            stretched({theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine}, stretch_));
         const double vh = dot(v_, h);
         if (vh <= 0) {
             return false;
@@ -183,6 +196,8 @@ class HalfVectorBins {
 
     const Case& case_;
     Vec3d s_, t_, n_, v_;
+    Vec3d along_{1, 0, 0};
+    double stretch_ = 1;
     double eta_ = 1;
     int kinds_ = 1;
     std::vector<double> edges_, tangents_;

@@ -43,6 +43,45 @@ inline Bsdf::Parameters clearcoated(Bsdf::Parameters p, float weight, float roug
     return p;
 }
 
+inline Vec3 polar(double degrees, double azimuthDegrees) {
+    const double theta = degrees * std::numbers::pi / 180,
+                 phi = azimuthDegrees * std::numbers::pi / 180;
+    return Vec3(
+        Vec3d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+}
+
+/// A rotation that no axis is special in.
+inline const Frame& world() {
+    static const Frame frame(normalize(Vec3{0.36f, -0.48f, 0.8f}));
+    return frame;
+}
+
+inline Bsdf::Parameters ownClearcoat(Bsdf::Parameters p, float weight, float roughness) {
+    p = clearcoated(p, weight, roughness);
+    p.clearcoatNormal = world().toWorld(polar(10, 300));
+    p.thin = true;  // bins of directions below one normal and above another are those of sheets
+    return p;
+}
+
+inline Bsdf::Parameters brushed(Bsdf::Parameters p, float anisotropy) {
+    p.anisotropy = anisotropy;
+    p.tangent = world().toWorld(polar(80, 65)) * 3.0f;  // neither unit nor quite on the surface
+    return p;
+}
+
+inline Bsdf::Parameters withSheen(Bsdf::Parameters p, Rgb color, float roughness) {
+    p.sheenColor = color;
+    p.sheenRoughness = roughness;
+    return p;
+}
+
+inline Bsdf::Parameters leaf(Bsdf::Parameters p, float share, Rgb color) {
+    p.diffuseTransmission = share;
+    p.diffuseTransmissionColor = color;
+    p.thin = true;  // diffuse transmission knows no index: eta^2 is taken out of none
+    return p;
+}
+
 inline Bsdf::Parameters paneOf(Rgb color) {
     Bsdf::Parameters p = makeParameters(color, 0, 1, 1, 1.5f, true);
     p.pane = true;
@@ -82,6 +121,31 @@ inline std::vector<Material> materials() {
         {"pane", paneOf(white)},
         {"tinted pane", paneOf(red)},
         {"clearcoat on black", clearcoated(makeParameters(black, 0, 0, 0), 1, 0.3f)},
+        {"brushed metal", brushed(makeParameters(red, 1, 0), 0.8f)},
+        {"brushed plastic", brushed(makeParameters(white, 0, 0), 0.5f)},
+        {"brushed glass", brushed(makeParameters(white, 0, 1), 0.6f)},
+        {"brushed everything, thin", brushed(makeParameters(red, 0.3f, 0.5f, 1, 1.33f, true), 1)},
+        {"sheen on lambert", withSheen(makeParameters(red, 0, 0, 0), white, 0.3f)},
+        {"narrow sheen on white plastic", withSheen(makeParameters(white, 0, 0), white, 0.25f)},
+        {"sheen on black", withSheen(makeParameters(black, 0, 0, 0), red, 1)},
+        {"sheen on mirror", withSheen(makeParameters(white, 1, 0), Rgb(0.5f, 0.8f, 0), 0.6f)},
+        {"sheen on glass", withSheen(makeParameters(white, 0, 1), Rgb(0.2f, 0.4f, 0.9f), 0.5f)},
+        {"sheen under clearcoat",
+         clearcoated(withSheen(makeParameters(white, 0, 0), white, 0.5f), 0.8f, 0.3f)},
+        {"leaf", leaf(makeParameters(red, 0, 0, 0), 0.4f, Rgb(0.2f, 0.9f, 0.1f))},
+        {"white leaf under a coat", leaf(makeParameters(white, 0, 0), 0.5f, white)},
+        {"all through, from black", leaf(makeParameters(black, 0, 0), 1, red)},
+        {"leaf, glass and metal", leaf(makeParameters(red, 0.3f, 0.4f), 0.6f, white)},
+        {"leaf with sheen and clearcoat",
+         clearcoated(withSheen(leaf(makeParameters(white, 0, 0), 0.5f, white), red, 0.4f), 1, 0)},
+        {"smooth clearcoat of its own on plastic", ownClearcoat(makeParameters(white, 0, 0), 1, 0)},
+        {"rough clearcoat of its own on metal",
+         ownClearcoat(makeParameters(red, 1, 0), 0.8f, 0.5f)},
+        {"smooth clearcoat of its own on glass",
+         ownClearcoat(makeParameters(white, 0, 1), 0.7f, 0)},
+        {"rough clearcoat of its own on a leaf with sheen",
+         ownClearcoat(withSheen(leaf(makeParameters(white, 0, 0), 0.5f, white), red, 0.4f), 1,
+                      0.4f)},
     };
 }
 
@@ -111,7 +175,7 @@ struct Case {
     Bsdf::Parameters parameters;
     Vec3 from;    ///< the known direction
     Side side;    ///< of the walk that samples
-    bool tilted;  ///< ns and ng differ
+    bool tilted;  ///< ns and ng differ, or the clearcoat's normal is another one
     bool front;   ///< `from` lies outside, by ng
 
     double indexOn(bool outside) const {
@@ -133,19 +197,6 @@ struct Case {
         return double(e.f.g) * cosine * scale;
     }
 };
-
-/// A rotation that no axis is special in.
-inline const Frame& world() {
-    static const Frame frame(normalize(Vec3{0.36f, -0.48f, 0.8f}));
-    return frame;
-}
-
-inline Vec3 polar(double degrees, double azimuthDegrees) {
-    const double theta = degrees * std::numbers::pi / 180,
-                 phi = azimuthDegrees * std::numbers::pi / 180;
-    return Vec3(
-        Vec3d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
-}
 
 /// w of bsdf.h, in double from what it means: 1 - 4 m / |toEye . ng|, with m the cosine between ng
 /// and the eye's mirror direction about ns.
@@ -182,6 +233,9 @@ inline std::vector<Case> grid() {
                     const Side side = (bits & 4) != 0 ? Side::Light : Side::Eye;
                     Bsdf::Parameters p = m.parameters;
                     p.roughness = roughness;
+                    // Not rougher along the grain than quadrature about one half vector resolves.
+                    const float alpha = std::max(1e-3f, roughness * roughness);
+                    p.anisotropy = std::min(p.anisotropy, std::sqrt(7 * alpha));
                     // `from` stays on the same side of ng: ng leans towards it.
                     const Vec3 ng = world().toWorld(tilted ? polar(20, 77) : Vec3{0, 0, 1});
                     const Vec3 up = world().toWorld(polar(degrees, 40));
@@ -190,7 +244,7 @@ inline std::vector<Case> grid() {
                                          (front ? "" : ", back") + (tilted ? ", tilted" : "") +
                                          (side == Side::Eye ? ", eye walk" : ", light walk"),
                                      Bsdf(p, ng, world().n, tables()), p, front ? up : -up, side,
-                                     tilted, front});
+                                     tilted || lengthSquared(p.clearcoatNormal) > 0, front});
                 }
             }
         }

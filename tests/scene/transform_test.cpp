@@ -365,6 +365,110 @@ TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
     }
 }
 
+/// A triangle whose texture coordinates grow along x, and upwards (against v) along y.
+Mesh axesTriangle() {
+    Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    mesh.uvs = {{0, 1}, {1, 1}, {0, 0}};
+    return mesh;
+}
+
+void expectVector(const Vec3& found, const Vec3& expected) {
+    EXPECT_NEAR(found.x, expected.x, 5e-3);
+    EXPECT_NEAR(found.y, expected.y, 5e-3);
+    EXPECT_NEAR(found.z, expected.z, 5e-3);
+}
+
+TEST(SurfacePoint, GrainTurnsFromTheTangentToTheBitangent) {
+    lacuna::Material brushed = metal(Rgb(0.8f), 0.3f);
+    brushed.anisotropy = 0.5f;
+    expectVector(meet({}, axesTriangle(), brushed).point->grain, {0.5f, 0, 0});
+    brushed.anisotropyRotation = std::numbers::pi_v<float> / 6;
+    const Vec3 turned{0.433f, 0.25f, 0};
+    expectVector(meet({}, axesTriangle(), brushed).point->grain, turned);
+    // The texture's direction, towards the bitangent, comes before the rotation.
+    SceneBuilder b;
+    Texture up;
+    up.width = up.height = 1;
+    up.rgba = {128, 255, 128, 255};
+    brushed.anisotropyTexture = b.add(up);
+    expectVector(meet(b, axesTriangle(), brushed).point->grain, {-0.125f, 0.217f, 0});
+    // Tangents go before coordinates; their bitangent is below with a sign of -1.
+    Mesh mesh = axesTriangle();
+    mesh.normals.assign(3, Vec3{0, 0, 1});
+    mesh.tangents.assign(3, {0, 1, 0, -1});
+    brushed.anisotropyTexture = {};
+    expectVector(meet({}, mesh, brushed).point->grain, {0.25f, 0.433f, 0});
+    // Without either, some direction on the surface.
+    const Vec3 any = meet({}, triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), brushed).point->grain;
+    EXPECT_NEAR(length(any), 0.5, 1e-5);
+    EXPECT_NEAR(any.z, 0, 1e-6);
+}
+
+TEST(SurfacePoint, GrainTellsTwoDirectionsApart) {
+    lacuna::Material brushed = metal(Rgb(0.8f), 0.3f);
+    brushed.anisotropy = 0.8f;
+    const Met met = meet({}, axesTriangle(), brushed);
+    const Vec3 eye{0, 0, 1};
+    const auto towards = [&](Vec3 light) { return met.bsdf().evaluate(eye, normalize(light)).f.g; };
+    EXPECT_GT(towards({0.6f, 0, 1}), 10 * towards({0, 0.6f, 1}));
+}
+
+TEST(SurfacePoint, LacquerHasTheMeshsNormalsOrItsOwn) {
+    SceneBuilder b;
+    Texture right;
+    right.width = right.height = 1;
+    right.rgba = {218, 128, 218, 255};  // 45 degrees towards the tangent
+    lacuna::Material lacquer = plastic(Rgb(0.5f), 0.5f);
+    lacquer.clearcoat = 1;
+    EXPECT_EQ(meet(b, axesTriangle(), lacquer).point->clearcoatNs, Vec3{});
+    const TextureUse map = b.add(right);
+    lacquer.normalTexture = map;
+    const Met smooth = meet(b, axesTriangle(), lacquer);
+    expectVector(smooth.point->clearcoatNs, {0, 0, 1});
+    expectVector(smooth.point->ns, {0.707f, 0, 0.707f});
+    lacquer.normalTexture = {};
+    lacquer.clearcoatNormalTexture = map;
+    const Met bumpy = meet(b, axesTriangle(), lacquer);
+    expectVector(bumpy.point->clearcoatNs, {0.707f, 0, 0.707f});
+    expectVector(bumpy.point->ns, {0, 0, 1});
+    // The lacquer mirrors about its own normal.
+    const Vec3 eye = normalize(Vec3{0.5f, 0, 1}), mirrored{eye.z, 0, eye.x};
+    EXPECT_GT(bumpy.bsdf().evaluate(eye, mirrored, ScatterEvent::DeltaReflection).f.g, 0.0f);
+    lacquer.clearcoatNormalScale = 0;
+    expectVector(meet(b, axesTriangle(), lacquer).point->clearcoatNs, {0, 0, 1});
+}
+
+TEST(SurfacePoint, SheenAndLeafTexturesMultiplyTheirFactors) {
+    SceneBuilder b;
+    Texture texel;
+    texel.width = texel.height = 1;
+    texel.rgba = {51, 153, 204, 102};  // 0.2, 0.6, 0.8, 0.4
+    lacuna::Material textured = plastic({0.5f, 0.4f, 0.3f}, 0.5f);
+    textured.sheenColorTexture = textured.sheenRoughnessTexture =
+        textured.diffuseTransmissionTexture = textured.diffuseTransmissionColorTexture =
+            b.add(texel);
+    textured.sheenColor = {0.5f, 1, 0.25f};
+    textured.sheenRoughness = 0.9f;
+    textured.diffuseTransmission = 0.5f;
+    textured.diffuseTransmissionColor = {1, 0.5f, 1};
+    lacuna::Material constant = plastic({0.5f, 0.4f, 0.3f}, 0.5f);
+    constant.sheenColor = {0.1f, 0.6f, 0.2f};
+    constant.sheenRoughness = 0.36f;
+    constant.diffuseTransmission = 0.2f;
+    constant.diffuseTransmissionColor = {0.2f, 0.3f, 0.8f};
+    const Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Met met = meet(b, mesh, textured), other = meet(b, mesh, constant);
+    const Bsdf found = met.bsdf(), expected = other.bsdf();
+    const Vec3 eye = normalize(Vec3{0.9f, 0.1f, 0.4f});
+    for (const Vec3& light : {normalize(Vec3{-0.2f, 0.8f, 0.3f}), normalize(Vec3{0.1f, 0, -1})}) {
+        const Rgb is = found.evaluate(eye, light).f, should = expected.evaluate(eye, light).f;
+        EXPECT_GT(should.r, 0);
+        EXPECT_NEAR(is.r, should.r, 2e-4 * should.r);
+        EXPECT_NEAR(is.g, should.g, 2e-4 * should.g);
+        EXPECT_NEAR(is.b, should.b, 2e-4 * should.b);
+    }
+}
+
 TEST(SurfacePoint, ColouredPointsAreOfThatColoursMaterial) {
     const Mesh plain = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     Mesh coloured = plain;

@@ -114,6 +114,19 @@ TEST(Chain, movesAsItsDerivativesSayUnderANormalMap) {
     expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
 }
 
+TEST(Chain, movesAsItsDerivativesSayUnderLacquerOfItsOwn) {
+    SceneBuilder b;
+    lacuna::Material lacquer = metal(Rgb(0.8f), 0);
+    lacquer.clearcoat = 0.5f;
+    lacquer.clearcoatNormalTexture = b.add(waves());
+    b.add(ball({0, 0, 0}, 1, b.add(lacquer)));
+    expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
+    lacquer.normalTexture = lacquer.clearcoatNormalTexture;
+    lacquer.clearcoatNormalTexture = {};
+    b.d.materials.back() = lacquer;
+    expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
+}
+
 /// From the file's origin, which looks up.
 ChainStart floorOf(const Scene& scene) {
     return {-Vec3(scene.centre()), {0, 1, 0}, {0, 1, 0}};

@@ -48,6 +48,12 @@ class SceneBuilder {
         double attenuationDistance = 0.0;  ///< .. over this way; 0: all
         double clearcoat = 0.0;
         double clearcoatRoughness = 0.0;
+        Colour sheen{0, 0, 0};  ///< of cloth's fibres; black: none
+        double sheenRoughness = 0.0;
+        double anisotropy = 0.0;           ///< how much rougher along the texture's u, 0 to 1
+        double anisotropyRotation = 0.0;   ///< radians, from u against v
+        double diffuseTransmission = 0.0;  ///< share of the diffuse light that goes through
+        Colour diffuseTransmissionColour{1, 1, 1};
         Colour emission{0, 0, 0};  ///< radiance
         bool doubleSided = false;  ///< emits from both sides
         enum class Alpha { Opaque, Mask, Blend };

@@ -70,6 +70,12 @@ class SceneBuilder:
         attenuation_distance: float
         clearcoat: float
         clearcoat_roughness: float
+        sheen: Sequence[float]
+        sheen_roughness: float
+        anisotropy: float
+        anisotropy_rotation: float
+        diffuse_transmission: float
+        diffuse_transmission_colour: Sequence[float]
         emission: Sequence[float]
         double_sided: bool
         alpha_mode: SceneBuilder.Alpha
