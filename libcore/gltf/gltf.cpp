@@ -130,15 +130,16 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
     std::vector<bool> used(document.model.meshes.size());
     for (const Placement& placement : placements) {
         const int mesh = document.model.nodes[placement.node].mesh;
-        if (mesh >= 0) used[std::size_t(mesh)] = true;
+        if (mesh >= 0 && placement.visible) used[std::size_t(mesh)] = true;
     }
     MeshTable table = readMeshes(document, used, warnings);
     const SkinTable skins(document, placements);
     scene.meshes = std::move(table.meshes);
     for (const Placement& placement : placements) {
+        addCamera(document, placement.node, placement.toWorld, scene, warnings);
+        if (!placement.visible) continue;
         const std::string group = nodeGroup(document, placement.node);
         addInstances(document, placement, table, skins, group, scene, warnings);
-        addCamera(document, placement.node, placement.toWorld, scene, warnings);
         addLight(document, placement.node, placement.toWorld, group, scene, warnings);
     }
     addDefaultMaterial(scene);

@@ -11,7 +11,7 @@
 namespace lacuna::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 16> kSupported = {
+constexpr std::array<std::string_view, 17> kSupported = {
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, 16> kSupported = {
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -44,12 +45,12 @@ constexpr std::array kUnread = {
            "materials are what stands beside it, or white metal"},
     Unread{"KHR_materials_unlit", "its surfaces are lit as all others"},
     Unread{"KHR_materials_variants", ""},  // those of the file's own choice are rendered
-    Unread{"KHR_node_visibility", "hidden objects are rendered"},
+    Unread{"KHR_meshopt_compression", "the plain data beside it is read"},
     Unread{"KHR_texture_basisu", ""},  // image.cpp tells
     Unread{"KHR_xmp_json_ld", ""},
     Unread{"MSFT_texture_dds", "the plain images beside it are read"},
 };
-constexpr std::string_view kBasis = "KHR_texture_basisu";
+constexpr std::string_view kBasis = "KHR_texture_basisu", kMeshopt = "KHR_meshopt_compression";
 
 bool isSupported(const std::string& name) {
     return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
@@ -168,6 +169,11 @@ void checkVersionAndExtensions(const std::string& file, const nlohmann::json& ro
                 refuse(file, "extensionsRequired", "textures of PNG, JPEG or WebP",
                        "KTX2 (KHR_texture_basisu)",
                        "convert them with `gltf-transform ktxdecompress IN.glb OUT.glb`");
+            }
+            if (name == kMeshopt) {
+                refuse(file, "extensionsRequired", "meshes packed by EXT_meshopt_compression",
+                       "KHR_meshopt_compression",
+                       "pack them with `gltfpack -c -ce ext -i IN.glb -o OUT.glb`");
             }
             if (!isSupported(name.get_ref<const std::string&>())) {
                 refuse(file, "extensionsRequired", "extensions that lacuna has",

@@ -137,6 +137,14 @@ std::vector<float> readCopies(const Document& document, const tinygltf::Value& a
     return readFloats(view);
 }
 
+/// Whether the node itself is not hidden.
+bool isVisible(const Document& document, std::size_t node) {
+    const auto& extensions = document.model.nodes[node].extensions;
+    const auto visibility = extensions.find("KHR_node_visibility");
+    return visibility == extensions.end() || !visibility->second.Has("visible") ||
+           visibility->second.Get("visible").Get<bool>();
+}
+
 }  // namespace
 
 std::vector<Affine> meshCopies(const Document& document, std::size_t node) {
@@ -179,10 +187,12 @@ std::vector<Placement> flattenScene(const Document& document, Warnings& warnings
 
     // A stack of our own: chains of nodes may be as long as the file.
     std::vector<Placement> result, open;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, {}});
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+        open.push_back({*root, {}, true});
     while (!open.empty()) {
         Placement at = open.back();
         open.pop_back();
+        at.visible = at.visible && isVisible(document, at.node);
         at.toWorld = at.toWorld * localTransform(document, at.node);
         if (!isFinite(at.toWorld) || !std::isfinite(at.toWorld.determinant())) {
             refuse(document.file, placeOfNode(at.node), "a finite transform", "one that overflows",
@@ -190,7 +200,7 @@ std::vector<Placement> flattenScene(const Document& document, Warnings& warnings
         }
         const std::vector<int>& children = nodes[at.node].children;
         for (auto child = children.rbegin(); child != children.rend(); ++child) {
-            open.push_back({std::size_t(*child), at.toWorld});
+            open.push_back({std::size_t(*child), at.toWorld, at.visible});
         }
         result.push_back(at);
     }

@@ -11,6 +11,8 @@ namespace lacuna::gltf {
 struct Placement {
     std::size_t node = 0;
     Affine toWorld;
+    /// KHR_node_visibility of the node and of all above it: else its mesh and its light are not there.
+    bool visible = true;
 };
 
 /// Every node of the default scene once, parents before children, siblings in the file's order. A

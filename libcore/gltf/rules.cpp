@@ -119,6 +119,8 @@ constexpr Rule kRules[] = {
     {"nodes/*/extensions", Shape::Object},
     {"nodes/*/extensions/KHR_lights_punctual", Shape::Object},
     {"nodes/*/extensions/KHR_lights_punctual/light", Shape::Index, 0, kLights},
+    {"nodes/*/extensions/KHR_node_visibility", Shape::Object},
+    {"nodes/*/extensions/KHR_node_visibility/visible", Shape::Bool},
     {"nodes/*/extensions/EXT_mesh_gpu_instancing", Shape::Object},
     {"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes", Shape::Object},
     {"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*", Shape::Index, 0, "accessors"},

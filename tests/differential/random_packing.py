@@ -16,7 +16,7 @@ DRACO = "KHR_draco_mesh_compression"
 # Known to the loader, which does not read them.
 UNREAD = ("EXT_lights_image_based", "EXT_texture_avif", "KHR_animation_pointer", "KHR_materials_dispersion",
           "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_unlit", "KHR_materials_variants",
-          "KHR_node_visibility", "KHR_xmp_json_ld", "MSFT_texture_dds")
+          "KHR_meshopt_compression", "KHR_xmp_json_ld", "MSFT_texture_dds")
 
 
 class Packing:

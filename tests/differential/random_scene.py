@@ -41,6 +41,7 @@ class RandomScene(Meshes):
         self.idle_entries()
         packing = Packing(self.gltf, seed)
         self.used |= packing.all()
+        self.hidden(seed)
         self.scene_entry()
         self.gltf.root.setdefault("extensionsUsed", []).extend(packing.others())
         self.view()
@@ -191,6 +192,15 @@ class RandomScene(Meshes):
             self.gltf.root["animations"] = []
         if self.chance(0.2):
             self.gltf.root["asset"]["minVersion"] = "2.0"
+
+    def hidden(self, seed):
+        """Nodes that are not there, or are all the same; by numbers of their own, so that scenes are what they were before."""
+        r = random.Random(f"hidden {seed}")
+        if r.random() < 0.9 or "meshes" not in self.gltf.root:
+            return
+        self.node({"mesh": 0, "scale": [9 * self.unit] * 3, "extensions": {"KHR_node_visibility": {"visible": False}}})
+        self.node({"extensions": {"KHR_node_visibility": r.choice(({"visible": True}, {}))}})
+        self.used.add("KHR_node_visibility")
 
     def scene_entry(self):
         gltf, root = self.gltf, self.gltf.root

@@ -210,5 +210,13 @@ TEST(Meshopt, DamagedStreamsAreReadOrRefused) {
     }
 }
 
+TEST(Meshopt, ItsSuccessorIsRefusedWithAConverter) {
+    TriangleBuilder b;
+    b.root["extensionsUsed"] = b.root["extensionsRequired"] = {"KHR_meshopt_compression"};
+    expectRefused(b, {"extensionsRequired", "KHR_meshopt_compression", "gltfpack -c -ce ext"});
+    b.root.erase("extensionsRequired");
+    EXPECT_EQ(warningsWith(b.load(), "KHR_meshopt_compression is not rendered"), 1);
+}
+
 }  // namespace
 }  // namespace lacuna::test

@@ -316,6 +316,43 @@ TEST(Light, GroupOfItsNodeElseItsName) {
     EXPECT_EQ(groupUnder(node), "bulb");
 }
 
+TEST(Node, HiddenOnesHaveNeitherMeshNorLightNorHasWhatIsBelow) {
+    const auto hidden = [](bool visible) {
+        return json{{"KHR_node_visibility", {{"visible", visible}}}};
+    };
+    TriangleBuilder b;
+    b.root["extensionsUsed"] =
+        b.root["extensionsRequired"] = {"KHR_node_visibility", "KHR_lights_punctual"};
+    b.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    const std::size_t lamp = b.root["nodes"].size();
+    b.root["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const std::size_t below = b.root["nodes"].size();
+    b.root["nodes"].push_back({{"mesh", 0}, {"extensions", hidden(true)}});
+    b.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    const std::size_t eye = b.root["nodes"].size();
+    b.root["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 5}}});
+    b.rootNode({{"children", {lamp, below, eye}}, {"translation", {1, 0, 0}}});
+    const std::size_t parent = b.root["nodes"].size() - 1;
+    SceneDescription scene = b.load();
+    EXPECT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.lights.size(), 1u);
+    b.root["nodes"][parent]["extensions"] = hidden(false);
+    scene = b.load();
+    EXPECT_EQ(scene.instances.size(), 1u) << "a visible node below a hidden one is hidden";
+    EXPECT_TRUE(scene.lights.empty());
+    ASSERT_EQ(scene.cameras.size(), 1u) << "cameras look from hidden nodes as well";
+    EXPECT_EQ(scene.cameras[0].toWorld.m[3], Vec3d(1, 0, 5));
+    EXPECT_TRUE(scene.warnings.empty());
+    // The mesh of hidden nodes alone is not even read.
+    b.root["nodes"][0]["extensions"] = hidden(false);
+    scene = b.load();
+    EXPECT_TRUE(scene.instances.empty());
+    b.root["nodes"][0]["extensions"]["KHR_node_visibility"] = json::object();
+    EXPECT_EQ(b.load().instances.size(), 1u);
+    b.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+    expectRefused(b, {"nodes[0].extensions.KHR_node_visibility.visible"});
+}
+
 TEST(Node, LightGroupOfAMesh) {
     const json extras = {{"lacuna", {{"light_group", "key"}}}};
     const SceneDescription scene = withNode({{"extras", extras}}).load();
