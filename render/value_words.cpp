@@ -32,6 +32,9 @@ ValueWords renderWords() {
     for (const Sampling sampling : {Sampling::Sobol, Sampling::Independent}) {
         words.byOption["--sampler"].push_back(nameOf(sampling));
     }
+    for (const LampUnits units : {LampUnits::Radiometric, LampUnits::Photometric}) {
+        words.byOption["--units"].push_back(nameOf(units));
+    }
     // Those of one method with all techniques are all that there are.
     for (const Effect& e : effectsOf({}, 0.0, &methods().front())) {
         for (const char* state : {"=on", "=off"}) {

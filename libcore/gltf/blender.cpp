@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLumensPerWatt = 683.0;
 constexpr double kSphere = 4.0 * std::numbers::pi;
 
 /// Whether a double that went through a few products in double was a float at first.
@@ -105,7 +104,7 @@ BlenderLighting lightingOf(const std::vector<BlenderLamp>& lamps) {
 }
 
 void warnAboutLighting(const Document& document, const std::vector<Placement>& placements,
-                       Warnings& warnings) {
+                       LampUnits units, Warnings& warnings) {
     if (!isFromBlender(document)) return;
     std::vector<BlenderLamp> lamps;
     std::vector<const tinygltf::Light*> sources;
@@ -117,8 +116,9 @@ void warnAboutLighting(const Document& document, const std::vector<Placement>& p
     }
     const BlenderLighting lighting = lightingOf(lamps);
     if (lighting == BlenderLighting::Unitless) return;
-
     const bool standard = lighting == BlenderLighting::Standard;
+    if (standard && units == LampUnits::Photometric) return;
+
     const auto example = std::find_if(lamps.begin(), lamps.end(), [&](const BlenderLamp& lamp) {
         return standard ? fitsStandard(lamp) : !lamp.isSun && fitsRaw(lamp);
     });
@@ -128,7 +128,9 @@ void warnAboutLighting(const Document& document, const std::vector<Placement>& p
                      " times too bright: Blender's export had Data > Lighting on " +
                      (standard ? "Standard" : "Raw") + " ('" + printable(name, 60) + "' has " +
                      floatText(here) + unitOf(*example) + " here, in Blender " + floatText(there) +
-                     "); export again with Unitless",
+                     "); " +
+                     (standard ? "render with --units photometric, or export again with Unitless"
+                               : "export again with Unitless"),
                  1);
 }
 

@@ -26,9 +26,10 @@ struct BlenderLamp {
 };
 BlenderLighting lightingOf(const std::vector<BlenderLamp>& lamps);
 
-/// Warns of punctual lights of the scene (`placements`) that were exported as Standard or Raw.
+/// Warns of punctual lights of the scene (`placements`) that were exported as Standard and are not
+/// read as photometric, or as Raw.
 void warnAboutLighting(const Document& document, const std::vector<Placement>& placements,
-                       Warnings& warnings);
+                       LampUnits units, Warnings& warnings);
 
 /// Warns, by name, of materials in use that have no pbrMetallicRoughness or an empty one, from any
 /// exporter: glTF's default is white metal. Blender writes that of every shader that is neither

@@ -98,7 +98,8 @@ void addLight(const Document& document, std::size_t node, const Affine& toWorld,
         }
         color = {float(source->color[0]), float(source->color[1]), float(source->color[2])};
     }
-    light.intensity = color * float(source->intensity);
+    const double perWatt = scene.lampUnits == LampUnits::Photometric ? kLumensPerWatt : 1.0;
+    light.intensity = color * float(source->intensity / perWatt);
     warnings.add("the range of lights is ignored", source->range > 0.0, place);
 
     light.position = toWorld.m[3];

@@ -144,15 +144,17 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
     }
     addDefaultMaterial(scene);
     scene.fromBlender = isFromBlender(document);
-    warnAboutLighting(document, placements, warnings);
+    warnAboutLighting(document, placements, scene.lampUnits, warnings);
     warnAboutBareMaterials(document, scene, warnings);
     scene.phaseSeconds["meshes"] = watch.lap();
     scene.contentHash = document.hash.hex();
 }
 
-SceneDescription loadBytes(const std::string& path, const std::function<Bytes()>& bytes) {
+SceneDescription loadBytes(const std::string& path, const std::function<Bytes()>& bytes,
+                           LampUnits units) {
     SceneDescription scene;
     scene.file = path;
+    scene.lampUnits = units;
     Warnings warnings;
     try {
         load(path, bytes, scene, warnings);
@@ -165,12 +167,15 @@ SceneDescription loadBytes(const std::string& path, const std::function<Bytes()>
 
 }  // namespace
 
-SceneDescription loadGltf(const std::string& path) {
-    return loadBytes(path, [&] { return readFile(path, Limits::kFileBytes); });
+SceneDescription loadGltf(const std::string& path, LampUnits units) {
+    return loadBytes(
+        path, [&] { return readFile(path, Limits::kFileBytes); }, units);
 }
 
-SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb) {
-    return loadBytes(name, [&] { return copyOf(glb); });
+SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb,
+                          LampUnits units) {
+    return loadBytes(
+        name, [&] { return copyOf(glb); }, units);
 }
 
 void requireCamera(const SceneDescription& scene) {

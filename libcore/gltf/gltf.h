@@ -22,10 +22,13 @@ namespace lacuna {
 /// with tbb::parallel_for, in the caller's arena; the result does not depend on the number of
 /// threads.
 ///
+/// `units`: what the punctual lights of the file are in.
+///
 /// Throws InputError: `path: expected ..., found ...; what to do`, one line.
-SceneDescription loadGltf(const std::string& path);
+SceneDescription loadGltf(const std::string& path, LampUnits units = LampUnits::Radiometric);
 /// The same of a .glb in memory, which messages call `name`.
-SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb);
+SceneDescription loadGltf(const std::string& name, std::span<const std::uint8_t> glb,
+                          LampUnits units = LampUnits::Radiometric);
 
 /// Throws InputError if the scene has no perspective camera to render from.
 void requireCamera(const SceneDescription& scene);

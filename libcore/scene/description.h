@@ -71,9 +71,17 @@ struct EnvironmentDescription {
     std::optional<Rgb> colour{};   ///< radiance from everywhere, in place of the file
 };
 
+/// What a file has the intensities of its punctual lights in. Inside they are radiometric, W/sr and
+/// W/m^2, and so is what a photometric file has in candela and lux, by 683 lumens per watt.
+enum class LampUnits { Radiometric, Photometric };
+constexpr const char* nameOf(LampUnits units) {
+    return units == LampUnits::Radiometric ? "radiometric" : "photometric";
+}
+
 struct SceneDescription {
     std::string file;
-    bool fromBlender = false;  ///< asset.generator says so
+    LampUnits lampUnits = LampUnits::Radiometric;  ///< that `lights` were read as
+    bool fromBlender = false;                      ///< asset.generator says so
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<std::string> nodeGroups;  ///< names of light groups that nodes with meshes have

@@ -27,6 +27,11 @@ void addSceneOptions(CLI::App& app, SceneOptions& o) {
         ->type_name("DEG")
         ->group(scene);
     app.add_option("--env-scale", o.environmentScale, "Multiply it")->type_name("S")->group(scene);
+    app.add_option("--units", o.unitsText,
+                   "What points, spots and suns are in: W/sr and W/m^2 (radiometric, the default), "
+                   "or candela and lux (photometric: 683 lumens per watt)")
+        ->type_name("radiometric|photometric")
+        ->group(scene);
     app.add_option("--effect", o.effectTexts,
                    "Force an effect on or off; lacuna-render --effects lists them; may be repeated")
         ->type_name("NAME=on|off")
@@ -183,6 +188,13 @@ std::array<double, count> parseNumbers(const char* option, const std::string& te
     throw UsageError(std::string(option) + ": expected " + expected + ", found '" + text + "'");
 }
 
+LampUnits parseUnits(const std::string& text) {
+    for (const LampUnits units : {LampUnits::Radiometric, LampUnits::Photometric}) {
+        if (text == nameOf(units)) return units;
+    }
+    throw UsageError("--units: expected radiometric or photometric, found '" + text + "'");
+}
+
 void parseEnvironmentColour(SceneOptions& o) {
     if (!o.environment.empty()) {
         throw UsageError("--env-colour: expected one environment, found --env, " + o.environment +
@@ -202,6 +214,7 @@ void checkSceneOptions(SceneOptions& o) {
                                   "two numbers X,Y from -100 to 100");
     }
     if (!o.environmentColourText.empty()) parseEnvironmentColour(o);
+    if (!o.unitsText.empty()) o.units = parseUnits(o.unitsText);
     o.effectSwitches = parseEffectSwitches(o.effectTexts);
     requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
@@ -222,6 +235,7 @@ std::string sceneArguments(const SceneOptions& o) {
     a.add("--env-colour", o.environmentColourText);
     a.add("--env-rotate", o.environmentRotation);
     a.add("--env-scale", o.environmentScale);
+    a.add("--units", o.unitsText);
     for (const EffectSwitch& s : o.effectSwitches) {
         a.add("--effect", s.name + (s.on ? "=on" : "=off"));
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcore/base/vec.h"
+#include "libcore/scene/description.h"
 #include "libcore/tool/effect_switches.h"
 #include "libcore/tool/tool.h"
 
@@ -23,6 +24,7 @@ struct SceneOptions {
 
     std::string environment, environmentColourText;
     std::optional<double> environmentRotation, environmentScale;
+    std::string unitsText;                 ///< --units
     std::vector<std::string> effectTexts;  ///< --effect
     double tolerance = 0.0;
 
@@ -37,10 +39,11 @@ struct SceneOptions {
     double scale = 1.0;                        ///< of the picture's sides, of scaleText
     std::optional<std::array<double, 2>> shift;
     std::optional<Rgb> environmentColour;
+    LampUnits units = LampUnits::Radiometric;  ///< of unitsText
 };
 
-/// Declares --env, --env-colour, --env-rotate, --env-scale, --effect and --tolerance. Both must outlive the
-/// parsing.
+/// Declares --env, --env-colour, --env-rotate, --env-scale, --units, --effect and --tolerance. Both must
+/// outlive the parsing.
 void addSceneOptions(CLI::App& app, SceneOptions& options);
 /// Declares --width, --height, --scale, --camera, --shift, --aperture, --focus, --max-depth and --rr-depth.
 void addViewOptions(CLI::App& app, SceneOptions& options);

@@ -113,6 +113,7 @@ Settings viewInputsOf(const SceneDescription& scene, const CameraDescription& ca
 Settings sceneInputs(const SceneStage& stage) {
     const SceneDescription& scene = stage.scene->description();
     Settings inputs{{"scene", scene.contentHash}, {"tolerance", numberText(stage.tolerance)}};
+    inputs["lamp units"] = nameOf(scene.lampUnits);
     inputs["environment"] = "none";
     if (scene.environment) {
         inputs["environment"] = contentOf(*scene.environment);
@@ -136,8 +137,9 @@ std::string contentOf(const EnvironmentDescription& environment) {
 }
 
 SceneDescription describeScene(const SceneOptions& options) {
-    SceneDescription scene =
-        options.sceneBytes ? loadGltf(options.scene, *options.sceneBytes) : loadGltf(options.scene);
+    SceneDescription scene = options.sceneBytes
+                                 ? loadGltf(options.scene, *options.sceneBytes, options.units)
+                                 : loadGltf(options.scene, options.units);
     if (options.shift) {
         for (CameraDescription& camera : scene.cameras) camera.shift = *options.shift;
     }

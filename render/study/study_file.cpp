@@ -23,7 +23,7 @@ const std::vector<std::string> kMeasures = {"mae", "rmse", "mape", "relmse"};
 const std::set<std::string> kOptions = {"width",  "height",     "crop",      "camera",
                                         "env",    "env-rotate", "env-scale", "aperture",
                                         "focus",  "max-depth",  "rr-depth",  "block-iterations",
-                                        "effect", "tolerance",  "sampler"};
+                                        "effect", "tolerance",  "sampler",   "units"};
 
 /// Beside the study's file, unless absolute or in the folder of scenes that others made.
 std::string resolvePath(const std::string& studyFile, const std::string& path) {

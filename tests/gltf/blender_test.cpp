@@ -113,9 +113,9 @@ TriangleBuilder withLamps(Mode mode, const std::vector<Lamp>& lamps) {
 }
 
 /// Warnings of lamps that are too bright.
-std::string tooBright(const GltfBuilder& b) {
+std::string tooBright(const GltfBuilder& b, LampUnits units = LampUnits::Radiometric) {
     std::string found;
-    for (const std::string& warning : b.load().warnings) {
+    for (const std::string& warning : b.load(units).warnings) {
         if (warning.find("too bright") != std::string::npos) found += warning;
     }
     return found;
@@ -142,6 +142,30 @@ TEST(BlenderLighting, StandardAndRawAreSaidUnitlessIsNot) {
     EXPECT_NE(tooBright(withLamps(Mode::Standard, {{"spot", 37.3f}}))
                   .find("has 25475.9 W here, in Blender 37.3)"),
               std::string::npos);
+}
+
+TEST(BlenderLighting, PhotometricLampsAreDividedAndNothingElse) {
+    constexpr LampUnits kPhotometric = LampUnits::Photometric;
+    const std::vector<Lamp> lamps = {{"point", 1000}, {"spot", 37.3f}, {"directional", 3}};
+    const auto shining = [&](Mode mode) {
+        TriangleBuilder b = withLamps(mode, lamps);
+        b.root["materials"][0]["emissiveFactor"] = {0.25, 0.5, 1.0};
+        return b;
+    };
+    const SceneDescription expected = shining(Mode::Unitless).load();
+    const SceneDescription found = shining(Mode::Standard).load(kPhotometric);
+    EXPECT_EQ(found.lampUnits, kPhotometric);
+    ASSERT_EQ(found.lights.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_FLOAT_EQ(found.lights[i].intensity.g, expected.lights[i].intensity.g);
+        EXPECT_EQ(shining(Mode::Standard).load().lights[i].intensity.g,
+                  float(exported(Mode::Standard, lamps[i].type, lamps[i].power)));
+    }
+    EXPECT_EQ(found.materials[0].emission, Rgb(0.25f, 0.5f, 1.0f));
+    // Who knows is not told; Raw is no matter of lumens.
+    EXPECT_EQ(tooBright(shining(Mode::Standard), kPhotometric), "");
+    EXPECT_NE(tooBright(shining(Mode::Standard)).find("--units photometric"), std::string::npos);
+    EXPECT_NE(tooBright(shining(Mode::Raw), kPhotometric).find("4 pi"), std::string::npos);
 }
 
 TEST(BlenderLighting, ManyLampsAgreeOrNothingIsSaid) {

@@ -111,9 +111,9 @@ ByteVector GltfBuilder::glb() const {
     return pack(document().dump(), binary);
 }
 
-SceneDescription GltfBuilder::load() const {
+SceneDescription GltfBuilder::load(LampUnits units) const {
     const TempDir dir;
-    return loadGltf(dir.write("scene.glb", glb()));
+    return loadGltf(dir.write("scene.glb", glb()), units);
 }
 
 int warningsWith(const SceneDescription& scene, const std::string& text) {

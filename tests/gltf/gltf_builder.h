@@ -114,7 +114,7 @@ class GltfBuilder {
     /// The JSON with its one buffer declared (unless the test declared buffers itself).
     json document() const;
     ByteVector glb() const;
-    SceneDescription load() const;
+    SceneDescription load(LampUnits units = LampUnits::Radiometric) const;
 
   private:
     int accessor(const ByteVector& bytes, int componentType, std::size_t values,

@@ -505,6 +505,29 @@ TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
     EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).g, 0.5f, 1e-5f);
 }
 
+// 683 lumens per watt, of points, spots and suns alone: the lamp of emissive triangles stays.
+TEST_F(RenderOutput, LampsInCandelaAreThoseInWatts) {
+    TinyScene scene;
+    scene.pointLight = true;
+    write("watts.gltf", scene.text());
+    scene.pointIntensity *= 683.0;
+    write("candela.gltf", scene.text());
+    const auto rendered = [&](const std::string& options) {
+        const Outcome o =
+            run("--method pt --width 24 --height 16 --iterations 4 --quiet -o "
+                "@out.exr " +
+                options);
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        return readImage(path("out.exr")).pixels;
+    };
+    const std::vector<Rgb> watts = rendered("@watts.gltf");
+    EXPECT_EQ(rendered("@candela.gltf --units photometric"), watts);
+    EXPECT_EQ(rendered("@watts.gltf --units radiometric"), watts);
+    EXPECT_NE(rendered("@candela.gltf"), watts);
+    expectFailure("@watts.gltf -o @out.exr --units lumens", 2,
+                  "--units: expected radiometric or photometric, found 'lumens'");
+}
+
 TEST_F(RenderOutput, AnEnvironmentOfOneColour) {
     LayeredImage sky(1, 1);
     sky.setRgb("", Image(1, 1, Rgb(0.5f, 1.0f, 2.0f)));

@@ -258,10 +258,11 @@ TEST_F(TrainTool, CachesOfOtherInputsAreRefusedByName) {
          "effects (there 'as the scene calls for', here 'area_lights=off')"},
         {" --env-colour 0,0.5,1", "here 'colour 0 0.5 1')"},
         {" --aperture 0.01 --focus 2", "lens (there 'pinhole', here 'radius"},
-        {" --shift 0.1,-0.25", "lens (there 'pinhole', here 'pinhole shift 0.1 -0.25')"},
+        {" --shift 0.1,-0.25", "here 'pinhole shift 0.1 -0.25')"},
         {" --max-depth 5", "max depth (there '12', here '5')"},
         {" --rr-depth 2", "roulette depth (there '3', here '2')"},
         {" --tolerance 0.01", "tolerance (there '0', here '0.01')"},
+        {" --units photometric", "lamp units (there 'radiometric', here 'photometric')"},
         {" --set train.epochs=3", "epochs (there '20', here '3')"},
     };
     for (const auto& [options, difference] : cases) {
