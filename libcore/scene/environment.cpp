@@ -30,104 +30,154 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
         }
     }
 
-    for (int y = 0; y < height_; ++y) {
-        const double top = std::cos(std::numbers::pi * y / height_);
-        const double bottom = std::cos(std::numbers::pi * (y + 1) / height_);
+    const auto edge = [&](double y) {
+        return std::cos(std::numbers::pi * std::clamp(y - 0.5, 0.0, double(height_)) / height_);
+    };
+    for (int y = 0; y <= height_; ++y) {
+        const double top = edge(y), bottom = edge(y + 1);
         rows_.push_back({top, bottom, 2.0 * std::numbers::pi / width_ * (top - bottom)});
     }
 
-    // A texel's interpolated radiance reaches into all eight neighbours: the tent's integrals over
-    // one texel are 1/8, 6/8, 1/8 along each axis.
-    std::vector<double> weights(image_.size());
+    std::vector<double> weights;
+    weights.reserve(rows_.size() * std::size_t(width_));
     double sum[3] = {0, 0, 0};
-    for (int y = 0; y < height_; ++y) {
+    for (int y = 0; y <= height_; ++y) {
         const double solidAngle = rows_[std::size_t(y)].solidAngle;
         for (int x = 0; x < width_; ++x) {
-            Rgb meanRadiance{};
-            for (int dy = -1; dy <= 1; ++dy) {
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const float w = (dx ? 0.125f : 0.75f) * (dy ? 0.125f : 0.75f);
-                    meanRadiance += texel((x + dx + width_) % width_,
-                                          std::min(std::max(y + dy, 0), height_ - 1)) *
-                                    w;
-                }
-            }
-            weights[std::size_t(y) * width_ + x] = double(mean(meanRadiance)) * solidAngle;
-            sum[0] += meanRadiance.r * solidAngle;
-            sum[1] += meanRadiance.g * solidAngle;
-            sum[2] += meanRadiance.b * solidAngle;
+            const Corners c = cornersOf(x, y);
+            const Rgb radiance = c.leftAbove * 0.25f + c.rightAbove * 0.25f + c.leftBelow * 0.25f +
+                                 c.rightBelow * 0.25f;
+            weights.push_back(double(mean(radiance)) * solidAngle);
+            sum[0] += double(radiance.r) * solidAngle;
+            sum[1] += double(radiance.g) * solidAngle;
+            sum[2] += double(radiance.b) * solidAngle;
         }
     }
     integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
-    texels_ = DiscreteDistribution(weights);
+    cells_ = DiscreteDistribution(weights);
 }
 
-Vec2 Environment::uvOf(Vec3 d) const {
-    const float u = 0.5f + turnsOf(d.x, -d.z) - turn_;
+Environment::Place Environment::placeOf(Vec3 d) const {
+    const float turns = 0.5f + turnsOf(d.x, -d.z) - turn_;
+    const float u = turns - std::floor(turns);
     const float v = 2.0f * turnsOf(std::sqrt(d.x * d.x + d.z * d.z), d.y);
-    return {u - std::floor(u), v};
+    const float x = u * float(width_) - 0.5f, y = v * float(height_) - 0.5f;
+    const int left = int(std::floor(x)), above = int(std::floor(y));
+    return {(left + width_) % width_, std::clamp(above + 1, 0, height_), x - float(left),
+            y - float(above)};
 }
 
-Rgb Environment::radianceAt(Vec2 uv) const {
-    const float x = uv.x * float(width_) - 0.5f, y = uv.y * float(height_) - 0.5f;
-    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-    const float fx = x - float(x0), fy = y - float(y0);
-    const auto row = [&](int r) { return std::min(std::max(r, 0), height_ - 1); };
-    const auto column = [&](int c) { return (c + width_) % width_; };
-    return texel(column(x0), row(y0)) * ((1 - fx) * (1 - fy)) +
-           texel(column(x0 + 1), row(y0)) * (fx * (1 - fy)) +
-           texel(column(x0), row(y0 + 1)) * ((1 - fx) * fy) +
-           texel(column(x0 + 1), row(y0 + 1)) * (fx * fy);
+Environment::Corners Environment::cornersOf(int x, int y) const {
+    const int right = x + 1 < width_ ? x + 1 : 0;
+    const int above = std::max(y - 1, 0), below = std::min(y, height_ - 1);
+    return {texel(x, above), texel(right, above), texel(x, below), texel(right, below)};
 }
 
-Environment::Sample Environment::sample(double uTexel, float u1, float u2) const {
-    return inTexel(texels_.sample(uTexel), u1, u2);
+Rgb Environment::radianceAt(const Place& p) const {
+    const Corners c = cornersOf(p.x, p.y);
+    return c.leftAbove * ((1 - p.right) * (1 - p.bottom)) +
+           c.rightAbove * (p.right * (1 - p.bottom)) + c.leftBelow * ((1 - p.right) * p.bottom) +
+           c.rightBelow * (p.right * p.bottom);
+}
+
+/// Share of the row that is above `direction`, by solid angle. What a direction's length is off by
+/// rounding is a good part of a row at the poles.
+double Environment::shareBelow(int y, Vec3 direction) const {
+    const Vec3d d(direction);
+    const Row& row = rows_[std::size_t(y)];
+    return std::clamp((row.top - d.y / length(d)) / (row.top - row.bottom), 0.0, 1.0);
+}
+
+namespace {
+
+/// Densities that are linear between 0 and 1.
+struct Linear {
+    double begin, end;  ///< any multiple of the density there; not both 0
+
+    double sample(double u) const {
+        const double root = std::sqrt(begin * begin + u * (end * end - begin * begin));
+        const double sum = begin + root;
+        return sum > 0.0 ? std::min(u * (begin + end) / sum, 1.0) : u;
+    }
+    /// Undoes it.
+    double cdf(double x) const {
+        const double sum = begin + end;
+        return sum > 0.0 ? x * (2.0 * begin + x * (end - begin)) / sum : x;
+    }
+};
+
+/// In a cell: how far down, and how far to the right there.
+struct Bilinear {
+    double leftAbove, rightAbove, leftBelow, rightBelow;
+
+    Linear down() const { return {leftAbove + rightAbove, leftBelow + rightBelow}; }
+    Linear across(double below) const {
+        return {leftAbove + (leftBelow - leftAbove) * below,
+                rightAbove + (rightBelow - rightAbove) * below};
+    }
+};
+
+Bilinear bilinear(const auto& corners) {
+    return {double(mean(corners.leftAbove)), double(mean(corners.rightAbove)),
+            double(mean(corners.leftBelow)), double(mean(corners.rightBelow))};
+}
+
+}  // namespace
+
+Environment::Sample Environment::sample(double uCell, float u1, float u2) const {
+    return inCell(cells_.sample(uCell), u1, u2);
 }
 
 Environment::Sample Environment::sampleSquare(double across, double down) const {
     const auto width = std::size_t(width_);
-    const std::size_t row = texels_.sample(down).index / width;
-    const double begin = texels_.before(row * width), end = texels_.before((row + 1) * width);
+    const std::size_t row = cells_.sample(down).index / width;
+    const double begin = cells_.before(row * width), end = cells_.before((row + 1) * width);
     // Rounding must not lead into the next row.
     const double u = std::min(begin + across * (end - begin), std::nextafter(end, begin));
-    const DiscreteDistribution::Pick texel = texels_.sample(u);
-    return inTexel(texel, float(texel.remapped()), float((down - begin) / (end - begin)));
+    const DiscreteDistribution::Pick cell = cells_.sample(u);
+    return inCell(cell, cell.remapped(), (down - begin) / (end - begin));
 }
 
 SquarePoint Environment::squareOf(Vec3 direction) const {
-    const Vec2 uv = uvOf(direction);
+    const Place p = placeOf(direction);
     const auto width = std::size_t(width_);
-    const double column = double(uv.x) * width_;
-    const auto x = std::min(std::size_t(column), width - 1);
-    const auto y = std::min(std::size_t(uv.y * float(height_)), std::size_t(height_ - 1));
-    const Row& row = rows_[y];
-    const double begin = texels_.before(y * width), end = texels_.before((y + 1) * width);
-    const double rest = texels_.before(y * width + x) - begin;
+    const std::size_t row = std::size_t(p.y) * width, cell = row + std::size_t(p.x);
+    const double begin = cells_.before(row), end = cells_.before(row + width);
+    const Bilinear density = bilinear(cornersOf(p.x, p.y));
+    const double below = shareBelow(p.y, direction);
     const auto share = [](double part) { return std::clamp(part, 0.0, 1.0); };
-    const double down = share((row.top - double(direction.y)) / (row.top - row.bottom));
-    const double across = rest + share(column - double(x)) * texels_.pmf(y * width + x);
+    const double down = share(density.down().cdf(below));
+    const double across = cells_.before(cell) - begin +
+                          share(density.across(below).cdf(double(p.right))) * cells_.pmf(cell);
     return {end > begin ? share(across / (end - begin)) : 0.0, begin + down * (end - begin)};
 }
 
-/// Uniform in it.
-Environment::Sample Environment::inTexel(const DiscreteDistribution::Pick& pick, float u1,
-                                         float u2) const {
+Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, double u1,
+                                        double u2) const {
     const int x = int(pick.index) % width_, y = int(pick.index) / width_;
     const Row& row = rows_[std::size_t(y)];
-    // Uniform in solid angle inside the texel: uniform in longitude and in the cosine.
-    const double cosine = row.top + (row.bottom - row.top) * u2;
+    const Bilinear density = bilinear(cornersOf(x, y));
+    const double below = density.down().sample(u2);
+    const double right = density.across(below).sample(u1);
+    const double cosine = row.top + (row.bottom - row.top) * below;
     const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
-    const SineCosine longitude = sineCosineOfTurns((float(x) + u1) / float(width_) - 0.5f + turn_);
+    const SineCosine longitude =
+        sineCosineOfTurns(float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
     const Vec3 direction{sine * longitude.sine, float(cosine), -sine * longitude.cosine};
-    // Rounding may lead into the next texel: the density is the one that is found there.
+    // Rounding may lead into the next cell: the density is the one that is found there.
     return {direction, pdfW(direction)};
 }
 
-float Environment::pdfWAt(Vec2 uv) const {
+float Environment::pdfWAt(const Place& p, Vec3 direction) const {
     if (black()) return 0.0f;
-    const int x = std::min(int(uv.x * float(width_)), width_ - 1);
-    const int y = std::min(int(uv.y * float(height_)), height_ - 1);
-    return float(texels_.pmf(std::size_t(y) * width_ + x) / rows_[std::size_t(y)].solidAngle);
+    const Bilinear density = bilinear(cornersOf(p.x, p.y));
+    const Linear across = density.across(shareBelow(p.y, direction));
+    const Linear down = density.down();
+    const double all = 0.25 * (down.begin + down.end);
+    if (!(all > 0.0)) return 0.0f;
+    const double here = across.begin + (across.end - across.begin) * double(p.right);
+    const double pmf = cells_.pmf(std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x));
+    return float(pmf * here / (all * rows_[std::size_t(p.y)].solidAngle));
 }
 
 }  // namespace lacuna

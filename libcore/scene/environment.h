@@ -9,25 +9,26 @@
 namespace lacuna {
 
 /// Centre of the image -Z, right half +X, top row +Y (theory.md, "Lights"). Radiance is the
-/// bilinear interpolation of the texels (periodic in longitude); the density is constant per texel
-/// and positive wherever that interpolation is.
+/// bilinear interpolation of the texels (periodic in longitude), and so is the density, of their
+/// mean over the channels: up to the share of a row that is between its rows of texels, which is
+/// that of the angle there and that of its cosine here.
 class Environment {
   public:
     /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError
     /// for an empty image or negative or non-finite texels, naming `file`.
     Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
 
-    Rgb radiance(Vec3 direction) const { return radianceAt(uvOf(direction)); }
+    Rgb radiance(Vec3 direction) const { return radianceAt(placeOf(direction)); }
     /// Density of `sample` at `direction`, per solid angle; 0 for a black map.
-    float pdfW(Vec3 direction) const { return pdfWAt(uvOf(direction)); }
+    float pdfW(Vec3 direction) const { return pdfWAt(placeOf(direction), direction); }
     /// Both.
     struct Seen {
         Rgb radiance;
         float pdfW;
     };
     Seen seen(Vec3 direction) const {
-        const Vec2 uv = uvOf(direction);
-        return {radianceAt(uv), pdfWAt(uv)};
+        const Place place = placeOf(direction);
+        return {radianceAt(place), pdfWAt(place, direction)};
     }
 
     struct Sample {
@@ -41,25 +42,37 @@ class Environment {
     /// The point of the square that gives `direction`: {across, down}. Not for a black map.
     SquarePoint squareOf(Vec3 direction) const;
 
-    bool black() const { return texels_.empty(); }
-    /// Integral of the radiance over all directions (by texel means).
+    bool black() const { return cells_.empty(); }
+    /// Integral of the radiance over all directions, as the density has it.
     Rgb integral() const { return integral_; }
 
   private:
-    Vec2 uvOf(Vec3 direction) const;
-    Rgb radianceAt(Vec2 uv) const;
-    float pdfWAt(Vec2 uv) const;
-    Sample inTexel(const DiscreteDistribution::Pick& texel, float u1, float u2) const;
+    // A cell lies between four centres of texels, those above it being of row y - 1 and those below
+    // of row y, 0 <= y <= height. In the first and the last row of cells, half as high, both are the
+    // same.
+    struct Place {
+        int x, y;             ///< of the cell; x is that of its left texels
+        float right, bottom;  ///< share of what is on that side
+    };
+    Place placeOf(Vec3 direction) const;
+    struct Corners {
+        const Rgb &leftAbove, &rightAbove, &leftBelow, &rightBelow;
+    };
+    Corners cornersOf(int x, int y) const;
+    Rgb radianceAt(const Place& place) const;
+    float pdfWAt(const Place& place, Vec3 direction) const;
+    double shareBelow(int y, Vec3 direction) const;
+    Sample inCell(const DiscreteDistribution::Pick& cell, double u1, double u2) const;
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;
     std::vector<Rgb> image_;
     struct Row {
         double top, bottom;  ///< cosines to +Y of its edges
-        double solidAngle;   ///< of a texel: exact, so that densities integrate to one
+        double solidAngle;   ///< of a cell: exact, so that densities integrate to one
     };
-    std::vector<Row> rows_;
-    DiscreteDistribution texels_;
+    std::vector<Row> rows_;  // of cells
+    DiscreteDistribution cells_;
     Rgb integral_;
     float turn_;  ///< rotation as a fraction of a whole turn
 };

@@ -201,6 +201,63 @@ TEST(Environment, DrawsTheSameFromASquare) {
     }
 }
 
+/// A disc of half a degree, 10^5 times as bright as the sky around it: a few texels, and the rim of it
+/// between them. Its light is as good as that of a lamp: a direction's radiance over its density is the
+/// same for all, but for how far the cosine of the angle to +Y is from linear in a row.
+TEST(Environment, ASunIsDrawnAsItShines) {
+    for (const int height : {256, 1024}) {
+        Image image(2 * height, height, Rgb(1.0f));
+        const Vec3d sun = normalize(Vec3d{0.4, 0.6, -0.7});
+        for (int y = 0; y < height / 2; ++y) {
+            for (int x = 0; x < 2 * height; ++x) {
+                const double longitude = 360.0 * (x + 0.5) / (2 * height) - 180;
+                const Vec3 d = towards(longitude, 90 - 180.0 * (y + 0.5) / height);
+                const double cosine = dot(Vec3d(d), sun);
+                // At its rim by halves, as renders and photographs have it.
+                if (cosine > std::cos(0.0046))
+                    image.at(x, y) = Rgb(1e5f, 0.9e5f, 0.8e5f);
+                else if (cosine > std::cos(0.0046 + 3.0 / height))
+                    image.at(x, y) = Rgb(3e4f);
+            }
+        }
+        const Environment e(image, 1, 30, "sun");
+        Rng rng(6, 0, StreamKind::User, 0);
+        Moments ratio;
+        double least = 1e9, most = 0;
+        for (int i = 0; i < 50'000; ++i) {
+            const Environment::Sample s =
+                e.sample(rng.uniformDouble(), rng.uniform(), rng.uniform());
+            const double r =
+                double(mean(e.radiance(s.direction))) / double(s.pdfW * mean(e.integral()));
+            ratio.add(r);
+            if (std::abs(s.direction.y) > 0.99f) continue;  // rows at the poles are less even
+            least = std::min(least, r);
+            most = std::max(most, r);
+        }
+        EXPECT_NEAR(ratio.mean(), 1, 1e-3) << height;
+        EXPECT_GT(least, 0.95) << height;
+        EXPECT_LT(most, 1.05) << height;
+    }
+}
+
+/// The point of the square that a direction is of gives it again, wherever texels differ.
+TEST(Environment, SquaresAndDirectionsAreEachOthersInverse) {
+    Image image(12, 7);
+    Random random(8);
+    for (Rgb& texel : image.pixels) texel = Rgb(std::pow(10.0f, 4 * random.next()));
+    for (int x = 3; x < 6; ++x) image.at(x, 2) = image.at(x, 3) = Rgb();  // a cell without light
+    const Environment e(image, 1, -70, "uneven");
+    Rng rng(7, 0, StreamKind::User, 0);
+    for (int i = 0; i < 20'000; ++i) {
+        const double across = rng.uniformDouble(), down = rng.uniformDouble();
+        const Environment::Sample s = e.sampleSquare(across, down);
+        const SquarePoint back = e.squareOf(s.direction);
+        ASSERT_NEAR(back[1], down, 1e-4);
+        ASSERT_NEAR(back[0], across, 2e-3) << down;
+        ASSERT_GT(s.pdfW, 0.0f);
+    }
+}
+
 TEST(Environment, RefusesWhatIsNoRadiance) {
     Image image(4, 3, Rgb(1.0f));
     EXPECT_TRUE(Environment(Image(4, 3), 1, 0, "black").black());
