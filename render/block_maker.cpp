@@ -26,7 +26,9 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
         layers_.push_back(techniques_.get());
     }
     if (!stage.layers.empty()) {
-        layersOfPaths_ = std::make_unique<LayerFilm>(stage.layers, crop.width(), crop.height());
+        layersOfPaths_ =
+            std::make_unique<LayerFilm>(stage.layers, crop.width(), crop.height(),
+                                        options.lightNoise ? plan_.sampleIterations() : 0);
         integrator_->delivery().setLayerFilm(layersOfPaths_.get());
         layers_.push_back(layersOfPaths_.get());
     }

@@ -10,10 +10,28 @@ namespace lacuna {
 namespace {
 
 /// What pictures and parts call channels and layers of their own.
-constexpr std::array kTaken = {"A",        "B",      "G",          "R",        "Y",
-                               "Z",        "albedo", "emission",   "light",    "lightSubspace",
-                               "node",     "normal", "part",       "share",    "square",
-                               "subspace", "sum",    "unweighted", "variance", "walks",
+constexpr std::array kTaken = {"A",
+                               "B",
+                               "G",
+                               "R",
+                               "Y",
+                               "Z",
+                               "albedo",
+                               "covariance",
+                               "emission",
+                               "light",
+                               "lightSubspace",
+                               "node",
+                               "normal",
+                               "part",
+                               "product",
+                               "share",
+                               "square",
+                               "subspace",
+                               "sum",
+                               "unweighted",
+                               "variance",
+                               "walks",
                                "weighted"};
 
 bool isPlain(char c) {

@@ -7,6 +7,7 @@
 #include "libcore/image/exr.h"
 #include "render/output.h"
 #include "render/part.h"
+#include "render/relight.h"
 
 namespace lacuna {
 namespace {
@@ -108,7 +109,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
     join(sum, last, false, &pool);
 
     merged.mean = sum.meanColour();
-    setPicture(merged.image, sum);
+    setPicture(merged.image, sum, lightGroupsOf(merged.image, files.front().path));
     auto& a = merged.image.attributes;
     if (merged.image.find("share.t02")) {
         addShareOfFirstConnections(merged.image, std::get<int>(a.at("maxDepth")));

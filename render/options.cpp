@@ -60,6 +60,9 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--light-groups", o.lightGroups,
                  "A layer of the .exr for each group of lights; together they are the picture")
         ->group(picture);
+    app.add_flag("--light-noise", o.lightNoise,
+                 "--light-groups, and how noisy every mixture of them is, for lacuna-relight")
+        ->group(picture);
     app.add_option("--layer", o.layerTexts,
                    "A layer of the paths that a light path expression matches, in OSL's notation "
                    "(C<RD>L, C.*<TS>.*L); any number")
@@ -183,6 +186,7 @@ bool parseNumber(std::string_view text, T& value) {
 /// The option that asks for layers which iterations fill; null: none does.
 const char* layerOption(const RenderOptions& o) {
     if (o.techniques) return "--techniques";
+    if (o.lightNoise) return "--light-noise";
     if (o.lightGroups) return "--light-groups";
     return o.layers.empty() ? nullptr : "--layer";
 }
@@ -380,6 +384,7 @@ void checkOptions(RenderOptions& o) {
     }
     parseLive(o);
     o.layers = parseLayerExpressions(o.layerTexts);
+    if (o.lightNoise) o.lightGroups = true;
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
     if (o.countSetup && !o.timeSeconds) {

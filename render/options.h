@@ -45,7 +45,7 @@ struct RenderOptions : SceneOptions {
     bool countSetup = false, estimate = false;
     std::string reference, log;
     bool prepare = false, techniques = false, verify = false, denoise = false;
-    bool lightGroups = false;
+    bool lightGroups = false, lightNoise = false;
     std::vector<std::string> layerTexts;
     bool allowBias = false;  ///< `auto` may choose rows that merge
     bool listMethods = false, effects = false;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/base/atomic_file.h"
+#include "libcore/bidir/light_noise.h"
 
 namespace lacuna {
 namespace {
@@ -56,6 +57,7 @@ void setHeader(LayeredImage& image, const RenderReport& r) {
     a["maxDepth"] = r.limits.maxDepth;
     a["effects"] = utf8Text(effectsJson(r.effects), -1);
     if (!r.layers.empty()) a["layers"] = utf8Text(json(r.layers), -1);
+    if (!r.lightGroups.empty()) a["lightGroups"] = utf8Text(json(r.lightGroups), -1);
     if (r.tolerance > 0.0) a["tolerance"] = r.tolerance;
     if (r.crop != PixelRect{0, r.filmWidth, 0, r.filmHeight}) {
         a["crop"] = rectText(r.crop);
@@ -99,11 +101,14 @@ json parametersJson(const MethodRow& row, const Settings& settings) {
     return object;
 }
 
-void setPicture(LayeredImage& image, const FilmSum& sum) {
+void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::string> lightGroups) {
     image.setRgb("", sum.image(image.width(), image.height()));
     image.setRgb("variance", sum.variance(image.width(), image.height()));
     for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
     setTechniqueVariances(image, sum.layers, sum.samples);
+    std::vector<std::string> lights;
+    for (const std::string& group : lightGroups) lights.push_back("light." + group);
+    setLightCovariances(image, lights, sum.samples);
 }
 
 void setFeatures(LayeredImage& image, const FeatureLayers& features) {
@@ -122,7 +127,7 @@ void setFeatures(LayeredImage& image, const FeatureLayers& features) {
 LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
                           const LayeredImage* still) {
     LayeredImage image(report.crop.width(), report.crop.height());
-    setPicture(image, sum);
+    setPicture(image, sum, report.lightGroups);
     if (report.techniques) addShareOfFirstConnections(image, report.limits.maxDepth);
     if (still) {
         for (const auto& [name, plane] : still->channels()) image.channel(name) = plane;
@@ -190,6 +195,7 @@ json reportJson(const RenderReport& r) {
            {"stopped", r.stopped}};
     if (r.choice) j["chosen"] = r.choice->json();
     if (!r.layers.empty()) j["layers"] = r.layers;
+    if (!r.lightGroups.empty()) j["light_groups"] = r.lightGroups;
     if (r.techniques) j["techniques"] = techniqueCostsJson(r.techniqueCosts);
     if (r.ranks > 1) j["received_bytes"] = r.receivedBytes;
     j["estimated_error"] = json::object();

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct RenderReport {
     BlockPlan blocks;
     std::uint64_t firstBlock = 0;
     bool techniques = false;
+    std::vector<std::string> lightGroups;       ///< where they have layers
     std::map<std::string, std::string> layers;  ///< expressions by name
     std::vector<TechniqueCost> techniqueCosts;  ///< --techniques
     int warmupIterations = 0;                   ///< of each block
@@ -63,8 +65,8 @@ struct RenderReport {
 /// The method's parameters with their values.
 nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 
-/// The picture with its variance and layers.
-void setPicture(LayeredImage& image, const FilmSum& sum);
+/// The picture with its variance and layers. `lightGroups`: names, where they have layers.
+void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::string> lightGroups);
 
 /// Adds layers albedo and normal, and Z.
 void setFeatures(LayeredImage& image, const FeatureLayers& features);

@@ -48,7 +48,9 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     add("crop", std::to_string(crop.x0) + "," + std::to_string(crop.x1) + "," +
                     std::to_string(crop.y0) + "," + std::to_string(crop.y1));
     add("technique layers", options.techniques ? "yes" : "no");
-    add("layers of light groups", options.lightGroups ? "yes" : "no");
+    add("layers of light groups", options.lightNoise    ? "yes, with their noise"
+                                  : options.lightGroups ? "yes"
+                                                        : "no");
     std::set<std::string> layers;  // whatever their order
     for (const LayerExpression& layer : options.layers) {
         layers.insert(layer.name);

@@ -11,6 +11,7 @@
 #include "libcore/base/number_text.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/bidir/features.h"
+#include "libcore/bidir/light_noise.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/image/sheet.h"
@@ -40,8 +41,9 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
     const RenderSettings& settings = stage.settings;
     const PixelRect& crop = settings.crop;
     const double depth = settings.limits.maxDepth;
-    const double layers =
-        (options.techniques ? depth * (depth + 3.0) : 0.0) + double(stage.layers.names().size());
+    const double groups = options.lightNoise ? double(stage.layers.lightGroups()) : 0.0;
+    const double layers = (options.techniques ? depth * (depth + 3.0) : 0.0) +
+                          double(stage.layers.names().size()) + groups * (groups + 1.0) / 2.0;
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
@@ -96,6 +98,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.firstBlock = film_.block();
     r.techniques = options.techniques;
     for (const LayerExpression& layer : options.layers) r.layers[layer.name] = layer.text;
+    if (options.lightGroups) r.lightGroups = stage_.scene->lightGroups().names;
     r.warmupIterations = maker_.warmupIterations();
     r.setupSeconds = stage_.setupSeconds + caches_.seconds;
     r.phaseSeconds = stage_.phaseSeconds;
@@ -357,6 +360,11 @@ std::vector<std::string> Session::channelNames() {
     addRgb("variance");
     for (const auto& [name, plane] : still().channels()) names.push_back(name);
     for (const std::string& layer : stage_.layers.names()) addRgb(layer);
+    if (options_.lightNoise) {
+        for (const std::string& layer : lightCovarianceLayers(report_.lightGroups.size())) {
+            addRgb(layer);
+        }
+    }
     if (!options_.techniques) return names;
     for (const std::string& label : report_.method->proposalLabels) addRgb("part." + label);
     const std::vector<std::string> ofTechniques =

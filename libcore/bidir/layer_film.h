@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/light_noise.h"
 #include "libcore/bidir/path_layers.h"
 
 namespace lacuna {
@@ -15,8 +17,9 @@ class ThreadPool;
 /// layers, black ones too.
 class LayerFilm final : public BlockLayers {
   public:
-    /// `layers` must outlive the film.
-    LayerFilm(const PathLayers& layers, int width, int height);
+    /// `layers` must outlive the film. `noiseSample`: so many iterations (BlockPlan's) are a sample
+    /// that the noise of light groups is known by; 0: it is not asked for.
+    LayerFilm(const PathLayers& layers, int width, int height, std::uint64_t noiseSample = 0);
 
     const PathLayers& layers() const { return layers_; }
     /// Different pixels may be added to at the same time.
@@ -33,6 +36,7 @@ class LayerFilm final : public BlockLayers {
     // By layer: of the iteration under way, and over those before. One sum of all would round what a
     // splat adds to a pixel by what the brightest one has left there.
     std::vector<std::vector<Rgb>> now_, sums_;
+    std::optional<LightProducts> products_;
     std::uint64_t iterations_ = 0;
 };
 

@@ -102,6 +102,7 @@ PathLayers::PathLayers(const Scene& scene, bool lightGroups,
     if (lightGroups) {
         LightGroups groups = scene.lightGroups();
         for (const std::string& name : groups.names) names_.push_back("light." + name);
+        lightGroups_ = names_.size();
         group_ = std::move(groups.group);
     }
     if (!expressions.empty()) addExpressions(scene, expressions);

@@ -37,6 +37,8 @@ class PathLayers {
     bool empty() const { return names_.empty(); }
     /// By layer, as the picture calls it.
     const std::vector<std::string>& names() const { return names_; }
+    /// So many of them, the first ones, are those of groups of lights.
+    std::size_t lightGroups() const { return lightGroups_; }
 
     /// A part of what a path adds to the picture, and the layer that it is added to.
     struct Share {
@@ -86,6 +88,7 @@ class PathLayers {
                JointAutomaton::State state, Scratch& scratch) const;
 
     std::vector<std::string> names_;
+    std::size_t lightGroups_ = 0;
     std::vector<std::uint32_t> group_;         // by light, where groups are asked for
     std::vector<JointAutomaton> automata_;     // of the last layers
     std::vector<Automaton::Letter> ofObject_;  // by object, its first letter

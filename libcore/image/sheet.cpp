@@ -22,6 +22,7 @@ struct Layer {
 std::vector<Layer> layersOf(const LayeredImage& image) {
     std::vector<Layer> layers;
     for (const auto& [channel, plane] : image.channels()) {
+        if (channel.starts_with("covariance.")) continue;  // no pictures: signs, and many of them
         const std::size_t dot = channel.rfind('.');
         const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
         const std::string part = dot == std::string::npos ? channel : channel.substr(dot + 1);

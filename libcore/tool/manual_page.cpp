@@ -9,9 +9,9 @@
 namespace lacuna {
 namespace {
 
-constexpr const char* kPrograms[] = {"lacuna-compare",     "lacuna-merge", "lacuna-render",
-                                     "lacuna-skeletonize", "lacuna-study", "lacuna-train",
-                                     "lacuna-voxelize"};
+constexpr const char* kPrograms[] = {"lacuna-compare", "lacuna-merge",       "lacuna-relight",
+                                     "lacuna-render",  "lacuna-skeletonize", "lacuna-study",
+                                     "lacuna-train",   "lacuna-voxelize"};
 
 /// Text as roff takes it, whatever characters it has.
 std::string roff(const std::string& text) {

@@ -8,6 +8,7 @@
 #include "libcore/image/exr.h"
 #include "libcore/image/image.h"
 #include "libcore/image/image_io.h"
+#include "render/relight.h"
 
 namespace lacuna {
 namespace {
@@ -100,6 +101,12 @@ std::span<const float> Picture::channel(const std::string& name) const {
 
 const std::string& Picture::statistics() const {
     return content_->statistics;
+}
+
+Picture Picture::relight(const std::map<std::string, std::array<double, 3>>& factors) const {
+    LayeredImage image = lacuna::relight(content_->image, factors, "picture");
+    std::string header = headerText(image);
+    return {std::move(image), std::move(header)};
 }
 
 void Picture::save(const std::string& path) const {

@@ -194,6 +194,7 @@ void bindPicture(py::module_& module) {
              })
         .def("statistics", &Picture::statistics)
         .def("save", &Picture::save, py::call_guard<py::gil_scoped_release>())
+        .def("relight", &Picture::relight, py::call_guard<py::gil_scoped_release>())
         .def("compare", [](const Picture& picture, const Picture& reference) {
             const Errors e = picture.compare(reference);
             return py::dict("mae"_a = e.mae, "rmse"_a = e.rmse, "mape"_a = e.mape,

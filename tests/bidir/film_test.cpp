@@ -11,6 +11,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
+#include "libcore/bidir/light_noise.h"
 #include "libcore/bidir/technique_clock.h"
 
 namespace lacuna::test {
@@ -278,6 +279,73 @@ TEST(TechniqueFilm, knowsTheVarianceOfEachTechniqueAndGroup) {
             EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
         }
     }
+}
+
+// Two groups of lights over blocks of five iterations, samples of two: the fifth is one alone.
+TEST(LightProducts, areTheCovariancesOfSamples) {
+    const ThreadPool threads(1);
+    const std::vector<float> first{1, 5, 3, 7, 2, 4, 4, 9, 1, 0},
+        second{5, 4, 0, 1, 4, 2, 2, 0, 1, 6};
+    constexpr std::uint64_t kBlock = 5;
+    LightProducts products(2, 1, 2);
+    /// As a film keeps them.
+    class Kept final : public BlockLayers {
+      public:
+        explicit Kept(LightProducts& of) : of_(of) {}
+        Layers means() const override {
+            LayeredImage image(1, 1);
+            of_.setMeans(image);
+            return image.channels();
+        }
+        void clear() override { of_.clear(); }
+
+      private:
+        LightProducts& of_;
+    } kept(products);
+    Film film(1, 1, {kBlock, false, 2});
+    film.addLayers(kept);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::vector<std::vector<Rgb>> now{{Rgb(first[i])}, {Rgb(second[i])}};
+        products.add(now, threads);
+        film.add(std::vector<Rgb>{Rgb(first[i] + second[i])}, threads);
+    }
+    const FilmSum sum = film.sum();
+    ASSERT_EQ(sum.samples, 6u);
+    LayeredImage image(1, 1);
+    for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
+    image.setRgb("a", Image(1, 1, Rgb(3.6f)));
+    image.setRgb("b", Image(1, 1, Rgb(2.5f)));
+    const std::array<std::string, 2> means{"a", "b"};
+    setLightCovariances(image, means, sum.samples);
+
+    const auto covariance = [&](const auto& f, const auto& g) {
+        double fMean = 0, gMean = 0, all = 0;
+        for (std::size_t i = 0; i < f.size(); ++i) {
+            fMean += f[i] / 10.0;
+            gMean += g[i] / 10.0;
+        }
+        for (std::size_t i = 0; i < f.size();) {
+            const std::size_t n = i % kBlock == 4 ? 1 : 2;
+            const double fSum = n == 1 ? f[i] : f[i] + f[i + 1];
+            const double gSum = n == 1 ? g[i] : g[i] + g[i + 1];
+            const double count = double(n);
+            all += count * (fSum / count - fMean) * (gSum / count - gMean);
+            i += n;
+        }
+        return float(all / (10.0 * 5.0));
+    };
+    const auto at = [&](const char* layer) {
+        return image.rgb(std::string("covariance.") + layer).at(0, 0).g;
+    };
+    EXPECT_NEAR(at("g00g00"), covariance(first, first), 1e-5f);
+    EXPECT_NEAR(at("g00g01"), covariance(first, second), 1e-5f);
+    EXPECT_NEAR(at("g01g01"), covariance(second, second), 1e-5f);
+    EXPECT_NEAR(at("g00g00") + 2 * at("g00g01") + at("g01g01"), film.variance().at(0, 0).g, 1e-5f);
+    EXPECT_LT(at("g00g01"), 0.0f) << "or the sign would not be tested";
+    EXPECT_FALSE(image.hasRgb("product.g00g01"));
+    EXPECT_EQ(
+        lightCovarianceLayers(2),
+        (std::vector<std::string>{"covariance.g00g00", "covariance.g00g01", "covariance.g01g01"}));
 }
 
 TEST(TechniqueGroup, numbersAndNamesAreItsOwn) {

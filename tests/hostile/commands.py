@@ -61,6 +61,8 @@ COMMANDS = [
     Command("render part", "lacuna-render",
             ["scene.glb", "--method", "bpt", *SHORT, "--block-iterations", "2", "--blocks", "1,3", "-o", "out.exr"], ["out.exr"]),
     Command("merge", "lacuna-merge", ["part0.exr", "part1.exr", "-o", "out.exr", "--json", "out.json"], ["out.exr", "out.json"]),
+    Command("relight", "lacuna-relight",
+            ["groups.exr", "-o", "out.exr", "--light", "environment=2", "--json", "out.json"], ["out.exr", "out.json"]),
     Command("compare", "lacuna-compare",
             ["reference.exr", "part0.exr", "--error-map", "map.png", "--json", "out.json"], ["map.png", "out.json"]),
     Command("voxelize", "lacuna-voxelize", ["scene.glb", "--resolution", "16", "-o", "out.vdb", "--json", "out.json"],
@@ -110,6 +112,7 @@ class Attack:
         for i in range(2):
             make("--method", "bpt", "--width", "24", "--iterations", "4", "--block-iterations", "2", "--blocks", f"{i},{i + 1}",
                  "-o", f"part{i}.exr")
+        make("--method", "bpt", "--width", "24", "--iterations", "4", "--env-colour", "1,1,1", "--light-noise", "-o", "groups.exr")
         make(*SKELBPT, *SHORT, "--prepare", "-o", "thrown-away.exr")
         (self.template / "thrown-away.exr").unlink()
         (self.template / "scene.cache").rename(self.template / "caches")

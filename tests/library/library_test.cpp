@@ -129,6 +129,26 @@ TEST_F(Library, sceneFromMemoryHasTheUnitsItSays) {
     }
 }
 
+TEST_F(Library, lampsAreChangedAfterwards) {
+    SceneBuilder::Material grey;
+    SceneBuilder scene;
+    addSquare(scene, grey, 1.0, .5);
+    const Picture picture = small(Render(scene))
+                                .option("method", "pt")
+                                .option("env-colour", "1,2,3")
+                                .option("light-groups", true)
+                                .run();
+    const Picture relit = picture.relight({{"environment", {2, 1, 0}}});
+    for (std::size_t i = 0; i < picture.rgb().size(); i += 3) {
+        EXPECT_FLOAT_EQ(relit.rgb()[i], 2 * picture.rgb()[i]);
+        EXPECT_EQ(relit.rgb()[i + 1], picture.rgb()[i + 1]);
+        EXPECT_EQ(relit.rgb()[i + 2], 0.0f);
+    }
+    EXPECT_TRUE(statistics(relit).contains("relit"));
+    EXPECT_THROW(picture.relight({{"sun", {1, 1, 1}}}), UsageError);
+    EXPECT_THROW(cornell("pt", 1).run().relight({}), InputError);
+}
+
 TEST_F(Library, texturesLieAsTheirRowsDo) {
     SceneBuilder::Material lamp;
     lamp.baseColour = {0, 0, 0};

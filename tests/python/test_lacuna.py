@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import gc
+import json
 import math
 import re
 import signal
@@ -46,6 +47,23 @@ class Pixels(InFolder):
         np.testing.assert_array_equal(image.layers["seen"], image.rgb)
         np.testing.assert_array_equal(image.layers["lit"], 0 * image.rgb)
         self.assertEqual(image.statistics["layers"], {"seen": "CL", "lit": "C.+L"})
+
+    def test_lamps_are_changed_afterwards(self):
+        scene = square(base_colour=(0.5, 0.5, 0.5))
+        scene.add_lamp("point", (1, 1, 1), lacuna.look_at((0, 0, 1), (0, 0, 0)))
+        image = small(scene, method="pt", iterations=4, env_colour=(1, 1, 1), light_noise=True)
+        relit = image.relight({"environment": (2, 1, 0), "unnamed": 0.5})
+        sky, lamp = image.layers["light.environment"], image.layers["light.unnamed"]
+        self.assertGreater(min(sky.max(), lamp.max()), 0)
+        np.testing.assert_allclose(relit.rgb, sky * (2, 1, 0) + lamp * 0.5, rtol=1e-6)
+        self.assertEqual(json.loads(relit.statistics["relit"])["environment"], [2, 1, 0])
+        noise = image.layers["covariance.g00g00"]
+        off = image.relight({image.statistics["light_groups"][1]: 0})
+        np.testing.assert_allclose(off.layers["variance"], noise, rtol=1e-6)
+        np.testing.assert_array_equal(image.relight({}).rgb, image.rgb)
+        for wrong in ({"sun": 1}, {"unnamed": -1}, {"unnamed": (1, 2)}):
+            self.assertRaises(lacuna.UsageError, image.relight, wrong)
+        self.assertRaises(lacuna.InputError, small(scene, iterations=1).relight, {"unnamed": 1})
 
     def test_layers_of_techniques_add_up(self):
         image = small(CORNELL, iterations=4, techniques=True)

@@ -33,8 +33,8 @@ std::string namesOfMethods() {
 }
 
 TEST_F(HelpForms, ManualPagesHaveAllSectionsAndNoRoffError) {
-    for (const char* tool : {LACUNA_RENDER, LACUNA_MERGE, LACUNA_COMPARE, LACUNA_VOXELIZE,
-                             LACUNA_SKELETONIZE, LACUNA_TRAIN}) {
+    for (const char* tool : {LACUNA_RENDER, LACUNA_MERGE, LACUNA_RELIGHT, LACUNA_COMPARE,
+                             LACUNA_VOXELIZE, LACUNA_SKELETONIZE, LACUNA_TRAIN}) {
         const Outcome page = run("--help-as man", tool);
         EXPECT_EQ(page.exitCode, 0) << page.err;
         std::size_t at = 0;

@@ -36,7 +36,7 @@ TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
     // Ten iterations: the last block is not whole.
     const std::string common =
         quick(GetParam(),
-              "--quiet --techniques --light-groups --layer 'x=C<.D>.*' --iterations 10 "
+              "--quiet --techniques --light-noise --layer 'x=C<.D>.*' --iterations 10 "
               "--sampler sobol "
               "--block-iterations 4");
     const auto to = [&](const std::string& name) {
@@ -187,6 +187,8 @@ TEST_F(RenderPieces, otherCommandsAreRefused) {
         {" --crop 0,8,0,8", "crop"},
         {" --techniques", "technique layers"},
         {" --light-groups", "layers of light groups"},
+        {" --light-noise", "layers of light groups (there 'no', here 'yes, with their noise')"},
+        {" --units photometric", "lamp units"},
         {" --layer x=CL", "layers of expressions (there '', here 'x')"},
         {" --rr-depth 2", "roulette depth"},
     };

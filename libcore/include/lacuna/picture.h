@@ -1,6 +1,8 @@
 // A rendered picture, with its layers and with everything that was measured.
 #pragma once
 
+#include <array>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,9 +42,16 @@ class Picture {
     /// height x width values, the top row first. Throws UsageError for a name that is not there.
     std::span<const float> channel(const std::string& name) const;
 
-    /// What `lacuna-render --json` writes: a JSON object as text. Of a picture that was read, its
-    /// header.
+    /// What `lacuna-render --json` writes: a JSON object as text. Of a picture that was read or relit,
+    /// its header.
     const std::string& statistics() const;
+
+    /// Under other light, of a render with the option light-groups: the light of each group multiplied
+    /// by R, G, B. Groups that are not named stay as they are. Layers that are of the old light
+    /// are left out, and so is "variance", unless the render had the option light-noise or all
+    /// factors are the same. Throws UsageError for a group that is not there or a factor below 0,
+    /// InputError for a picture without groups.
+    Picture relight(const std::map<std::string, std::array<double, 3>>& factors) const;
 
     /// .exr with all layers, .pfm, or .png, which is exposed by itself. Written whole or not at
     /// all. Throws UsageError for another ending, RunError.

@@ -16,7 +16,7 @@ from __future__ import annotations
 import json
 import os
 import warnings as _warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -124,9 +124,19 @@ class Image:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """What `lacuna-render --json` writes; of an image that was read, its header."""
+        """What `lacuna-render --json` writes; of an image that was read or relit, its header."""
         statistics: dict[str, Any] = json.loads(self._picture.statistics())
         return statistics
+
+    def relight(self, lights: Mapping[str, float | Sequence[float]]) -> Image:
+        """The image under other light: {"sun": .1, "lamps": (2, 1.8, 1.4)} multiplies these groups by a
+        number, or by one for each channel; the others stay as they are. It wants a render with
+        light_groups=True; with light_noise=True its "variance" is known as well. Layers that are
+        of the old light are left out. Raises UsageError for a group that is not there or a factor
+        below 0, InputError for an image without groups.
+        """
+        factors = {group: _three(factor) for group, factor in lights.items()}
+        return Image(self._picture.relight(factors))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """.exr with all layers, .pfm, or .png, which is exposed by itself. Raises RunError."""
@@ -142,6 +152,13 @@ class Image:
 
     def __repr__(self) -> str:
         return f"<lacuna.Image {self.width} x {self.height}>"
+
+
+def _three(factor: float | Sequence[float]) -> list[float]:
+    values = np.ravel(np.asarray(factor, dtype=float))
+    if values.size not in (1, 3):
+        raise UsageError(f"relight: expected a factor or three of them, found {values.size}")
+    return [float(v) for v in np.broadcast_to(values, 3)]
 
 
 def _text(value: Any) -> str:
