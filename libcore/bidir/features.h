@@ -1,4 +1,9 @@
-// What the lens sees first, without light: the layers albedo, normal and Z beside a picture.
+// What a picture shows, without light: the layers albedo, normal, Z and position beside it.
+//
+// Z and position are of the first surface that the lens sees: what a compositor puts in front of it
+// or behind it asks where things are. Albedo and normal are for denoisers, which ask what a pixel's
+// pattern comes from: they are of the first surface that has a lobe with a density, over mirrors and
+// through smooth glass before it. (render/README.md, "Denoisers")
 #pragma once
 
 #include <cstdint>
@@ -13,9 +18,11 @@ class ThreadPool;
 
 /// Means over a few primary rays per pixel; zero where nothing is hit (so every layer is finite).
 struct FeatureLayers {
-    Image albedo;          ///< Bsdf::layerAlbedo
-    Image normal;          ///< shading normal turned towards the camera, in the file's coordinates
-    std::vector<float> z;  ///< distance along the viewing axis, mean over the rays that hit
+    Image
+        albedo;  ///< Bsdf::layerAlbedo, [0, 1]; behind mirrors and glass times what these let through
+    Image normal;  ///< shading normal towards where it is seen from, in the file's coordinates
+    std::vector<float> z = {};  ///< distance along the viewing axis, mean over the rays that hit
+    std::vector<Vec3> position = {};  ///< in the file's coordinates, mean over the rays that hit
 };
 
 /// For the pixels of `crop`; a pixel's values do not depend on the crop.

@@ -1,0 +1,134 @@
+#include "libcore/bidir/look.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace lacuna {
+
+namespace {
+
+constexpr int kMostEvents = 8;
+constexpr float kFaint = 0.04f;  // of the ray; what one side of a window reflects
+
+Rgb atMostOne(const Rgb& c) {
+    return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
+}
+
+/// A part of the light that a ray brings, on its way backwards.
+struct Part {
+    Rgb weight;   ///< share of it, by channel
+    float share;  ///< of the ray; all parts together are 1
+    int events = 0;
+};
+
+/// Where a delta event leads, and what of the light comes from there.
+struct Branch {
+    Vec3 direction;
+    Rgb through;
+};
+
+class Looker {
+  public:
+    Looker(const Scene& scene, RayTally& tally) : scene_(scene), tally_(tally) {}
+
+    void follow(const Vec3& direction, const SurfacePoint& point, const Part& part) {
+        const Bsdf bsdf = scene_.bsdfAt(point);
+        const Vec3 normal = dot(bsdf.ns(), direction) > 0.0f ? -bsdf.ns() : bsdf.ns();
+        if (bsdf.connectable()) {
+            end(part, atMostOne(bsdf.layerAlbedo()), normal);
+            return;
+        }
+        if (part.events == kMostEvents || part.share < kFaint) {
+            end(part, Rgb(1.0f), normal);
+            return;
+        }
+        const std::array<Branch, 2> branches = eventsAt(bsdf, -direction);
+        const float whole = mean(branches[0].through) + mean(branches[1].through);
+        if (!(whole > 0.0f)) {
+            end(part, Rgb{}, normal);
+            return;
+        }
+        for (const Branch& b : branches) {
+            const float share = part.share * (mean(b.through) / whole);
+            if (share > 0.0f) goOn(point, b, {part.weight * b.through, share, part.events + 1});
+        }
+    }
+
+    Look look() const { return {atMostOne(sum_.albedo), sum_.normal}; }
+
+  private:
+    void end(const Part& part, const Rgb& albedo, const Vec3& normal) {
+        sum_.albedo += part.weight * albedo;
+        sum_.normal += normal * part.share;
+    }
+
+    void goOn(const SurfacePoint& from, const Branch& branch, Part part) {
+        const Sight sight{from.position, from.ng, branch.direction, RayKind::EyeWalk};
+        const auto next = firstSeen(scene_, sight, tally_);
+        if (!next) return;
+        part.weight *= transmittance(from, branch.direction, *next);
+        follow(branch.direction, *next, part);
+    }
+
+    /// A reflection and, where light passes, a transmission: the two ends of the range of the number
+    /// that draws the lobe. The through of one that is not there is black.
+    static std::array<Branch, 2> eventsAt(const Bsdf& bsdf, const Vec3& toEye) {
+        std::array<Branch, 2> branches;
+        bool transmits = false;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const float uLobe = i == 0 ? 0.0f : 0x1.fffffep-1f;
+            const auto sample = bsdf.sample(Side::Eye, toEye, uLobe, 0.5f, 0.5f);
+            if (!sample) continue;
+            const bool passes = sample->event == ScatterEvent::DeltaTransmission;
+            if (i == 1 && passes == transmits && !isBlack(branches[0].through)) break;  // the same
+            transmits = passes;
+            branches[i] = {sample->to, through(bsdf, *sample, toEye)};
+        }
+        return branches;
+    }
+
+    /// Reflectance or transmittance: the generalised f (bsdf.h) without cosines and indices.
+    static Rgb through(const Bsdf& bsdf, const BsdfSample& sample, const Vec3& toEye) {
+        const Rgb& f = sample.evaluation.f;
+        const bool passes = sample.event == ScatterEvent::DeltaTransmission;
+        if (passes && !bsdf.bends()) return atMostOne(f);
+        const float cosine = std::fabs(dot(sample.to, bsdf.ns()));
+        const float index = passes ? bsdf.indexOn(dot(toEye, bsdf.ng()) > 0.0f) : 1.0f;
+        const float scale = std::fabs(dot(sample.to, bsdf.ng())) / std::max(kMinCosine, cosine);
+        return atMostOne(f * (scale / (index * index)));
+    }
+
+    /// As absorption.h has it: what either end says of the body between them.
+    Rgb transmittance(const SurfacePoint& from, const Vec3& direction,
+                      const SurfacePoint& to) const {
+        if (scene_.absorption().empty()) return Rgb(1.0f);
+        Rgb sigma;
+        int inside = 0;
+        for (const auto& [point, leaving] : {std::pair(&from, direction), {&to, -direction}}) {
+            const Rgb& own = scene_.absorption()[point->material];
+            if (!(dot(point->ng, leaving) < 0.0f) || isBlack(own)) continue;
+            sigma += own;
+            ++inside;
+        }
+        if (inside == 0) return Rgb(1.0f);
+        const float distance = length(to.position - from.position) / float(inside);
+        return {std::exp(-sigma.r * distance), std::exp(-sigma.g * distance),
+                std::exp(-sigma.b * distance)};
+    }
+
+    const Scene& scene_;
+    RayTally& tally_;
+    Look sum_;
+};
+
+}  // namespace
+
+Look lookFrom(const Scene& scene, const Sight& sight, const SurfacePoint& point, RayTally& tally) {
+    Looker looker(scene, tally);
+    looker.follow(sight.direction, point, {Rgb(1.0f), 1.0f});
+    return looker.look();
+}
+
+}  // namespace lacuna
