@@ -12,7 +12,7 @@ namespace {
 void write(const std::string& path, const Part& part) {
     LayeredImage image(part.width, part.height);
     addPart(image, part);
-    writeExr(path, image, ExrCompression::None);
+    writeExr(path, image, {.compression = ExrCompression::None});
 }
 
 /// A checkpoint may be called anything: its name says nothing of what is wrong.

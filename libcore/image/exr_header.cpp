@@ -45,6 +45,12 @@ class Cursor {
         take(out.size() + 1);
         return out;
     }
+    /// Whether the next byte is this one, which is then passed over.
+    bool passes(std::uint8_t byte) {
+        const bool is = left() > 0 && bytes_[position_] == byte;
+        if (is) ++position_;
+        return is;
+    }
     const std::uint8_t* take(std::size_t n) {
         if (n > left()) {
             throw InputError(path_ + ": expected " + std::to_string(n) +
@@ -62,7 +68,7 @@ class Cursor {
     std::size_t position_ = 0;
 };
 
-void checkTiles(const std::string& path, const Tile& tile, const Box& window, std::size_t bytes) {
+void requireTiles(const std::string& path, const Tile& tile, const Box& window, std::size_t bytes) {
     const auto side = std::uint32_t(kMaxImageSide);
     const auto ceilDiv = [](std::int64_t a, std::int64_t b) { return (a + b - 1) / b; };
     bool sane = tile.width >= 1 && tile.height >= 1 && tile.width <= side && tile.height <= side;
@@ -78,20 +84,20 @@ void checkTiles(const std::string& path, const Tile& tile, const Box& window, st
     }
 }
 
-}  // namespace
-
-void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& bytes) {
-    Cursor cursor(path, bytes);
-    if (bytes.size() < 8 || cursor.value<std::uint32_t>() != 20000630u) {
-        throw InputError(path + ": expected an OpenEXR file, found something else; name an .exr");
-    }
-    const auto version = cursor.value<std::uint32_t>();
-    if (version & (kDeep | kMultiPart)) {
-        throw InputError(path + ": expected a flat image of one part, found " +
-                         (version & kDeep ? "a deep one" : "several parts") + "; convert the file");
-    }
-    std::optional<Box> window;
+/// What a part says of itself.
+struct PartHeader {
+    Box window{};
     std::optional<Tile> tile;
+    std::size_t chunks = 0;  ///< as it claims; at least one for every 256 lines
+
+    void checkTiles(const std::string& path, std::size_t bytes) const {
+        if (tile) requireTiles(path, *tile, window, bytes);
+    }
+};
+
+PartHeader readHeader(const std::string& path, Cursor& cursor) {
+    std::optional<Box> window;
+    PartHeader header;
     for (std::string name = cursor.text(); !name.empty(); name = cursor.text()) {
         const std::string type = cursor.text();
         const auto size = cursor.value<std::int32_t>();
@@ -102,7 +108,9 @@ void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& by
             window = content.value<Box>();
             requireSaneSize(path, window->width(), window->height());
         } else if (name == "tiles" && type == "tiledesc" && size == 9) {
-            tile = content.value<Tile>();
+            header.tile = content.value<Tile>();
+        } else if (name == "chunkCount" && type == "int" && size == 4) {
+            header.chunks = std::size_t(std::max(0, content.value<std::int32_t>()));
         }
     }
     if (!window) {
@@ -110,7 +118,38 @@ void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& by
                          ": expected a dataWindow in the EXR header, found none; "
                          "the file is damaged, write it again");
     }
-    if ((version & kTiled) && tile) checkTiles(path, *tile, *window, bytes.size());
+    header.window = *window;
+    header.chunks = std::max(header.chunks, std::size_t(window->height() + 255) / 256);
+    return header;
+}
+
+}  // namespace
+
+void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+    Cursor cursor(path, bytes);
+    if (bytes.size() < 8 || cursor.value<std::uint32_t>() != 20000630u) {
+        throw InputError(path + ": expected an OpenEXR file, found something else; name an .exr");
+    }
+    const auto version = cursor.value<std::uint32_t>();
+    if (version & kDeep) {
+        throw InputError(path + ": expected a flat image, found a deep one; convert the file");
+    }
+    if (!(version & kMultiPart)) {
+        const PartHeader header = readHeader(path, cursor);
+        if (version & kTiled) header.checkTiles(path, bytes.size());
+        return;
+    }
+    std::size_t chunks = 0;
+    do {
+        const PartHeader header = readHeader(path, cursor);
+        header.checkTiles(path, bytes.size());
+        // OpenEXR makes room for all that each part claims.
+        chunks += header.chunks;
+        if (chunks > bytes.size() / 8) {
+            throw InputError(path + ": expected parts that fit the file, found too many scan " +
+                             "lines; is the file damaged?");
+        }
+    } while (!cursor.passes(0));
 }
 
 }  // namespace lacuna

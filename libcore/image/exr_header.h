@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// Walks the attributes of the first header: each has to lie inside the file, the data window has
-/// to be of a sane size, the table of tiles has to fit into the file. OpenEXR checks the rest
-/// itself. Throws InputError, also for deep and multi-part files, which no tool of ours writes.
+/// Walks the attributes of all parts' headers: each has to lie inside the file, data windows have
+/// to be of a sane size, tables of tiles and scan lines have to fit into the file. OpenEXR checks the
+/// rest itself. Throws InputError, also for deep files, which no tool of ours writes.
 void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
 }  // namespace lacuna

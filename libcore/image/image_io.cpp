@@ -5,7 +5,6 @@
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
-#include "libcore/image/exr.h"
 
 namespace lacuna {
 
@@ -25,14 +24,15 @@ Image readImage(const std::string& path) {
                      ending + "'; convert the image");
 }
 
-void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& style) {
+void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& png,
+                const ExrStyle& exr) {
     const std::string ending = endingOf(path);
     if (ending == ".exr") {
-        writeExr(path, image);
+        writeExr(path, image, exr);
     } else if (ending == ".pfm") {
         writePfm(path, image.rgb());
     } else if (ending == ".png") {
-        writePng(path, image.rgb(), style);
+        writePng(path, image.rgb(), png, image.find("A"));
     } else {
         requireWritable(path);  // throws: one place that says which endings there are
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libcore/image/exr.h"
 #include "libcore/image/image.h"
 #include "libcore/image/tone.h"
 
@@ -15,10 +16,11 @@ namespace lacuna {
 /// read.
 Image readImage(const std::string& path);
 
-/// .exr: every channel and attribute; .pfm: R, G, B; .png: R, G, B as sRGB in that style, which is of
-/// use for .png only; NaN as black. Atomic.
+/// .exr: every channel and attribute; .pfm: R, G, B; .png: R, G, B as sRGB, and A where there is one; NaN as black. Each style is of
+/// use for its own ending only. Atomic.
 /// Throws UsageError for another ending, RunError if it cannot be written.
-void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& style = {});
+void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& png = {},
+                const ExrStyle& exr = {});
 
 /// Throws what writeImage would: UsageError for the ending, RunError if the directory or the file
 /// is not writable. For a check before hours of rendering; leaves no file behind.
@@ -35,10 +37,12 @@ Image readPng(const std::string& path);
 /// for anything else, a file that cannot be read as well.
 bool isOurPng(const std::string& path);
 void writePfm(const std::string& path, const Image& image);
-void writePng(const std::string& path, const Image& image, const PngStyle& style);
-/// `rgb`: width * height * 3 numbers of 8 or 16 bits (the high byte first), sRGB, as they are to
-/// stand in the file. Throws std::invalid_argument for another number of bytes.
+/// `alpha`: of the picture, whose colours are premultiplied by it; may be null.
+void writePng(const std::string& path, const Image& image, const PngStyle& style,
+              const std::vector<float>* alpha = nullptr);
+/// `values`: width * height * 3 numbers, or 4 with alpha, of 8 or 16 bits (the high byte first), sRGB, as
+/// they are to stand in the file. Throws std::invalid_argument for another number of bytes.
 void writePngBytes(const std::string& path, int width, int height,
-                   const std::vector<std::uint8_t>& rgb, int bits = 8);
+                   const std::vector<std::uint8_t>& values, int bits = 8);
 
 }  // namespace lacuna

@@ -118,7 +118,8 @@ void pictures(const fs::path& folder) {
     fs::create_directories(folder / "exr");
     LayeredImage image = smallPicture();
     writeExr(folder / "exr" / "zip.exr", image);
-    writeExr(folder / "exr" / "plain.exr", image, ExrCompression::None);
+    writeExr(folder / "exr" / "plain.exr", image, {.compression = ExrCompression::None});
+    writeExr(folder / "exr" / "parts.exr", image, {.half = true, .multiPart = true});
     LayeredImage small(1, 1);
     addPart(small, smallPart());
     writeExr(folder / "exr" / "part.exr", small);

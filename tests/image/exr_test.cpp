@@ -1,10 +1,16 @@
 #include "libcore/image/exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfTiledOutputFile.h>
 
 #include <bit>
@@ -107,6 +113,126 @@ TEST_F(Exr, ScanLinesZipFloat) {
     EXPECT_STREQ(header["seed"].typeName(), "int");
 }
 
+constexpr ExrStyle kParts{.multiPart = true};
+
+TEST_F(Exr, RoundTripOfPartsKeepsEveryBit) {
+    const LayeredImage written = manyLayers(37, 41);
+    writeExr(path("a.exr"), written, kParts);
+    const LayeredImage read = readExrLayers(path("a.exr"));
+    ASSERT_EQ(read.channels().size(), written.channels().size());
+    for (const auto& [name, values] : written.channels()) {
+        ASSERT_NE(read.find(name), nullptr) << name;
+        EXPECT_TRUE(sameBits(*read.find(name), values)) << name;
+    }
+    EXPECT_EQ(read.attributes, written.attributes);
+    const Image picture = readExr(path("a.exr")), rgb = written.rgb();
+    for (std::size_t i = 0; i < rgb.pixels.size(); ++i) {
+        ASSERT_EQ(std::memcmp(&picture.pixels[i], &rgb.pixels[i], sizeof(Rgb)), 0) << i;
+    }
+}
+
+/// The picture first; ids say what they are of in their own part as well.
+TEST_F(Exr, PartsAreLayers) {
+    LayeredImage image = manyLayers(9, 20);
+    image.channel("A").assign(180, 1.0f);
+    for (const char* name : {"R", "G", "B", "A"}) image.channel(std::string("CryptoX00.") + name);
+    image.attributes["cryptomatte/1234567/name"] = std::string("CryptoX");
+    writeExr(path("a.exr"), image, kParts);
+    const Imf::MultiPartInputFile file(path("a.exr").c_str());
+    std::map<std::string, std::vector<std::string>> parts;
+    for (int i = 0; i < file.parts(); ++i) {
+        const Imf::Header& header = file.header(i);
+        EXPECT_EQ(header.type(), Imf::SCANLINEIMAGE);
+        EXPECT_TRUE(Imf::hasChromaticities(header));
+        const bool ids = header.name() == "CryptoX00";
+        EXPECT_EQ(header.find("cryptomatte/1234567/name") != header.end(), ids || i == 0);
+        EXPECT_EQ(header.find("software") != header.end(), i == 0);
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+            parts[header.name()].emplace_back(c.name());
+        }
+    }
+    EXPECT_EQ(file.header(0).name(), "rgba");
+    EXPECT_EQ(parts["rgba"], (std::vector<std::string>{"A", "B", "G", "R"}));
+    EXPECT_EQ(parts["albedo"], (std::vector<std::string>{"albedo.B", "albedo.G", "albedo.R"}));
+    EXPECT_EQ(parts["Z"], std::vector<std::string>{"Z"});
+    EXPECT_EQ(parts.size(), 10u);
+}
+
+/// What half is too coarse for stays as it was; what is too large is the largest there is.
+TEST_F(Exr, HalfWhereItIsEnough) {
+    LayeredImage image(2, 1);
+    for (const char* name : {"R", "G", "B", "albedo.R", "light.sun.R", "Z", "position.X",
+                             "variance.R", "sum.0.mean.R", "CryptoObject00.R"}) {
+        image.channel(name) = {1.0f / 3.0f, -1e30f};
+    }
+    for (const bool parts : {false, true}) {
+        writeExr(path("a.exr"), image, {.half = true, .multiPart = parts});
+        const LayeredImage read = readExrLayers(path("a.exr"));
+        for (const char* name : {"R", "G", "B", "albedo.R", "light.sun.R"}) {
+            EXPECT_EQ(*read.find(name), (std::vector<float>{0.333251953125f, -65504.0f})) << name;
+        }
+        for (const char* name :
+             {"Z", "position.X", "variance.R", "sum.0.mean.R", "CryptoObject00.R"}) {
+            EXPECT_EQ(*read.find(name), *image.find(name)) << name;
+        }
+    }
+}
+
+/// Rec. 709, which is what OpenEXR assumes of those who say nothing.
+TEST_F(Exr, SayWhichColoursTheyHave) {
+    writeExr(path("a.exr"), manyLayers(2, 2));
+    const Imf::InputFile file(path("a.exr").c_str());
+    ASSERT_TRUE(Imf::hasChromaticities(file.header()));
+    const Imf::Chromaticities c = Imf::chromaticities(file.header());
+    EXPECT_EQ(c.red, Imath::V2f(0.64f, 0.33f));
+    EXPECT_EQ(c.green, Imath::V2f(0.30f, 0.60f));
+    EXPECT_EQ(c.blue, Imath::V2f(0.15f, 0.06f));
+    EXPECT_EQ(c.white, Imath::V2f(0.3127f, 0.3290f));
+}
+
+/// As others write them: channels without their layer, the picture not the first, parts of other sizes.
+TEST_F(Exr, ForeignParts) {
+    const auto write = [&](int secondWidth) {
+        const Imath::Box2i frame({0, 0}, {3, 1});
+        std::vector<Imf::Header> headers{Imf::Header(frame, {{0, 0}, {2, 1}}),
+                                         Imf::Header(frame, {{0, 0}, {secondWidth - 1, 1}})};
+        headers[0].setName("depth");
+        headers[1].setName("beauty");
+        headers[0].channels().insert("R", Imf::Channel(Imf::FLOAT));
+        for (const char* c : {"R", "G", "B"}) headers[1].channels().insert(c, Imf::Channel());
+        for (Imf::Header& header : headers) header.setType(Imf::SCANLINEIMAGE);
+        std::vector<float> floats(6, 2.0f);
+        std::vector<half> halves(24, half(1.0f));
+        Imf::MultiPartOutputFile file(path("a.exr").c_str(), headers.data(), 2);
+        for (int i = 0; i < 2; ++i) {
+            Imf::FrameBuffer buffer;
+            const bool first = i == 0;
+            char* at = first ? reinterpret_cast<char*>(floats.data())
+                             : reinterpret_cast<char*>(halves.data());
+            const std::size_t size = first ? 4 : 2;
+            for (const char* c : {"R", "G", "B"}) {
+                if (first && c[0] != 'R') continue;
+                buffer.insert(c, Imf::Slice(first ? Imf::FLOAT : Imf::HALF, at, size, size * 3));
+            }
+            Imf::OutputPart part(file, i);
+            part.setFrameBuffer(buffer);
+            part.writePixels(2);
+        }
+    };
+    write(3);
+    EXPECT_EQ(readExr(path("a.exr")).pixels, std::vector<Rgb>(6, Rgb(1.0f)));
+    const LayeredImage read = readExrLayers(path("a.exr"));
+    EXPECT_EQ(read.find("R")->front(), 2.0f);
+    EXPECT_EQ(read.find("beauty.R")->front(), 1.0f);
+    EXPECT_EQ(read.find("B")->front(), 1.0f);
+    write(4);
+    EXPECT_EQ(readExr(path("a.exr")).width, 4);
+    EXPECT_NE(messageOf<InputError>([&] {
+                  readExrLayers(path("a.exr"));
+              }).find("parts of one size, found 3 x 2 and 4 x 2"),
+              std::string::npos);
+}
+
 TEST_F(Exr, TopRowComesFirstAndColoursStayApart) {
     Image image(3, 2);
     image.at(2, 0) = {1, 2, 3};
@@ -148,7 +274,7 @@ TEST_F(Exr, ForeignFiles) {
 
 TEST_F(Exr, RefusesWhatCannotBeWritten) {
     EXPECT_THROW(writeExr(path("a.exr"), LayeredImage(2, 2)), std::invalid_argument);
-    for (const char* name : {"channels", "dataWindow", "version", "type", ""}) {
+    for (const char* name : {"channels", "dataWindow", "version", "type", "chromaticities", ""}) {
         LayeredImage image = test::layered(Image(2, 2));
         image.attributes[name] = std::string("x");
         EXPECT_THROW(writeExr(path("a.exr"), image), std::invalid_argument) << name;
@@ -164,19 +290,22 @@ TEST_F(Exr, RefusesWhatCannotBeWritten) {
 }
 
 TEST_F(Exr, EveryTruncationIsAnInputError) {
-    writeExr(path("a.exr"), manyLayers(9, 20));
-    const test::Bytes whole = test::slurp(path("a.exr"));
-    for (std::size_t n = 0; n < whole.size(); n += (n < 1500 ? 1 : 37)) {
-        test::spill(path("b.exr"), test::Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
-        EXPECT_THROW(readExrLayers(path("b.exr")), InputError) << n;
+    for (const bool parts : {false, true}) {
+        writeExr(path("a.exr"), manyLayers(9, 20), {.multiPart = parts});
+        const test::Bytes whole = test::slurp(path("a.exr"));
+        for (std::size_t n = 0; n < whole.size(); n += (n < 1500 ? 1 : 37)) {
+            test::spill(path("b.exr"),
+                        test::Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(n)));
+            EXPECT_THROW(readExrLayers(path("b.exr")), InputError) << n;
+        }
     }
 }
 
 /// A claim of size in the header must be refused before anything is allocated by it.
 TEST_F(Exr, AbsurdClaimsInTheHeader) {
     writeExr(path("a.exr"), test::layered(test::randomImage(16, 8, 1)));
-    const test::Bytes whole = test::slurp(path("a.exr"));
-    const std::string text(whole.begin(), whole.end());
+    test::Bytes whole = test::slurp(path("a.exr"));
+    std::string text(whole.begin(), whole.end());
     const auto patched = [&](const std::string& after, std::size_t skip, std::int32_t value) {
         test::Bytes bytes = whole;
         std::memcpy(bytes.data() + text.find(after) + after.size() + skip, &value, 4);
@@ -192,14 +321,22 @@ TEST_F(Exr, AbsurdClaimsInTheHeader) {
     const std::string size("channels\0chlist\0", 16);
     EXPECT_NE(patched(size, 0, 0x7fffffff).find("bytes of EXR header"), std::string::npos);
     EXPECT_NE(patched(size, 0, -1).find("bytes of EXR header"), std::string::npos);
+    writeExr(path("a.exr"), manyLayers(16, 8), kParts);
+    whole = test::slurp(path("a.exr"));
+    text.assign(whole.begin(), whole.end());
+    const std::string chunks("chunkCount\0int\0\4\0\0\0", 19);
+    ASSERT_NE(text.find(chunks), std::string::npos);
+    EXPECT_NE(patched(chunks, 0, 1 << 20).find("too many scan lines"), std::string::npos);
+    EXPECT_NE(patched(window, 8, 65536).find("found 65537 x 8"), std::string::npos);
 }
 
 TEST_F(Exr, FlippedBytesGiveAnErrorOrAnImage) {
     writeExr(path("a.exr"), manyLayers(9, 20));
+    writeExr(path("parts.exr"), manyLayers(9, 20), kParts);
     writeForeign("tiled.exr", Imf::FLOAT, 1, true);
     int errors = 0;
     std::mt19937 random(7);
-    for (const char* name : {"a.exr", "tiled.exr"}) {
+    for (const char* name : {"a.exr", "parts.exr", "tiled.exr"}) {
         const test::Bytes whole = test::slurp(path(name));
         for (int i = 0; i < 600; ++i) {
             test::Bytes bytes = whole;
