@@ -32,6 +32,11 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
         integrator_->delivery().setLayerFilm(layersOfPaths_.get());
         layers_.push_back(layersOfPaths_.get());
     }
+    if (stage.settings.transparentBackground) {
+        coverage_ = std::make_unique<CoverageFilm>(crop.width(), crop.height());
+        integrator_->setCoverageFilm(coverage_.get());
+        layers_.push_back(coverage_.get());
+    }
     if (options.verify) {
         verifier_ = std::make_unique<WeightVerifier>(integrator_->walker(), pool);
     }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "libcore/bidir/coverage_film.h"
 #include "libcore/bidir/integrator.h"
 #include "libcore/bidir/layer_film.h"
 #include "libcore/bidir/technique_film.h"
@@ -74,6 +75,7 @@ class BlockMaker {
     std::unique_ptr<BidirIntegrator> integrator_;
     std::unique_ptr<TechniqueFilm> techniques_;
     std::unique_ptr<LayerFilm> layersOfPaths_;
+    std::unique_ptr<CoverageFilm> coverage_;
     std::unique_ptr<ProposalLayers> proposals_;
     std::unique_ptr<WeightVerifier> verifier_;
     std::vector<BlockLayers*> layers_;

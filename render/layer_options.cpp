@@ -24,7 +24,9 @@ constexpr std::array kTaken = {"A",
                                "node",
                                "normal",
                                "part",
+                               "position",
                                "product",
+                               "rgba",
                                "share",
                                "square",
                                "subspace",
@@ -33,6 +35,7 @@ constexpr std::array kTaken = {"A",
                                "variance",
                                "walks",
                                "weighted"};
+constexpr const char* kTakenStart = "Crypto";
 
 bool isPlain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -45,9 +48,9 @@ void checkName(const std::string& name) {
         throw UsageError("--layer: expected a name of 1 to " + std::to_string(kLongest) +
                          " letters, digits, _ and -, found '" + name + "'");
     }
-    if (std::ranges::find(kTaken, name) != kTaken.end()) {
+    if (name.starts_with(kTakenStart) || std::ranges::find(kTaken, name) != kTaken.end()) {
         throw UsageError("--layer: expected a name that pictures do not use themselves (" +
-                         joined(kTaken, ", ") + "), found '" + name + "'");
+                         joined(kTaken, ", ") + ", Crypto..), found '" + name + "'");
     }
 }
 
@@ -75,6 +78,22 @@ std::vector<LayerExpression> parseLayerExpressions(std::span<const std::string> 
         layers.push_back(std::move(layer));
     }
     return layers;
+}
+
+MatteTypes parseMatteTypes(const std::string& text) {
+    MatteTypes types;
+    for (const std::string_view part : splitAtCommas(text)) {
+        if (part == "object") {
+            types.objects = true;
+        } else if (part == "material") {
+            types.materials = true;
+        } else {
+            throw UsageError(
+                "--cryptomatte: expected object, material or object,material, found '" + text +
+                "'");
+        }
+    }
+    return types;
 }
 
 }  // namespace lacuna

@@ -13,6 +13,7 @@
 #include "libcore/image/image_io.h"
 #include "libcore/tool/tool.h"
 #include "render/merge.h"
+#include "render/options.h"
 #include "render/output.h"
 
 namespace lacuna {
@@ -22,6 +23,7 @@ struct MergeCommand {
     std::vector<std::string> parts;
     std::string output;
     bool gaps = false;
+    ExrStyle exr;
     CommonOptions common;
 };
 
@@ -33,6 +35,7 @@ void declare(CLI::App& app, MergeCommand& options) {
         ->required()
         ->type_name("OUT.exr");
     app.add_flag("--gaps", options.gaps, "Blocks may be missing");
+    addExrOptions(app, options.exr, "Options");
     addCommonOptions(app, options.common);
     app.footer(
         "All parts together are the picture that one lacuna-render would have made, bit for bit;\n"
@@ -75,7 +78,7 @@ int mergeTool(int argc, char** argv) {
         std::fprintf(stderr, "warning: %s\n", text.c_str());
     }
     merged.image.attributes["commandLine"] = commandLineText(argc, argv);
-    writeExr(options.output, merged.image);
+    writeExr(options.output, merged.image, options.exr);
     const FilmSum::MeanColour& m = merged.mean;
     if (!options.common.json.empty()) {
         writeJson(options.common.json, {{"parts", options.parts.size()},

@@ -69,6 +69,16 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("NAME=EXPRESSION")
         ->allow_extra_args(false)
         ->group(picture);
+    app.add_flag("--transparent-background", o.transparentBackground,
+                 "Leave out the environment as the camera sees it: A (alpha) says how much of a "
+                 "pixel is anything else, in the .exr and .png")
+        ->group(picture);
+    app.add_option("--cryptomatte", o.cryptomatteText,
+                   "Layers of the .exr to cut out objects or materials by name: object, material "
+                   "or object,material")
+        ->type_name("TYPES")
+        ->group(picture);
+    addExrOptions(app, o.exr, picture);
     app.add_option("--sheet", o.sheet, "All layers of the .exr as a page of small pictures as well")
         ->type_name("FILE.png")
         ->group(picture);
@@ -183,12 +193,18 @@ bool parseNumber(std::string_view text, T& value) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// The option that asks for layers which iterations fill; null: none does.
+/// The option that asks for layers beyond those that every .exr has; null: none does.
 const char* layerOption(const RenderOptions& o) {
     if (o.techniques) return "--techniques";
     if (o.lightNoise) return "--light-noise";
     if (o.lightGroups) return "--light-groups";
+    if (o.mattes.any()) return "--cryptomatte";
     return o.layers.empty() ? nullptr : "--layer";
+}
+
+/// The option about how an .exr is written; null: there is none.
+const char* exrOption(const RenderOptions& o) {
+    return o.exr.half ? "--half" : o.exr.multiPart ? "--multi-part" : nullptr;
 }
 
 /// --estimate writes no image, and --until judges the whole one.
@@ -234,6 +250,11 @@ void checkPieces(const RenderOptions& o) {
     }
     if (o.blocks && !o.output.empty() && endingOf(o.output) != ".exr") {
         throw UsageError("--blocks: expected an .exr to hold the part, found '" + o.output + "'");
+    }
+    if (const char* const style = exrOption(o); o.blocks && style) {
+        throw UsageError(std::string(style) +
+                         ": expected a whole picture, found --blocks; give it "
+                         "to lacuna-merge");
     }
 }
 
@@ -385,6 +406,7 @@ void checkOptions(RenderOptions& o) {
     parseLive(o);
     o.layers = parseLayerExpressions(o.layerTexts);
     if (o.lightNoise) o.lightGroups = true;
+    if (!o.cryptomatteText.empty()) o.mattes = parseMatteTypes(o.cryptomatteText);
     if (!o.cropText.empty()) o.crop = parseCrop(o.cropText);
     if (!o.replayText.empty()) o.replay = parseReplay(o.replayText);
     if (o.countSetup && !o.timeSeconds) {
@@ -406,6 +428,29 @@ void checkOptions(RenderOptions& o) {
                          ": expected an .exr or a --sheet to hold the layers, found '" + o.output +
                          "'");
     }
+    if (o.replay || o.output.empty()) return;
+    const std::string ending = endingOf(o.output);
+    if (const char* const style = exrOption(o); style && ending != ".exr") {
+        throw UsageError(std::string(style) + ": expected an .exr, found '" + o.output +
+                         "'; leave it out");
+    }
+    if (o.transparentBackground && ending != ".exr" && ending != ".png") {
+        throw UsageError(
+            "--transparent-background: expected an .exr or .png to hold alpha, found '" + o.output +
+            "'");
+    }
+}
+
+void addExrOptions(CLI::App& app, ExrStyle& style, const std::string& group) {
+    app.add_flag(
+           "--half", style.half,
+           "16-bit float in the .exr where that is enough: not for Z, position, variances and "
+           "Cryptomatte")
+        ->group(group);
+    app.add_flag(
+           "--multi-part", style.multiPart,
+           "Each layer of the .exr is a part of its own: quicker to read where there are many")
+        ->group(group);
 }
 
 const MethodRow& namedRow(const RenderOptions& o) {

@@ -9,10 +9,12 @@
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/path_layers.h"
 #include "libcore/bidir/sampler.h"
+#include "libcore/image/exr.h"
 #include "libcore/image/tone.h"
 #include "libcore/methods/registry.h"
 #include "libcore/tool/scene_options.h"
 #include "render/accuracy.h"
+#include "render/layer_options.h"
 #include "render/live/server_address.h"
 
 namespace lacuna {
@@ -47,6 +49,8 @@ struct RenderOptions : SceneOptions {
     bool prepare = false, techniques = false, verify = false, denoise = false;
     bool lightGroups = false, lightNoise = false;
     std::vector<std::string> layerTexts;
+    bool transparentBackground = false;
+    std::string cryptomatteText;
     bool allowBias = false;  ///< `auto` may choose rows that merge
     bool listMethods = false, effects = false;
     std::string helpMethod;
@@ -56,11 +60,13 @@ struct RenderOptions : SceneOptions {
 
     // Made from the texts above by checkOptions.
     std::vector<LayerExpression> layers;
+    MatteTypes mattes;  ///< --cryptomatte
     std::optional<double> timeSeconds;
     std::optional<UntilRequest> until;
     Sampling sampling = Sampling::Independent;
     std::optional<PixelRect> crop;
     PngStyle png;
+    ExrStyle exr;
     std::optional<ReplayRequest> replay;
     double checkpointSeconds = 60.0;
     std::optional<BlockRange> blocks;
@@ -71,6 +77,9 @@ struct RenderOptions : SceneOptions {
 
 /// Declares every option. Both must outlive the parsing.
 void declareOptions(CLI::App& app, RenderOptions& options);
+
+/// --half and --multi-part, of lacuna-merge as well.
+void addExrOptions(CLI::App& app, ExrStyle& style, const std::string& group);
 
 /// Parses the texts and checks every range that the scene has no say in. Throws UsageError, and
 /// InputError for an environment of another format.

@@ -113,13 +113,15 @@ void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::st
 
 void setFeatures(LayeredImage& image, const FeatureLayers& features) {
     image.setRgb("albedo", features.albedo);
-    const std::vector<Rgb>& normals = features.normal.pixels;
-    auto &x = image.channel("normal.X"), &y = image.channel("normal.Y"),
-         &z = image.channel("normal.Z");
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        x[i] = normals[i].r;
-        y[i] = normals[i].g;
-        z[i] = normals[i].b;
+    for (const auto& [axis, part, member] : {std::tuple(".X", &Rgb::r, &Vec3::x),
+                                             {".Y", &Rgb::g, &Vec3::y},
+                                             {".Z", &Rgb::b, &Vec3::z}}) {
+        auto &normal = image.channel(std::string("normal") + axis),
+             &position = image.channel(std::string("position") + axis);
+        for (std::size_t i = 0; i < features.z.size(); ++i) {
+            normal[i] = features.normal.pixels[i].*part;
+            position[i] = features.position[i].*member;
+        }
     }
     image.channel("Z") = features.z;
 }
@@ -131,6 +133,7 @@ LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
     if (report.techniques) addShareOfFirstConnections(image, report.limits.maxDepth);
     if (still) {
         for (const auto& [name, plane] : still->channels()) image.channel(name) = plane;
+        image.attributes = still->attributes;
     }
     setHeader(image, report);
     return image;

@@ -68,7 +68,7 @@ nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 /// The picture with its variance and layers. `lightGroups`: names, where they have layers.
 void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::string> lightGroups);
 
-/// Adds layers albedo and normal, and Z.
+/// Adds layers albedo, normal and position, and Z.
 void setFeatures(LayeredImage& image, const FeatureLayers& features);
 
 /// The picture with header; `still`: layers that no iteration changes, may be null.

@@ -51,6 +51,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     add("layers of light groups", options.lightNoise    ? "yes, with their noise"
                                   : options.lightGroups ? "yes"
                                                         : "no");
+    add("background", options.transparentBackground ? "transparent" : "shown");
     std::set<std::string> layers;  // whatever their order
     for (const LayerExpression& layer : options.layers) {
         layers.insert(layer.name);

@@ -12,6 +12,7 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/bidir/features.h"
 #include "libcore/bidir/light_noise.h"
+#include "libcore/bidir/mattes.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/image/sheet.h"
@@ -43,7 +44,8 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
     const double depth = settings.limits.maxDepth;
     const double groups = options.lightNoise ? double(stage.layers.lightGroups()) : 0.0;
     const double layers = (options.techniques ? depth * (depth + 3.0) : 0.0) +
-                          double(stage.layers.names().size()) + groups * (groups + 1.0) / 2.0;
+                          double(stage.layers.names().size()) + groups * (groups + 1.0) / 2.0 +
+                          (options.transparentBackground ? 1.0 / 3.0 : 0.0);
     // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
@@ -348,7 +350,16 @@ const LayeredImage& Session::still() {
     for (const auto& asset : caches_.assets) {
         asset->draw(*still_, *stage_.scene, *stage_.camera, stage_.settings.crop, pool_);
     }
+    if (options_.mattes.any()) addMattes(*still_);
     return *still_;
+}
+
+void Session::addMattes(LayeredImage& image) {
+    const Stopwatch watch(report_.phaseSeconds["mattes"]);
+    const Mattes mattes = renderMattes(*stage_.scene, *stage_.camera, stage_.settings.crop,
+                                       stage_.settings.seed, pool_);
+    if (options_.mattes.objects) addCryptomatte(image, mattes.objects);
+    if (options_.mattes.materials) addCryptomatte(image, mattes.materials);
 }
 
 /// Of every channel that the picture may come to have.
@@ -358,6 +369,7 @@ std::vector<std::string> Session::channelNames() {
         for (const char* part : {".R", ".G", ".B"}) names.push_back(layer + part);
     };
     addRgb("variance");
+    if (options_.transparentBackground) names.push_back("A");
     for (const auto& [name, plane] : still().channels()) names.push_back(name);
     for (const std::string& layer : stage_.layers.names()) addRgb(layer);
     if (options_.lightNoise) {
@@ -410,7 +422,9 @@ void Session::refreshOutput() {
     now.statistics = totals_.statistics;
     refresh_->begin([this, image = output(now, film_.sum(idlePool()))] {
         if (endingOf(options_.output) == ".exr") {
-            writeExr(options_.output, image, ExrCompression::None);  // the last one is compressed
+            ExrStyle style = options_.exr;
+            style.compression = ExrCompression::None;  // the last one is compressed
+            writeExr(options_.output, image, style);
         } else {
             writeImage(options_.output, image, options_.png);
         }
@@ -529,7 +543,7 @@ void Session::save() {
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
         if (refresh_) refresh_->wait();  // or the older image would come last
-        if (!options_.output.empty()) writeImage(options_.output, image_, png);
+        if (!options_.output.empty()) writeImage(options_.output, image_, png, options_.exr);
         if (!options_.sheet.empty()) {
             // A part's sums are no layers.
             const Canvas sheet =

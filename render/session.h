@@ -55,6 +55,7 @@ class Session {
     Part part() const;
     const ThreadPool* idlePool() const;
     const LayeredImage& still();
+    void addMattes(LayeredImage& image);
     void beginLiveView();
     std::vector<std::string> channelNames();
     LayeredImage shown(const FilmSum& sum);

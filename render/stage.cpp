@@ -50,6 +50,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     stage.settings.seed = options.common.seed;
     stage.settings.crop = crop;
     stage.settings.sampling = options.sampling;
+    stage.settings.transparentBackground = options.transparentBackground;
     stage.settings.lightPaths = lightPathsOf(settings);
     stage.phaseSeconds["load"] = loadSeconds;
     stage.setupSeconds = secondsSince(start);

@@ -21,6 +21,7 @@ enum class StreamKind : std::uint32_t {
     CachePath,   ///< eye paths that leave cache points, index = path
     CacheDraw,   ///< draws at a cache point, index = cache point
     Chain,       ///< searches for specular chains along an eye path, index = pixel
+    Mattes,      ///< coverage by objects and materials, index = pixel
 };
 
 /// A point of a sequence whose points lie evenly (owen.h).

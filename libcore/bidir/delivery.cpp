@@ -39,6 +39,7 @@ void Delivery::countInvalid(const Sample& sample, TaskResult& result) const {
 
 void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
                           TaskResult& result) const {
+    if (isBackground(c.path)) return;
     const Weighed w = weigh(c, counts);
     // Values that are finite may add up to more than a float holds.
     const Rgb sum = pixel + w.value;
@@ -57,6 +58,7 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
 
 void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
                         TaskResult& result) const {
+    if (isBackground(c.path)) return;
     const Weighed w = weigh(c, counts);
     if (!isFinite(w.value)) return countInvalid(c.sample, result);
     result.splats.push_back({c.pixel, w.value});

@@ -96,6 +96,11 @@ class Delivery {
         return layerFilm_->layers().shares(path, value, result.layerScratch);
     }
     void countInvalid(const Sample& sample, TaskResult& result) const;
+    /// Whether it is the environment as the lens sees it, and that is left out.
+    bool isBackground(const FullPath& path) const {
+        return setup_.settings.transparentBackground && path.edges == 1 &&
+               path.vertex[0]->infinite();
+    }
 
     const RenderSetup& setup_;
     TechniqueFilm* techniqueFilm_ = nullptr;

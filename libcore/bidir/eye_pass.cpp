@@ -63,9 +63,7 @@ void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb>
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
         Rng& rng = worker.rngs.emplace_back(
             setup_.sampler.stream(iteration.number, StreamKind::EyePath, filmIndex + i));
-        const auto [jitterX, jitterY] = rng.evenPair();
-        worker.walks.push_back(setup_.walker.startEye(
-            {float(x0 + int(i)) + jitterX, float(y) + jitterY}, rng, worker.eye[i]));
+        worker.walks.push_back(setup_.startEye(x0 + int(i), y, rng, worker.eye[i]));
     }
     setup_.walker.finish(worker.walks, result.tally);
     for (std::uint32_t i = 0; i < pixels.size(); ++i) iteration.counts.labelWalk(worker.eye[i]);

@@ -109,6 +109,10 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
     const Techniques& techniques = setup_.techniques;
     const Iteration iteration = begin(number, pixels, statistics, cancel);
     IterationContext context = contextFor(generationOf(number), statistics);
+    if (coverage_) {
+        PhaseTimer timer(statistics, "coverage");
+        coverage_->addIteration(setup_, iteration);
+    }
     {
         PhaseTimer timer(statistics, "light paths");
         LightPass::Purpose purpose = poolAlone(StreamKind::LightPath);

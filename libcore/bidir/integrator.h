@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "libcore/bidir/coverage_film.h"
 #include "libcore/bidir/delivery.h"
 #include "libcore/bidir/eye_pass.h"
 #include "libcore/bidir/light_pass.h"
@@ -45,6 +46,8 @@ class BidirIntegrator {
 
     /// Layers to fill as well, observers, recordings.
     Delivery& delivery() { return delivery_; }
+    /// Alpha to fill as well, or null.
+    void setCoverageFilm(CoverageFilm* film) { coverage_ = film; }
 
     const Walker& walker() const { return setup_.walker; }
     /// L.
@@ -67,6 +70,7 @@ class BidirIntegrator {
     Workers workers_;
     Delivery delivery_{setup_};
     LightPass lightPass_{setup_, delivery_, workers_};
+    CoverageFilm* coverage_ = nullptr;
     LightPool pool_;
     PhotonGrid photons_;
     std::unique_ptr<const SpecularChains> chains_;  // null: the row or the scene has none

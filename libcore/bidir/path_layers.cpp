@@ -109,7 +109,8 @@ PathLayers::PathLayers(const Scene& scene, bool lightGroups,
 }
 
 void PathLayers::addExpressions(const Scene& scene, std::span<const LayerExpression> expressions) {
-    const std::vector<Names> objects = scene.objectNames();
+    std::vector<Names> objects;
+    for (const ObjectNames& names : scene.objectNames()) objects.push_back(names.all());
     const std::vector<NamedLights> lights = scene.namedLights();
     std::set<std::string> all, mentions;
     for (const Names& names : objects) all.insert(names.begin(), names.end());

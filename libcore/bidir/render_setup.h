@@ -25,6 +25,8 @@ struct RenderSettings {
     std::uint64_t blockIterations = BlockPlan::kEndless;
     Sampling sampling = Sampling::Independent;
     Guides guides = {};
+    /// Leaves out the environment where the lens sees it: paths of one edge. (coverage_film.h)
+    bool transparentBackground = false;
 };
 
 /// Shared by the passes; all references outlive the render.
@@ -54,6 +56,12 @@ struct RenderSetup {
         const PixelRect& crop = settings.crop;
         return std::uint32_t(y - crop.y0) * std::uint32_t(crop.width()) +
                std::uint32_t(x - crop.x0);
+    }
+
+    /// A pixel's eye path (x, y in the film), by the numbers of its stream.
+    Walk startEye(int x, int y, Rng& rng, std::vector<PathVertex>& out) const {
+        const auto [jitterX, jitterY] = rng.evenPair();
+        return walker.startEye({float(x) + jitterX, float(y) + jitterY}, rng, out);
     }
 
     const Scene& scene;

@@ -124,17 +124,21 @@ bool isOurPng(const std::string& path) {
     return textOf(bytes.data() + kHeadBytes, ours.size()) == textOf(ours.data(), ours.size());
 }
 
-void writePngBytes(const std::string& path, int width, int height, const Bytes& rgb, int bits) {
-    const std::size_t pixel = std::size_t(3 * bits / 8), size = std::size_t(width) * pixel;
-    if ((bits != 8 && bits != 16) || rgb.size() != size * std::size_t(height)) {
+void writePngBytes(const std::string& path, int width, int height, const Bytes& values, int bits) {
+    const std::size_t plane = std::size_t(width) * std::size_t(height) * std::size_t(bits / 8);
+    const bool withAlpha = values.size() == 4 * plane;
+    if ((bits != 8 && bits != 16) || (!withAlpha && values.size() != 3 * plane)) {
         throw std::invalid_argument("PNG: bytes do not match the size");
     }
+    const std::size_t pixel = std::size_t((withAlpha ? 4 : 3) * bits / 8),
+                      size = std::size_t(width) * pixel;
     AtomicFile file(path);
     file.write(kSignature.data(), kSignature.size());
     Bytes head;
     append(head, std::uint32_t(width));
     append(head, std::uint32_t(height));
-    head.insert(head.end(), {std::uint8_t(bits), 2, 0, 0, 0});  // 2: red, green, blue
+    // 2: red, green, blue; 6: and alpha
+    head.insert(head.end(), {std::uint8_t(bits), std::uint8_t(withAlpha ? 6 : 2), 0, 0, 0});
     for (const Bytes& bytes :
          {chunk("IHDR", textOf(head.data(), head.size())), chunk("tEXt", kSoftware)}) {
         file.write(bytes.data(), bytes.size());
@@ -144,7 +148,7 @@ void writePngBytes(const std::string& path, int width, int height, const Bytes& 
     const Bytes zeros(size);
     Bytes best(size + 1), other(size + 1);
     for (int y = 0; y < height; ++y) {
-        const std::uint8_t* row = rgb.data() + std::size_t(y) * size;
+        const std::uint8_t* row = values.data() + std::size_t(y) * size;
         const std::uint8_t* above = y > 0 ? row - size : zeros.data();
         std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
         for (const int number : {0, 1, 2, 4}) {
@@ -162,8 +166,9 @@ void writePngBytes(const std::string& path, int width, int height, const Bytes& 
     file.commit();
 }
 
-void writePng(const std::string& path, const Image& image, const PngStyle& style) {
-    writePngBytes(path, image.width, image.height, developed(image, style), style.bits);
+void writePng(const std::string& path, const Image& image, const PngStyle& style,
+              const std::vector<float>* alpha) {
+    writePngBytes(path, image.width, image.height, developed(image, style, alpha), style.bits);
 }
 
 }  // namespace lacuna

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
+#include "libcore/image/cryptomatte.h"
 #include "libcore/image/error_map.h"
 
 namespace lacuna {
@@ -19,7 +21,8 @@ struct Layer {
     std::vector<const std::vector<float>*> planes;
 };
 
-std::vector<Layer> layersOf(const LayeredImage& image) {
+/// Of one image, by name.
+std::vector<Layer> layersByName(const LayeredImage& image) {
     std::vector<Layer> layers;
     for (const auto& [channel, plane] : image.channels()) {
         if (channel.starts_with("covariance.")) continue;  // no pictures: signs, and many of them
@@ -29,6 +32,7 @@ std::vector<Layer> layersOf(const LayeredImage& image) {
         const auto other = [&](const char* name) {
             return image.find(layer.empty() ? name : layer + "." + name);
         };
+        if (layer.starts_with("Crypto") && other("A")) continue;  // ids
         const bool colour = other("R") && other("G") && other("B");
         const bool vector = !layer.empty() && other("X") && other("Y") && other("Z");
         if (colour && (part == "R" || part == "G" || part == "B")) {
@@ -39,9 +43,16 @@ std::vector<Layer> layersOf(const LayeredImage& image) {
             layers.push_back({channel, {&plane}});
         }
     }
+    return layers;
+}
+
+/// In the order of the sheet. `ids`: those of Cryptomatte as pictures.
+std::vector<Layer> layersOf(const LayeredImage& image, const LayeredImage& ids) {
+    std::vector<Layer> layers = layersByName(image);
+    for (Layer& layer : layersByName(ids)) layers.push_back(std::move(layer));
     const auto rank = [](const Layer& l) {
         int i = 0;
-        for (const char* first : {"", "variance", "albedo", "normal", "Z"}) {
+        for (const char* first : {"", "A", "variance", "albedo", "normal", "Z", "position"}) {
             if (l.name == first) return i;
             ++i;
         }
@@ -131,6 +142,29 @@ std::pair<float, float> rangeOf(const Image& small) {
     return {low, high};
 }
 
+/// Where the things of a picture are: of what is not the origin, which stands for nothing.
+struct Box {
+    Rgb low, high;
+
+    Colour8 colour(const Rgb& p) const {
+        const auto share = [](float v, float from, float to) {
+            return byteOf(to > from ? double(v - from) / double(to - from) : 0.5);
+        };
+        if (isBlack(p)) return {0, 0, 0};
+        return {share(p.r, low.r, high.r), share(p.g, low.g, high.g), share(p.b, low.b, high.b)};
+    }
+};
+Box boxOf(const Image& positions) {
+    Box box{Rgb(std::numeric_limits<float>::max()), Rgb(std::numeric_limits<float>::lowest())};
+    for (const Rgb& p : positions.pixels) {
+        if (isBlack(p)) continue;
+        box.low = {std::min(box.low.r, p.r), std::min(box.low.g, p.g), std::min(box.low.b, p.b)};
+        box.high = {std::max(box.high.r, p.r), std::max(box.high.g, p.g),
+                    std::max(box.high.b, p.b)};
+    }
+    return box;
+}
+
 /// How layers are shown, given the picture's.
 class Show {
   public:
@@ -167,7 +201,12 @@ class Show {
                                byteOf(0.5 + 0.5 * double(n.b))};
             });
         }
-        if (is("albedo") || is("node") || is("subspace") || is("lightSubspace") || is("share")) {
+        if (layer.name == "position") {
+            const Box box = boxOf(small);
+            return each([=](const Rgb& p, std::size_t) { return box.colour(p); });
+        }
+        if (is("albedo") || is("node") || is("subspace") || is("lightSubspace") || is("share") ||
+            is("Crypto") || layer.name == "A") {
             return each([](const Rgb& v, std::size_t) { return screen(v, 1.0, Tone::Standard); });
         }
         if (layer.name == "Z") {
@@ -193,7 +232,8 @@ class Show {
 }  // namespace
 
 Canvas layerSheet(const LayeredImage& image, const PngStyle& style) {
-    const std::vector<Layer> layers = layersOf(image);
+    const LayeredImage ids = cryptomattePictures(image);
+    const std::vector<Layer> layers = layersOf(image, ids);
     const int count = int(layers.size());
     const Raster raster(image.width(), image.height(), count <= 12 ? 400 : count <= 48 ? 300 : 220);
     if (!image.hasRgb("")) throw std::invalid_argument("sheet: expected channels R, G and B");

@@ -9,7 +9,8 @@ namespace lacuna {
 
 /// The picture first, then the layers that belong to it, by name; layers of radiance have the
 /// picture's exposure and tone. Variances are shown as noise, in the colours of error maps: their
-/// root against the picture. Of Z near is white. Throws std::invalid_argument where there is no picture (R, G, B).
+/// root against the picture. Of Z near is white; of position red, green and blue say how far along x, y
+/// and z of what is seen; of Cryptomatte each name has a colour of its own. Throws std::invalid_argument where there is no picture (R, G, B).
 Canvas layerSheet(const LayeredImage& image, const PngStyle& style);
 
 }  // namespace lacuna

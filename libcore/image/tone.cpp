@@ -106,17 +106,22 @@ double linearToSrgb(double v) {
     return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
 }
 
-std::vector<std::uint8_t> developed(const Image& image, const PngStyle& style) {
+std::vector<std::uint8_t> developed(const Image& image, const PngStyle& style,
+                                    const std::vector<float>* alpha) {
     const double scale = std::exp2(style.stopsFor(image));
     const double most = style.bits == 16 ? 65535.0 : 255.0;
     std::vector<std::uint8_t> bytes;
-    bytes.reserve(image.pixels.size() * 3 * std::size_t(style.bits / 8));
-    for (const Rgb& p : image.pixels) {
-        for (const double v : toned(p, scale, style.tone)) {
-            const auto code = std::uint16_t(std::lround(most * linearToSrgb(v)));
-            if (style.bits == 16) bytes.push_back(std::uint8_t(code >> 8));
-            bytes.push_back(std::uint8_t(code & 255));
-        }
+    bytes.reserve(image.pixels.size() * (alpha ? 4 : 3) * std::size_t(style.bits / 8));
+    const auto add = [&](double share) {
+        const auto code = std::uint16_t(std::lround(most * share));
+        if (style.bits == 16) bytes.push_back(std::uint8_t(code >> 8));
+        bytes.push_back(std::uint8_t(code & 255));
+    };
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const float covered = alpha ? std::clamp((*alpha)[i], 0.0f, 1.0f) : 1.0f;
+        const Rgb p = covered > 0.0f ? image.pixels[i] * (1.0f / covered) : Rgb{};
+        for (const double v : toned(p, scale, style.tone)) add(linearToSrgb(v));
+        if (alpha) add(double(covered));
     }
     return bytes;
 }

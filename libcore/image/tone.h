@@ -48,7 +48,9 @@ double srgbToLinear(double v);
 double linearToSrgb(double v);
 
 /// The picture as a .png holds it, top row first, three channels of one byte or (16 bits) of two,
-/// the high one first.
-std::vector<std::uint8_t> developed(const Image& image, const PngStyle& style);
+/// the high one first. With `alpha` (may be null) there are four, and colours are divided by it, which
+/// the picture's are not: none where it is 0.
+std::vector<std::uint8_t> developed(const Image& image, const PngStyle& style,
+                                    const std::vector<float>* alpha = nullptr);
 
 }  // namespace lacuna

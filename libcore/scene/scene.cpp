@@ -108,7 +108,7 @@ std::vector<NamedLights> Scene::namedLights() const {
     return lacuna::namedLights(description_, baked_, environment_ != nullptr);
 }
 
-std::vector<std::vector<std::string>> Scene::objectNames() const {
+std::vector<ObjectNames> Scene::objectNames() const {
     return lacuna::objectNames(description_, baked_);
 }
 

@@ -47,7 +47,7 @@ class Scene {
     /// These three are made anew at each call.
     LightGroups lightGroups() const { return lacuna::lightGroups(namedLights()); }
     std::vector<NamedLights> namedLights() const;
-    std::vector<std::vector<std::string>> objectNames() const;
+    std::vector<ObjectNames> objectNames() const;
     const Accel& accel() const { return *accel_; }
     /// Middle of the file's bounding box: file coordinates = ours + centre().
     Vec3d centre() const { return baked_.centre; }

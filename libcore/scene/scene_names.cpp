@@ -12,15 +12,11 @@ const Material& materialOf(const SceneDescription& description, const BakedScene
     return description.materials[baked.meshes[object.mesh].material];
 }
 
-std::vector<std::string> namesOf(const SceneDescription& description, const BakedScene& baked,
-                                 const SceneObject& object) {
-    std::vector<std::string> names;
-    if (object.nodeName != Instance::kNoName) {
-        names.push_back(description.nodeNames[object.nodeName]);
-    }
-    const std::string& ofMaterial = materialOf(description, baked, object).name;
-    if (!ofMaterial.empty()) names.push_back(ofMaterial);
-    return names;
+ObjectNames namesOf(const SceneDescription& description, const BakedScene& baked,
+                    const SceneObject& object) {
+    const bool named = object.nodeName != Instance::kNoName;
+    return {named ? description.nodeNames[object.nodeName] : "",
+            materialOf(description, baked, object).name};
 }
 
 /// The light group of an object that emits.
@@ -41,7 +37,8 @@ std::vector<NamedLights> namedLights(const SceneDescription& description, const 
     for (const SceneObject& object : baked.objects) {
         if (object.firstLight == SceneObject::kNoLight) continue;
         all.push_back({NamedLights::Kind::Mesh, baked.meshes[object.mesh].triangles.size(),
-                       groupOf(description, baked, object), namesOf(description, baked, object)});
+                       groupOf(description, baked, object),
+                       namesOf(description, baked, object).all()});
     }
     for (const PunctualLight& light : description.lights) {
         all.push_back({NamedLights::Kind::Lamp, 1, light.group, light.names});
@@ -50,9 +47,16 @@ std::vector<NamedLights> namedLights(const SceneDescription& description, const 
     return all;
 }
 
-std::vector<std::vector<std::string>> objectNames(const SceneDescription& description,
-                                                  const BakedScene& baked) {
-    std::vector<std::vector<std::string>> names;
+std::vector<std::string> ObjectNames::all() const {
+    std::vector<std::string> names;
+    for (const std::string* name : {&node, &material}) {
+        if (!name->empty()) names.push_back(*name);
+    }
+    return names;
+}
+
+std::vector<ObjectNames> objectNames(const SceneDescription& description, const BakedScene& baked) {
+    std::vector<ObjectNames> names;
     for (const SceneObject& object : baked.objects) {
         names.push_back(namesOf(description, baked, object));
     }

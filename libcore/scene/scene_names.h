@@ -27,8 +27,15 @@ struct NamedLights {
 std::vector<NamedLights> namedLights(const SceneDescription& description, const BakedScene& baked,
                                      bool environment);
 
-/// By object: the names of its node and its material, as far as it has them.
-std::vector<std::vector<std::string>> objectNames(const SceneDescription& description,
-                                                  const BakedScene& baked);
+/// Empty where there is none.
+struct ObjectNames {
+    std::string node, material;
+
+    /// Those that there are.
+    std::vector<std::string> all() const;
+    friend bool operator==(const ObjectNames&, const ObjectNames&) = default;
+};
+/// By object.
+std::vector<ObjectNames> objectNames(const SceneDescription& description, const BakedScene& baked);
 
 }  // namespace lacuna

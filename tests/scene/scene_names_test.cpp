@@ -19,7 +19,8 @@ TEST(SceneNames, OfNodesAndMaterials) {
     b.add(quad({-1, 0, 3}, {1, 0, 0}, {0, 1, 0}));
     b.d.instances.back().nodeName = 0;
     const auto scene = b.build();
-    EXPECT_EQ(scene->objectNames(), (std::vector<Names>{{"right", "tube"}, {"tube"}, {"left"}}));
+    EXPECT_EQ(scene->objectNames(),
+              (std::vector<ObjectNames>{{"right", "tube"}, {"", "tube"}, {"left", ""}}));
 }
 
 TEST(SceneNames, OfLightsInTheirOrder) {
