@@ -384,8 +384,8 @@ void checkOptions(RenderOptions& o) {
     if (o.denoise) {
         throw UsageError(
             "--denoise: expected a render, found a wish that Lacuna leaves to others; write an "
-            ".exr and give its layers R G B, albedo and normal to a denoiser (Blender's "
-            "compositor, Open Image Denoise)");
+            ".exr, and give its layers R G B, albedo and normal to Open Image Denoise: python3 -m "
+            "lacuna.denoise IN.exr OUT.exr");
     }
     for (const std::string& text : o.assignments) {
         if (!text.starts_with("effects.")) continue;

@@ -40,9 +40,9 @@ LayeredImage cryptomattePictures(const LayeredImage& image) {
     LayeredImage pictures(image.width(), image.height());
     for (const auto& [name, plane] : image.channels()) {
         const std::size_t dot = name.rfind('.');
-        const bool ids =
-            isCryptomatteChannel(name) && (name.ends_with(".R") || name.ends_with(".B"));
-        if (!ids || dot < 2) continue;
+        const bool ids = name.starts_with("Crypto") && dot != std::string::npos &&
+                         (name.ends_with(".R") || name.ends_with(".B"));
+        if (!ids) continue;
         const std::vector<float>* shares =
             image.find(name.substr(0, dot) + (name.ends_with(".R") ? ".G" : ".A"));
         if (!shares) continue;

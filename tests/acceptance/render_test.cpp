@@ -154,6 +154,7 @@ Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot, Metho
 void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     method_ = &method;
     RenderSettings r;
+    r.transparentBackground = shot_.transparentBackground;
     r.limits = {shot_.maxDepth, shot_.rouletteDepth};
     r.seed = shot_.seed;
     r.sampling = shot_.sampling;
@@ -168,6 +169,10 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
                                                     shot_.threads ? *shot_.threads : pool());
     integrator_->delivery().setTechniqueFilm(shot_.techniques);
+    if (shot_.transparentBackground) {
+        coverage_.emplace(r.crop.width(), r.crop.height());
+        integrator_->setCoverageFilm(&*coverage_);
+    }
     if (shot_.layers) {
         layerFilm_.emplace(*shot_.layers, r.crop.width(), r.crop.height());
         integrator_->delivery().setLayerFilm(&*layerFilm_);
@@ -208,6 +213,7 @@ Picture Render::run() {
         picture.blocks.add(blocks, threads);
     }
     if (layerFilm_) picture.layers = layerFilm_->means();
+    if (coverage_) picture.layers.merge(coverage_->means());
     picture.statistics = statistics_;
     return picture;
 }

@@ -45,6 +45,7 @@ struct Shot {
     std::uint64_t walkGuide = 0;  ///< likewise of a guide that walks follow
     TechniqueFilm* techniques = nullptr;
     const PathLayers* layers = nullptr;  ///< that Picture::layers has then
+    bool transparentBackground = false;  ///< and A in Picture::layers
     PathObserver observer = nullptr;
 };
 
@@ -91,6 +92,7 @@ class Render {
     std::unique_ptr<Method> own_;
     Method* method_ = nullptr;
     std::optional<LayerFilm> layerFilm_;
+    std::optional<CoverageFilm> coverage_;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::vector<Rgb> pixels_;
     IterationStatistics statistics_;

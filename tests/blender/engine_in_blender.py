@@ -50,7 +50,7 @@ class Engine(unittest.TestCase):
     def test_passes(self):
         scenes.camera((0, -6, 2), (0, 0, 2))
         layer = bpy.context.view_layer
-        layer.use_pass_z = layer.use_pass_normal = layer.lacuna.use_albedo = layer.lacuna.use_variance = True
+        layer.use_pass_z = layer.use_pass_normal = layer.use_pass_position = layer.lacuna.use_albedo = layer.lacuna.use_variance = True
         picture = self.render()
         found = {name.split(".", 1)[1]: plane[5, 30] for name, plane in picture.channels.items()}
         self.assertAlmostEqual(found["Depth.Z"], 9, delta=0.01)  # the wall, 3 behind the middle
@@ -58,7 +58,22 @@ class Engine(unittest.TestCase):
         numpy.testing.assert_allclose([found["Albedo." + c] for c in "RGB"], (0.5, 0.6, 0.7), atol=1e-3)
         self.assertGreater(found["Combined.G"], 0.1)
         self.assertEqual(found["Combined.A"], 1)
+        self.assertAlmostEqual(found["Position.Y"], 3, delta=0.01)
+        self.assertGreater(found["Position.Z"], 2)
         self.assertIn("Variance.R", found)
+
+    def test_a_transparent_film_leaves_out_the_world(self):
+        scenes.camera((0, -6, 40), (0, 0, 80))  # at nothing
+        self.scene.world = bpy.data.worlds.new("sky")
+        self.scene.world.color = (0.5, 0.6, 0.7)
+        alpha = {}
+        for transparent in (False, True):
+            self.scene.render.film_transparent = transparent
+            found = {name.rsplit(".", 1)[1]: plane.mean() for name, plane in self.render().channels.items()
+                     if "Combined" in name}
+            alpha[transparent] = found["A"]
+            self.assertEqual(found["G"] == 0, transparent)
+        self.assertEqual(alpha, {False: 1, True: 0})
 
     def test_border_is_that_part_of_the_picture(self):
         scenes.camera()

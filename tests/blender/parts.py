@@ -114,6 +114,8 @@ class Passes(unittest.TestCase):
         self.assertEqual(passes.pixels("Depth", picture)[:, 0].tolist(), [2, 3, numpy.float32(1e10), 1])
         self.assertEqual(passes.pixels("Normal", picture)[2].tolist(), [40, -60, 50])
         self.assertIsNone(passes.pixels("Albedo", picture))
+        picture.channels["A"] = plane / 4
+        self.assertEqual(passes.pixels("Combined", picture)[:, 3].tolist(), [0.5, 0.75, 0, 0.25])
 
 
 class Commands(unittest.TestCase):
@@ -121,6 +123,7 @@ class Commands(unittest.TestCase):
         settings = object_with(method="spcbpt", samples=10, seconds=4, error=5, depth=3, seed=2, animate_seed=True)
         text = " ".join(command.options(settings, 7, 2))
         self.assertEqual(text, "--method spcbpt --iterations 10 --time 4s --until mape=0.05 --max-depth 3 --seed 9 --prepare --threads 2")
+        self.assertIn("--transparent-background", command.options(settings, 7, 2, True))
         self.assertEqual(command.share_done(settings, 1, 5), 0.5)
         self.assertEqual(command.limits(0, 0, 0), [])
 

@@ -16,12 +16,15 @@ def limits(samples, seconds, error_percent):
     return options
 
 
-def options(settings, frame, threads):
-    """`settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0: all."""
+def options(settings, frame, threads, transparent=False):
+    """`settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0: all. `transparent`: without the
+    world where the camera sees it."""
     found = ["--method", settings.method, *limits(settings.samples, settings.seconds, settings.error),
              "--max-depth", str(settings.depth), "--seed", str(settings.seed + (frame if settings.animate_seed else 0))]
     if settings.method in _PREPARED:
         found.append("--prepare")
+    if transparent:
+        found.append("--transparent-background")
     if threads:
         found += ["--threads", str(threads)]
     return found

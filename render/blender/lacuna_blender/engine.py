@@ -37,6 +37,8 @@ class LacunaEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")
         if renderlayer.use_pass_normal:
             self.register_pass(scene, renderlayer, "Normal", 3, "XYZ", "VECTOR")
+        if renderlayer.use_pass_position:
+            self.register_pass(scene, renderlayer, "Position", 3, "XYZ", "VECTOR")
         for name, width, channels, kind, wanted, _ in passes.OWN:
             if getattr(renderlayer.lacuna, wanted):
                 self.register_pass(scene, renderlayer, name, width, channels, kind)
@@ -50,7 +52,7 @@ class LacunaEngine(bpy.types.RenderEngine):
         self._say(notes)
         image = os.path.join(folder, "picture.exr")
         threads = scene.render.threads if scene.render.threads_mode == "FIXED" else 0
-        line = [program, *arguments, "-o", image, *command.options(scene.lacuna, scene.frame_current, threads),
+        line = [program, *arguments, "-o", image, *command.options(scene.lacuna, scene.frame_current, threads, scene.render.film_transparent),
                 "--cache", _cache_folder(folder)]
         if not bpy.app.background:
             line += ["--write-every", _LIVE]

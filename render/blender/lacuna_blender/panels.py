@@ -35,6 +35,15 @@ class LACUNA_PT_sampling(_Panel, bpy.types.Panel):
         layout.prop(settings, "animate_seed")
 
 
+class LACUNA_PT_film(_Panel, bpy.types.Panel):
+    bl_label, bl_context = "Film", "render"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
 class LACUNA_PT_notes(_Panel, bpy.types.Panel):
     bl_label, bl_context = "Not Rendered as in Blender", "render"
 
@@ -56,11 +65,12 @@ class LACUNA_PT_passes(_Panel, bpy.types.Panel):
         column = layout.column(heading="Data")
         column.prop(layer, "use_pass_z", text="Depth")
         column.prop(layer, "use_pass_normal", text="Normal")
+        column.prop(layer, "use_pass_position", text="Position")
         column.prop(layer.lacuna, "use_albedo")
         column.prop(layer.lacuna, "use_variance")
 
 
-_CLASSES = (LACUNA_PT_sampling, LACUNA_PT_notes, LACUNA_PT_passes)
+_CLASSES = (LACUNA_PT_sampling, LACUNA_PT_film, LACUNA_PT_notes, LACUNA_PT_passes)
 
 
 def _shared():

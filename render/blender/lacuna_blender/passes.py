@@ -17,11 +17,12 @@ def pixels(name, picture):
 def _values(name, picture):
     if name == "Combined":
         rgb = picture.stack("R", "G", "B")
-        return numpy.concatenate([rgb, numpy.ones_like(rgb[..., :1])], axis=-1)
+        alpha = picture.stack("A")
+        return numpy.concatenate([rgb, numpy.ones_like(rgb[..., :1]) if alpha is None else alpha], axis=-1)
     if name == "Depth":
         depth = picture.stack("Z")
         return None if depth is None else numpy.where(depth > 0, depth, _FAR)
-    if name == "Normal":
-        normal = picture.stack("normal.X", "normal.Y", "normal.Z")
-        return None if normal is None else normal[..., (0, 2, 1)] * numpy.array([1, -1, 1], numpy.float32)
+    if name in ("Normal", "Position"):
+        vector = picture.stack(*(name.lower() + axis for axis in (".X", ".Y", ".Z")))
+        return None if vector is None else vector[..., (0, 2, 1)] * numpy.array([1, -1, 1], numpy.float32)
     return next((picture.stack(*layers) for own, _, _, _, _, layers in OWN if own == name), None)
