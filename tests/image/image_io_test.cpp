@@ -1,6 +1,7 @@
 // PNG, PFM and HDR: round trips, files by hand, damage.
 #include "libcore/image/image_io.h"
 
+#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 #include <zlib.h>
 
@@ -128,6 +129,24 @@ TEST_F(ImageIo, PngOfSixteenBits) {
     }
     EXPECT_TRUE(isOurPng(path("a.png")));
     EXPECT_THROW(writePngBytes(path("c.png"), 1, 1, {1, 2, 3, 4, 5, 6}, 12), std::invalid_argument);
+}
+
+/// The picture's colours are premultiplied, those of a .png are not.
+TEST_F(ImageIo, PngWithAlphaHasStraightColours) {
+    LayeredImage image = test::layered(Image(3, 1, Rgb(0.25f)));
+    image.channel("A") = {1.0f, 0.5f, 0.0f};
+    for (const int bits : {8, 16}) {
+        writeImage(path("a.png"), image, PngStyle{.bits = bits});
+        int width = 0, height = 0, channels = 0;
+        std::uint8_t* at = stbi_load(path("a.png").c_str(), &width, &height, &channels, 0);
+        ASSERT_NE(at, nullptr);
+        EXPECT_EQ(channels, 4);
+        EXPECT_EQ((std::vector<int>{at[0], at[3], at[4], at[7], at[8], at[11]}),
+                  (std::vector<int>{137, 255, 188, 128, 0, 0}));
+        stbi_image_free(at);
+        EXPECT_TRUE(isOurPng(path("a.png")));
+        EXPECT_EQ(readImage(path("a.png")).width, 3);
+    }
 }
 
 /// Lengths and checksums, which stb_image does not look at; also where the pixels take many chunks.

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "libcore/image/cryptomatte.h"
 #include "tests/image/test_files.h"
 
 namespace lacuna {
@@ -49,13 +50,21 @@ TEST(LayerSheet, showsEveryLayer) {
     }
     image.channel("Z").assign(1200, 3.0f);
     image.setRgb("light.lamp", Image(40, 30, Rgb(0.0f, 0.0f, 0.25f)));
+    for (const char* axis : {"X", "Y", "Z"}) {
+        image.channel(std::string("position.") + axis).assign(1200, 2.0f);
+    }
+    image.channel("A").assign(1200, 0.5f);
+    Matte matte{"CryptoObject", {"bunny"}, std::vector<Matte::Pixel>(1200)};
+    for (Matte::Pixel& pixel : matte.pixels) pixel[0] = {0, 1.0f};
+    addCryptomatte(image, matte);
     const Canvas all = layerSheet(image, {.exposure = 1.0});
-    EXPECT_GE(area(all), 5 * area(alone));
+    EXPECT_GE(area(all), 8 * area(alone));
     const Colours colours = coloursOf(all);
     for (const Colour8& expected :
          {Colour8{255, 188, 137},  // the picture, one stop up
           Colour8{255, 250, 190}, Colour8{255, 0, 0}, Colour8{128, 128, 255},
-          Colour8{0, 0, 188}}) {  // the lamp, one stop up
+          Colour8{0, 0, 188},         // the lamp, one stop up
+          Colour8{188, 188, 188}}) {  // alpha
         EXPECT_TRUE(colours.count(expected))
             << int(expected[0]) << " " << int(expected[1]) << " " << int(expected[2]);
     }
