@@ -52,7 +52,8 @@ class LacunaEngine(bpy.types.RenderEngine):
         self._say(notes)
         image = os.path.join(folder, "picture.exr")
         threads = scene.render.threads if scene.render.threads_mode == "FIXED" else 0
-        line = [program, *arguments, "-o", image, *command.options(scene.lacuna, scene.frame_current, threads, scene.render.film_transparent),
+        options = command.options(scene.lacuna, scene.frame_current, threads, scene.render.film_transparent)
+        line = [program, *arguments, "-o", image, *options,
                 "--cache", _cache_folder(folder)]
         if not bpy.app.background:
             line += ["--write-every", _LIVE]

@@ -64,7 +64,6 @@ def _say_what_is_lost(thing, notes):
 def _say_what_the_scene_loses(scene, notes):
     render = scene.render
     for on, text in ((render.use_motion_blur, "motion blur is left out"),
-                     (render.film_transparent, "the film is not transparent: the world is seen"),
                      (render.use_freestyle, "Freestyle's lines are left out"),
                      (render.use_multiview, "of several views one is rendered")):
         if on:
