@@ -50,7 +50,11 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
     for (const std::string& name : rowNames()) {
         const MethodRow row = rowNamed(name);
         if (mergesBetweenDeltas(row)) continue;
-        expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name);
+        Shot its = withSplatsForEveryPixel(shot, row);
+        // Weights that believe nonsense leave large samples so rare that 200 iterations may meet none of
+        // them in a pixel: it was 6.8 errors of its own off once, and none after 6400.
+        if (name == "test-hashed-density") its.iterations = 1600;
+        expectSame(render(*scene, row, its), reference, name);
     }
     const bool alpha = std::max(GetParam().a, GetParam().b) > LightChoice::Environment;
     if (alpha) {

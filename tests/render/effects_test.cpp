@@ -45,6 +45,9 @@ SceneDescription everything() {
     scene.materials[1].absorption = Rgb(1.0f);
     scene.materials[1].specularColor = Rgb(0.5f);
     scene.materials[1].clearcoat = 0.5f;
+    scene.materials[1].sheenColor = Rgb(0.5f);
+    scene.materials[1].anisotropy = 0.5f;
+    scene.materials[1].diffuseTransmission = 0.5f;
     for (std::uint32_t i = 2; i < 6; ++i) {  // smooth and rough glass, thin and solid
         scene.materials[i].metallic = 0.0f;
         scene.materials[i].transmission = 1.0f;

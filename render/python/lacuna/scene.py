@@ -62,8 +62,10 @@ class Scene:
 
         name "", base_colour (1, 1, 1), alpha 1, metallic 0, roughness 1, specular 1 (0: Lambert),
         ior 1.5, transmission 0, solid False (a body that refracts; else a thin sheet), attenuation
-        (1, 1, 1) over attenuation_distance 0, clearcoat 0, clearcoat_roughness 0, emission (0, 0, 0)
-        in radiance, double_sided False (emission), alpha_mode "opaque" ("mask", "blend"),
+        (1, 1, 1) over attenuation_distance 0, clearcoat 0, clearcoat_roughness 0, sheen (0, 0, 0),
+        sheen_roughness 0, anisotropy 0 (how much rougher along u), anisotropy_rotation 0 (radians),
+        diffuse_transmission 0, diffuse_transmission_colour (1, 1, 1), emission (0, 0, 0) in
+        radiance, double_sided False (emission), alpha_mode "opaque" ("mask", "blend"),
         alpha_cutoff .5, normal_scale 1; and the textures base_colour_texture,
         metallic_roughness_texture, normal_texture, emission_texture, transmission_texture.
         """
