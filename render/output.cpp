@@ -107,7 +107,7 @@ void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::st
     for (const auto& [name, plane] : sum.layers) image.channel(name) = plane;
     setTechniqueVariances(image, sum.layers, sum.samples);
     std::vector<std::string> lights;
-    for (const std::string& group : lightGroups) lights.push_back("light." + group);
+    for (const std::string& group : lightGroups) lights.push_back(lightLayer(group));
     setLightCovariances(image, lights, sum.samples);
 }
 

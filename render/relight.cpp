@@ -9,6 +9,7 @@
 #include "libcore/base/number_text.h"
 #include "libcore/base/text_list.h"
 #include "libcore/bidir/light_noise.h"
+#include "libcore/bidir/path_layers.h"
 
 namespace lacuna {
 namespace {
@@ -17,10 +18,6 @@ using nlohmann::json;
 
 constexpr const char* kSuffixes[] = {".R", ".G", ".B"};
 constexpr const char* kPictureChannels[] = {"R", "G", "B"};
-
-std::string lightLayer(const std::string& group) {
-    return "light." + group;
-}
 
 const std::string* textOf(const LayeredImage& image, const char* attribute) {
     const auto found = image.attributes.find(attribute);

@@ -8,6 +8,7 @@
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/base/own_files.h"
+#include "libcore/bidir/path_layers.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "libcore/tool/tool.h"
@@ -76,7 +77,7 @@ nlohmann::json sharesOf(const LayeredImage& image, const std::vector<std::string
     const double all = meanOf(image, "");
     nlohmann::json shares = nlohmann::json::object();
     for (const std::string& group : groups) {
-        shares[group] = all > 0.0 ? meanOf(image, "light." + group) / all : 0.0;
+        shares[group] = all > 0.0 ? meanOf(image, lightLayer(group)) / all : 0.0;
     }
     return shares;
 }

@@ -4,12 +4,11 @@
 
 namespace lacuna {
 
-Rgb transmittanceInside(std::span<const Rgb> absorption, const PathVertex& a, Vec3 direction,
-                        const PathVertex& b) {
-    if (a.infinite() || b.infinite()) return Rgb(1.0f);
+Rgb transmittanceInside(std::span<const Rgb> absorption, const EdgeEnd& a, Vec3 direction,
+                        const EdgeEnd& b) {
     Rgb sum;
     int inside = 0;
-    const auto ask = [&](const PathVertex& v, Vec3 leaving) {
+    const auto ask = [&](const EdgeEnd& v, Vec3 leaving) {
         if (v.material == kNone || !(dot(v.ng, leaving) < 0.0f)) return;
         const Rgb& sigma = absorption[v.material];
         if (isBlack(sigma)) return;

@@ -14,16 +14,24 @@
 
 namespace lacuna {
 
+/// An end of an edge on a surface, or on none (the material is kNone).
+struct EdgeEnd {
+    Vec3 position, ng;
+    std::uint32_t material;
+};
+
 /// As transmittance, where something in the scene absorbs.
-Rgb transmittanceInside(std::span<const Rgb> absorption, const PathVertex& a, Vec3 direction,
-                        const PathVertex& b);
+Rgb transmittanceInside(std::span<const Rgb> absorption, const EdgeEnd& a, Vec3 direction,
+                        const EdgeEnd& b);
 
 /// Share of the light that the edge from `a` along the unit `direction` to `b` lets through:
 /// exp(-sigma d) [Beer-Lambert]. `absorption`: sigma by material, per scene unit; empty where no
 /// material absorbs. Edges to infinity run through no body.
 inline Rgb transmittance(std::span<const Rgb> absorption, const PathVertex& a, Vec3 direction,
                          const PathVertex& b) {
-    return absorption.empty() ? Rgb(1.0f) : transmittanceInside(absorption, a, direction, b);
+    if (absorption.empty() || a.infinite() || b.infinite()) return Rgb(1.0f);
+    const auto end = [](const PathVertex& v) { return EdgeEnd{v.position, v.ng, v.material}; };
+    return transmittanceInside(absorption, end(a), direction, end(b));
 }
 
 }  // namespace lacuna

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+
+#include "libcore/bidir/absorption.h"
 
 namespace lacuna {
 
@@ -100,22 +101,13 @@ class Looker {
         return atMostOne(f * (scale / (index * index)));
     }
 
-    /// As absorption.h has it: what either end says of the body between them.
     Rgb transmittance(const SurfacePoint& from, const Vec3& direction,
                       const SurfacePoint& to) const {
         if (scene_.absorption().empty()) return Rgb(1.0f);
-        Rgb sigma;
-        int inside = 0;
-        for (const auto& [point, leaving] : {std::pair(&from, direction), {&to, -direction}}) {
-            const Rgb& own = scene_.absorption()[point->material];
-            if (!(dot(point->ng, leaving) < 0.0f) || isBlack(own)) continue;
-            sigma += own;
-            ++inside;
-        }
-        if (inside == 0) return Rgb(1.0f);
-        const float distance = length(to.position - from.position) / float(inside);
-        return {std::exp(-sigma.r * distance), std::exp(-sigma.g * distance),
-                std::exp(-sigma.b * distance)};
+        const auto end = [](const SurfacePoint& p) {
+            return EdgeEnd{p.position, p.ng, p.material};
+        };
+        return transmittanceInside(scene_.absorption(), end(from), direction, end(to));
     }
 
     const Scene& scene_;

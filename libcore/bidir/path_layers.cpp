@@ -101,7 +101,7 @@ PathLayers::PathLayers(const Scene& scene, bool lightGroups,
                        std::span<const LayerExpression> expressions) {
     if (lightGroups) {
         LightGroups groups = scene.lightGroups();
-        for (const std::string& name : groups.names) names_.push_back("light." + name);
+        for (const std::string& name : groups.names) names_.push_back(lightLayer(name));
         lightGroups_ = names_.size();
         group_ = std::move(groups.group);
     }

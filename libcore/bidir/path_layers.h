@@ -25,6 +25,11 @@ struct LayerExpression {
     std::string what() const { return "--layer " + name + "=" + text; }
 };
 
+/// What the layer of a group of lights is called.
+inline std::string lightLayer(const std::string& group) {
+    return "light." + group;
+}
+
 class PathLayers {
   public:
     /// None.

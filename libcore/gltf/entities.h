@@ -20,8 +20,8 @@ inline constexpr double kLumensPerWatt = 683.0;
 const tinygltf::Light* lightOf(const Document& document, std::size_t node);
 
 /// Adds the KHR_lights_punctual light that `node` carries, if any, to scene.lights, from what
-/// scene.lampUnits says it is in; `group`: what the node calls its group, or nothing. The node's scale does not change the light. Throws InputError for
-/// impossible values.
+/// scene.lampUnits says it is in; `group`: what the node calls its group, or nothing. The node's scale
+/// does not change the light. Throws InputError for impossible values.
 void addLight(const Document& document, std::size_t node, const Affine& toWorld,
               const std::string& group, SceneDescription& scene, Warnings& warnings);
 

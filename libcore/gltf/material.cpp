@@ -67,10 +67,8 @@ class Reader {
         material_.specular =
             clamped(number(specular, "specularFactor", 1.0), 0, 1, "specularFactor");
         if (!(material_.specular > 0.0f)) return;
-        const auto color = numbers<3>(specular, "specularColorFactor", {1, 1, 1});
-        material_.specularColor = {clamped(color[0], 0, kMost, "specularColorFactor"),
-                                   clamped(color[1], 0, kMost, "specularColorFactor"),
-                                   clamped(color[2], 0, kMost, "specularColorFactor")};
+        material_.specularColor = clampedRgb(numbers<3>(specular, "specularColorFactor", {1, 1, 1}),
+                                             "specularColorFactor", kMost);
         material_.specularTexture = texture(&specular, "specularTexture", false);
         if (!isBlack(material_.specularColor)) {
             material_.specularColorTexture = texture(&specular, "specularColorTexture", true);
@@ -119,7 +117,8 @@ class Reader {
     void readSheen() {
         const json* sheen = extension("KHR_materials_sheen");
         if (!sheen) return;
-        material_.sheenColor = colorOf(*sheen, "sheenColorFactor", {0, 0, 0});
+        material_.sheenColor =
+            clampedRgb(numbers<3>(*sheen, "sheenColorFactor", {0, 0, 0}), "sheenColorFactor");
         if (isBlack(material_.sheenColor)) return;
         material_.sheenColorTexture = texture(sheen, "sheenColorTexture", true);
         material_.sheenRoughness =
@@ -150,7 +149,8 @@ class Reader {
         material_.diffuseTransmissionTexture =
             texture(through, "diffuseTransmissionTexture", false);
         material_.diffuseTransmissionColor =
-            colorOf(*through, "diffuseTransmissionColorFactor", {1, 1, 1});
+            clampedRgb(numbers<3>(*through, "diffuseTransmissionColorFactor", {1, 1, 1}),
+                       "diffuseTransmissionColorFactor");
         if (!isBlack(material_.diffuseTransmissionColor)) {
             material_.diffuseTransmissionColorTexture =
                 texture(through, "diffuseTransmissionColorTexture", true);
@@ -269,16 +269,11 @@ class Reader {
         return float(legal);
     }
 
-    /// Three factors of [0, 1].
-    Rgb colorOf(const json& object, const char* name, std::array<double, 3> otherwise) {
-        const auto color = numbers<3>(object, name, otherwise);
-        return {clamped(color[0], 0, 1, name), clamped(color[1], 0, 1, name),
-                clamped(color[2], 0, 1, name)};
-    }
-
-    Rgb clampedRgb(const std::vector<double>& factors, const char* name) {
-        return {clamped(factors[0], 0, 1, name), clamped(factors[1], 0, 1, name),
-                clamped(factors[2], 0, 1, name)};
+    /// Three factors from 0 to `most`, of four or three numbers.
+    template <class Numbers>
+    Rgb clampedRgb(const Numbers& factors, const char* name, double most = 1.0) {
+        return {clamped(factors[0], 0, most, name), clamped(factors[1], 0, most, name),
+                clamped(factors[2], 0, most, name)};
     }
 
     /// The texture that `name` of `object` (may be null) asks for. Index and set were range-checked

@@ -317,9 +317,11 @@ class Bsdf {
                  const Choice& light, const Choice& base, const Cosines& c) const;
     Rgb sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
                    const Choice& light) const;
-    /// The lobe of layers and glass for a half vector of any length.
+    struct Facets;
+    Facets facets(Vec3 h, float hn, const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
+    /// The reflecting lobe of layers and glass.
     struct Lobe;
-    Lobe baseLobe(Vec3 h, const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
+    Lobe baseLobe(const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
     /// How the surface is brushed as lobes about the normal n see it.
     ggx::Grain grainAbout(const Vec3& n) const;
 

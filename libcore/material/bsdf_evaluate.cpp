@@ -21,6 +21,17 @@
 
 namespace lacuna {
 
+/// What the roughness makes of a half vector and of both directions.
+struct Bsdf::Facets {
+    float d;       ///< D(h)
+    float se, sl;  ///< S of e and l
+
+    static Facets isotropic(Vec3 h, float hn, Vec3 n, float ce, float cl, float alpha) {
+        return {ggx::distribution(alpha, hn, lengthSquared(cross(h, n))),
+                ggx::smithS(ce, alpha * alpha), ggx::smithS(cl, alpha * alpha)};
+    }
+};
+
 /// A GGX lobe at the half vector of two directions on one side (or one of them mirrored there).
 struct Bsdf::Lobe {
     float cosine;          ///< e.h = l.h
@@ -29,15 +40,13 @@ struct Bsdf::Lobe {
     float g1Eye, g1Light;  ///< G1 / c_e, G1 / c_l
 
     /// From H = e + l, of any length, and both |cosines| about n.
-    static Lobe isotropic(Vec3 h, Vec3 n, float ce, float cl, float alpha) {
-        const float hn = ce + cl;
-        const float cross2 = lengthSquared(cross(h, n));
-        const float se = ggx::smithS(ce, alpha * alpha);
-        const float sl = ggx::smithS(cl, alpha * alpha);
-        return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + cross2)),  // |H| / 2
-                0.25f * ggx::distribution(alpha, hn, cross2), ggx::g2OverCosines(ce, se, cl, sl),
-                ggx::g1OverCosine(ce, se), ggx::g1OverCosine(cl, sl)};
-    }
+    Lobe(Vec3 h, Vec3 n, float ce, float cl, const Facets& facets)
+        : cosine(std::min(1.0f, 0.5f * std::sqrt((ce + cl) * (ce + cl) +
+                                                 lengthSquared(cross(h, n))))),  // |H| / 2
+          k(0.25f * facets.d),
+          g2(ggx::g2OverCosines(ce, facets.se, cl, facets.sl)),
+          g1Eye(ggx::g1OverCosine(ce, facets.se)),
+          g1Light(ggx::g1OverCosine(cl, facets.sl)) {}
 };
 
 ggx::Grain Bsdf::grainAbout(const Vec3& n) const {
@@ -47,17 +56,21 @@ ggx::Grain Bsdf::grainAbout(const Vec3& n) const {
     return {t, cross(n, t), alphaAlong_.value(), alpha_};
 }
 
-/// The mirrored one of two directions through a sheet only differs along n, which a grain does not see.
-inline Bsdf::Lobe Bsdf::baseLobe(Vec3 h, const Vec3& toEye, const Vec3& toLight,
+/// Of layers and glass, for H of any length. The mirrored one of two directions through a sheet differs from
+/// it only along n, which a grain does not see.
+inline Bsdf::Facets Bsdf::facets(Vec3 h, float hn, const Vec3& toEye, const Vec3& toLight,
                                  const Pair& pair) const {
     const float ce = pair.eyeAbs(), cl = pair.lightAbs();
-    if (!has(kBrushed)) return Lobe::isotropic(h, pair.n, ce, cl, alpha_);
+    if (!has(kBrushed)) return Facets::isotropic(h, hn, pair.n, ce, cl, alpha_);
     const ggx::Grain grain = grainAbout(pair.n);
-    const float hn = ce + cl;
-    const float se = ggx::smithS(ce, toEye, grain), sl = ggx::smithS(cl, toLight, grain);
-    return {std::min(1.0f, 0.5f * std::sqrt(hn * hn + lengthSquared(cross(h, pair.n)))),
-            0.25f * ggx::distribution(h, hn, grain), ggx::g2OverCosines(ce, se, cl, sl),
-            ggx::g1OverCosine(ce, se), ggx::g1OverCosine(cl, sl)};
+    return {ggx::distribution(h, hn, grain), ggx::smithS(ce, toEye, grain),
+            ggx::smithS(cl, toLight, grain)};
+}
+
+inline Bsdf::Lobe Bsdf::baseLobe(const Vec3& toEye, const Vec3& toLight, const Pair& pair) const {
+    const Vec3 h = toEye + toLight;
+    const float ce = pair.eyeAbs(), cl = pair.lightAbs();
+    return {h, pair.n, ce, cl, facets(h, ce + cl, toEye, toLight, pair)};
 }
 
 /// Without the light that the surface's own normal does not see.
@@ -187,7 +200,7 @@ BsdfEvaluation Bsdf::evaluateTilted(const Vec3& toEye, const Vec3& toLight,
 
 void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                               const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
-    const Lobe lobe = baseLobe(toEye + toLight, toEye, toLight, pair);
+    const Lobe lobe = baseLobe(toEye, toLight, pair);
 
     Rgb reflectance(0.0f);
     float pmfEye = 0, pmfLight = 0;  // given toEye, given toLight
@@ -210,8 +223,10 @@ void Bsdf::addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair
 
 void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                              const Choice& eye, const Choice& light, BsdfEvaluation& out) const {
-    const Lobe lobe =
-        Lobe::isotropic(toEye + toLight, pair.n, pair.eyeAbs(), pair.lightAbs(), clearcoatAlpha_);
+    const Vec3 h = toEye + toLight;
+    const float ce = pair.eyeAbs(), cl = pair.lightAbs();
+    const Lobe lobe(h, pair.n, ce, cl,
+                    Facets::isotropic(h, ce + cl, pair.n, ce, cl, clearcoatAlpha_));
     const float reflectance = clearcoat_ * fresnelDielectric(lobe.cosine, kClearcoatIor);
     out.f += Rgb(reflectance * lobe.k * lobe.g2 * pair.adjoint);
     out.pdfWToLight += eye.clearcoat * lobe.k * lobe.g1Eye;
@@ -223,7 +238,7 @@ void Bsdf::addRoughClearcoat(const Vec3& toEye, const Vec3& toLight, const Pair&
 void Bsdf::addRoughThinTransmission(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                                     const Choice& eye, const Choice& light,
                                     BsdfEvaluation& out) const {
-    const Lobe lobe = baseLobe(toEye + toLight, toEye, toLight, pair);
+    const Lobe lobe = baseLobe(toEye, toLight, pair);
     const float transmit = 1.0f - fresnelDielectric(lobe.cosine, ior_);
     out.f +=
         baseColor_ * (glass() * transmit * through(eye, light) * lobe.k * lobe.g2 * pair.adjoint);
@@ -251,17 +266,7 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
     const float h2 = hn * hn + cross2;
     const float cosine = std::min(1.0f, oh / std::sqrt(h2));
     // |eta_o o.h + eta_i i.h| = |H|: K = D |o.h| |i.h| / |H|^2 = D oh |ih| / |H|^4.
-    float d, se, sl;
-    if (has(kBrushed)) {
-        const ggx::Grain grain = grainAbout(pair.n);
-        d = ggx::distribution(h, hn, grain);
-        se = ggx::smithS(ce, toEye, grain);
-        sl = ggx::smithS(cl, toLight, grain);
-    } else {
-        d = ggx::distribution(alpha_, hn, cross2);
-        se = ggx::smithS(ce, alpha_ * alpha_);
-        sl = ggx::smithS(cl, alpha_ * alpha_);
-    }
+    const auto [d, se, sl] = facets(h, hn, toEye, toLight, pair);
     const float k = d * oh * -ih / (h2 * h2);
     const float transmit = 1.0f - fresnelDielectric(cosine, ior_);
     const float etaEye = indexOn(eyeOutside);

@@ -250,9 +250,8 @@ BakedScene bake(SceneDescription& d, const ThreadPool& pool) {
         to.uvs = std::move(from.uvs);
         if (usesSecondSet(material)) to.uvs1 = std::move(from.uvs1);
         to.colors = std::move(from.colors);
-        const bool turns = material.normalTexture && !to.uvs.empty();
-        to.plain = to.colors.empty() && to.uvs1.empty() && !turns &&
-                   !(material.anisotropy > 0.0f) && !hasOwnClearcoatNormal(material);
+        const bool mapped = material.normalTexture && !to.uvs.empty();
+        to.plain = to.colors.empty() && to.uvs1.empty() && !mapped && !hasOwnDirections(material);
         to.farTextures = farTexturesOf(material, d.textures);
         takeTriangles(uses[m], mayBePane(material) ? kPaneFlatness : kFlatness, from, to);
         from = Mesh{};

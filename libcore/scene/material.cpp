@@ -70,6 +70,10 @@ bool hasOwnClearcoatNormal(const Material& m) {
     return m.clearcoat > 0.0f && (m.normalTexture || m.clearcoatNormalTexture);
 }
 
+bool hasOwnDirections(const Material& m) {
+    return m.anisotropy > 0.0f || hasOwnClearcoatNormal(m);
+}
+
 bool mayBeDiffuse(const Material& m) {
     const bool stays = m.diffuseTransmission < 1.0f || m.diffuseTransmissionTexture;
     return !isBlack(m.baseColor) && stays && mayHaveBase(m);

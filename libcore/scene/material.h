@@ -107,6 +107,8 @@ inline constexpr std::array kTurningTextures = {
 
 /// Whether the clearcoat's normals are not those of what is under it.
 bool hasOwnClearcoatNormal(const Material& material);
+/// Whether points have directions beside their shading normal: a grain, or the clearcoat's normal.
+bool hasOwnDirections(const Material& material);
 
 /// Whether the material asks for any texture by TEXCOORD_1.
 bool usesSecondSet(const Material& material);

@@ -73,7 +73,7 @@ class Scene {
     /// The point of a hit; all of `out` is replaced. Asks the cache for the texels that bsdfAt will
     /// look at.
     void surfaceAt(const Hit& hit, SurfacePoint& out) const { surfaces_.pointAt(hit, out); }
-    /// The surface's shape at a hit, whose point is `point`.
+    /// The shape at a hit, whose point is `point`: of the surface, or of a clearcoat with normals of its own.
     SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const {
         return surfaces_.shapeAt(hit, point, clearcoat);
     }

@@ -56,7 +56,7 @@ Bsdf Shading::bsdfAt(const SurfacePoint& point) const {
 Shading::Prepared Shading::prepared(const Material& m, bool vertexColors) const {
     if (std::any_of(kBsdfTextures.begin() + 1, kBsdfTextures.end(),
                     [&](TextureUse Material::*texture) { return bool(m.*texture); }) ||
-        m.anisotropy > 0.0f || hasOwnClearcoatNormal(m)) {
+        hasOwnDirections(m)) {
         return {};
     }
     Prepared out;

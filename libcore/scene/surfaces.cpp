@@ -34,6 +34,11 @@ Vec2 between(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& t
     return uvs[t[0]] * (1.0f - u - v) + uvs[t[1]] * u + uvs[t[2]] * v;
 }
 
+/// Whether there is a map and the mesh has coordinates for it.
+bool hasMap(const BakedMesh& mesh, const TextureUse& map) {
+    return map && !mesh.uvsOf(map).empty();
+}
+
 }  // namespace
 
 float Surfaces::opacity(const Hit& hit) const {
@@ -82,10 +87,6 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
         prefetchTexture(description_.textures[std::size_t(use.value)],
                         use.at(use.secondSet ? s.uv1 : s.uv));
     }
-}
-
-bool Surfaces::hasMap(const BakedMesh& mesh, const TextureUse& map) const {
-    return map && !mesh.uvsOf(map).empty();
 }
 
 SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const {

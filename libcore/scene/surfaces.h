@@ -62,7 +62,6 @@ class Surfaces {
   private:
     struct MapAxes;
 
-    bool hasMap(const BakedMesh& mesh, const TextureUse& map) const;
     void decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                   SurfacePoint& out) const;
     MapAxes axesOf(const Hit& hit, const std::array<Vec3, 3>& corners, const TextureUse& map,

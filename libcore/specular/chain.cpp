@@ -54,6 +54,10 @@ Moving normalAt(const SurfaceShape& shape, const Moving& point) {
     return normal;
 }
 
+bool isSpecular(const Bsdf& bsdf) {
+    return bsdf.has(ScatterEvent::DeltaReflection) || bsdf.has(ScatterEvent::DeltaTransmission);
+}
+
 }  // namespace
 
 MovingRay MovingRay::from(const Vec3d& origin, const Vec3d& direction) {
@@ -126,17 +130,20 @@ bool Chain::arriveAt(const Scene& scene, const Hit& hit) {
     ChainVertex& v = vertices_[size_];
     scene.surfaceAt(hit, v.point);
     v.bsdf = scene.bsdfAt(v.point);
-    return v.bsdf.has(ScatterEvent::DeltaReflection) || v.bsdf.has(ScatterEvent::DeltaTransmission);
+    return isSpecular(v.bsdf);
 }
 
-Chain::Layer Chain::layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const {
+/// None where it has no such layer, or one that is not specular.
+std::optional<Chain::Layer> Chain::layerAt(const Scene& scene, const Hit& hit,
+                                           bool clearcoat) const {
     const ChainVertex& v = vertices_[size_];
-    Layer layer{{}, v.bsdf, clearcoat};
-    if (v.bsdf.hasOwnClearcoat()) {
-        layer.bsdf = clearcoat ? v.bsdf.clearcoatAlone() : v.bsdf.withoutClearcoat();
-    }
-    layer.shape = scene.shapeAt(hit, v.point, clearcoat);
-    return layer;
+    const bool two = v.bsdf.hasOwnClearcoat();
+    if (clearcoat && !two) return std::nullopt;
+    const Bsdf bsdf = !two        ? v.bsdf
+                      : clearcoat ? v.bsdf.clearcoatAlone()
+                                  : v.bsdf.withoutClearcoat();
+    if (!isSpecular(bsdf)) return std::nullopt;
+    return Layer{scene.shapeAt(hit, v.point, clearcoat), bsdf, clearcoat};
 }
 
 void Chain::take(const Step& step) {
@@ -152,8 +159,9 @@ void Chain::take(const Step& step) {
 
 bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event) {
     if (!arriveAt(scene, hit)) return false;
-    if (event.onClearcoat && !vertices_[size_].bsdf.hasOwnClearcoat()) return false;
-    const std::optional<Step> step = stepAt(layerAt(scene, hit, event.onClearcoat), event);
+    const std::optional<Layer> layer = layerAt(scene, hit, event.onClearcoat);
+    if (!layer) return false;
+    const std::optional<Step> step = stepAt(*layer, event);
     if (step) take(*step);
     return step.has_value();
 }
@@ -163,18 +171,17 @@ bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
     std::array<std::optional<Step>, 8> steps;
     double sum = 0.0;
     std::size_t count = 0;
-    const bool twoLayers = vertices_[size_].bsdf.hasOwnClearcoat();
     for (const bool clearcoat : {false, true}) {
-        if (clearcoat && !twoLayers) continue;
-        const Layer layer = layerAt(scene, hit, clearcoat);
-        const Bsdf& bsdf = layer.bsdf;
+        const std::optional<Layer> layer = layerAt(scene, hit, clearcoat);
+        if (!layer) continue;
+        const Bsdf& bsdf = layer->bsdf;
         const bool tilted = !(bsdf.ns() == bsdf.ng());
         for (const ScatterEvent event :
              {ScatterEvent::DeltaReflection, ScatterEvent::DeltaTransmission}) {
             const bool twice = tilted && (event == ScatterEvent::DeltaReflection || bsdf.bends());
             for (const bool aboutNg : {false, true}) {
                 if (aboutNg && !twice) continue;
-                steps[count] = stepAt(layer, {event, aboutNg, clearcoat});
+                steps[count] = stepAt(*layer, {event, aboutNg, clearcoat});
                 if (steps[count]) sum += double(mean(steps[count++]->through));
             }
         }

@@ -85,7 +85,7 @@ class Chain {
         bool isClearcoat = false;
     };
     bool arriveAt(const Scene& scene, const Hit& hit);
-    Layer layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const;
+    std::optional<Layer> layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const;
     std::optional<Step> stepAt(const Layer& layer, SpecularEvent event) const;
     void take(const Step& step);
 

@@ -195,11 +195,11 @@ TEST(SurfacePoint, SizesFarBelowOne) {
     }
 }
 
-/// One texel that tilts the normal by `x` along the image's width and `y` towards its upper edge.
-Texture tilt(std::uint8_t x, std::uint8_t y, std::uint8_t z) {
+/// One texel; a normal map of it tilts by r along the image's width and by g towards its upper edge.
+Texture texelOf(std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t alpha = 255) {
     Texture t;
     t.width = t.height = 1;
-    t.rgba = {x, y, z, 255};
+    t.rgba = {r, g, b, alpha};
     return t;
 }
 
@@ -208,7 +208,7 @@ TEST(SurfacePoint, NormalMapsTiltTowardsTheImagesRightAndTop) {
         for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
             SceneBuilder b;
             lacuna::Material m = matte(Rgb(0.5f));
-            m.normalTexture = b.add(tilt(191, 153, 255));
+            m.normalTexture = b.add(texelOf(191, 153, 255));
             m.normalScale = 0.5f;
             // u runs along +x; v, which points down in the image, along +y.
             place(b, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m)), transform.toWorld,
@@ -245,7 +245,7 @@ TEST(SurfacePoint, TangentsSayHowANormalMapLies) {
                 for (const float side : {1.0f, -1.0f}) {  // normals with and against the winding
                     SceneBuilder b;
                     lacuna::Material m = matte(Rgb(0.5f));
-                    m.normalTexture = b.add(tilt(191, 153, 255));
+                    m.normalTexture = b.add(texelOf(191, 153, 255));
                     Mesh mesh = quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m));
                     mesh.normals.assign(4, {0, 0, side});
                     mesh.tangents.assign(4, {-0.6f, 0.8f, 0, handed});
@@ -283,7 +283,7 @@ TEST(SurfacePoint, TangentsSayHowANormalMapLies) {
 TEST(SurfacePoint, TangentsThatSayNothingLeaveItToTheCoordinates) {
     SceneBuilder b;
     lacuna::Material m = matte(Rgb(0.5f));
-    m.normalTexture = b.add(tilt(255, 128, 128));
+    m.normalTexture = b.add(texelOf(255, 128, 128));
     Mesh mesh = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(m));
     mesh.normals.assign(4, {0, 0, 1});
     mesh.tangents.assign(4, {0, 0, 0, 1});
@@ -299,8 +299,8 @@ TEST(SurfacePoint, TangentsThatSayNothingLeaveItToTheCoordinates) {
 TEST(SurfacePoint, NormalMapsThatSayNothingAreIgnored) {
     SceneBuilder b;
     lacuna::Material below = matte(Rgb(0.5f)), plain = below;
-    below.normalTexture = b.add(tilt(128, 128, 0));
-    plain.normalTexture = b.add(tilt(255, 128, 128));
+    below.normalTexture = b.add(texelOf(128, 128, 0));
+    plain.normalTexture = b.add(texelOf(255, 128, 128));
     b.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(below)));
     Mesh noTangents = quad({2, 0, 0}, {1, 0, 0}, {0, 1, 0}, b.add(plain));
     noTangents.uvs.assign(4, {0.5f, 0.5f});
@@ -337,9 +337,7 @@ Met meet(SceneBuilder b, Mesh mesh, const lacuna::Material& material) {
 
 TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
     SceneBuilder b;
-    Texture texel;
-    texel.width = texel.height = 1;
-    texel.rgba = {51, 153, 204, 102};  // 0.2, 0.6, 0.8, 0.4
+    const Texture texel = texelOf(51, 153, 204, 102);  // 0.2, 0.6, 0.8, 0.4
     lacuna::Material textured = plastic({0.5f, 0.4f, 0.3f}, 0);
     textured.specularTexture = textured.specularColorTexture = textured.clearcoatTexture =
         textured.clearcoatRoughnessTexture = b.add(texel);
@@ -387,10 +385,7 @@ TEST(SurfacePoint, GrainTurnsFromTheTangentToTheBitangent) {
     expectVector(meet({}, axesTriangle(), brushed).point->grain, turned);
     // The texture's direction, towards the bitangent, comes before the rotation.
     SceneBuilder b;
-    Texture up;
-    up.width = up.height = 1;
-    up.rgba = {128, 255, 128, 255};
-    brushed.anisotropyTexture = b.add(up);
+    brushed.anisotropyTexture = b.add(texelOf(128, 255, 128));
     expectVector(meet(b, axesTriangle(), brushed).point->grain, {-0.125f, 0.217f, 0});
     // Tangents go before coordinates; their bitangent is below with a sign of -1.
     Mesh mesh = axesTriangle();
@@ -415,13 +410,10 @@ TEST(SurfacePoint, GrainTellsTwoDirectionsApart) {
 
 TEST(SurfacePoint, LacquerHasTheMeshsNormalsOrItsOwn) {
     SceneBuilder b;
-    Texture right;
-    right.width = right.height = 1;
-    right.rgba = {218, 128, 218, 255};  // 45 degrees towards the tangent
     lacuna::Material lacquer = plastic(Rgb(0.5f), 0.5f);
     lacquer.clearcoat = 1;
     EXPECT_EQ(meet(b, axesTriangle(), lacquer).point->clearcoatNs, Vec3{});
-    const TextureUse map = b.add(right);
+    const TextureUse map = b.add(texelOf(218, 128, 218));  // 45 degrees towards the tangent
     lacquer.normalTexture = map;
     const Met smooth = meet(b, axesTriangle(), lacquer);
     expectVector(smooth.point->clearcoatNs, {0, 0, 1});
@@ -440,9 +432,7 @@ TEST(SurfacePoint, LacquerHasTheMeshsNormalsOrItsOwn) {
 
 TEST(SurfacePoint, SheenAndLeafTexturesMultiplyTheirFactors) {
     SceneBuilder b;
-    Texture texel;
-    texel.width = texel.height = 1;
-    texel.rgba = {51, 153, 204, 102};  // 0.2, 0.6, 0.8, 0.4
+    const Texture texel = texelOf(51, 153, 204, 102);  // 0.2, 0.6, 0.8, 0.4
     lacuna::Material textured = plastic({0.5f, 0.4f, 0.3f}, 0.5f);
     textured.sheenColorTexture = textured.sheenRoughnessTexture =
         textured.diffuseTransmissionTexture = textured.diffuseTransmissionColorTexture =
@@ -480,11 +470,8 @@ TEST(SurfacePoint, ColouredPointsAreOfThatColoursMaterial) {
           glass(1.0f, 0.5f), plastic({3.0f, 0.4f, 0.3f}, 0.0f)}) {
         for (const std::uint8_t grey : {std::uint8_t(0), std::uint8_t(255)}) {
             SceneBuilder b;
-            Texture texel;
-            texel.width = texel.height = 1;
-            texel.rgba = {grey, grey, grey, 255};
             lacuna::Material textured = material, constant = material;
-            textured.baseColorTexture = b.add(texel);
+            textured.baseColorTexture = b.add(texelOf(grey, grey, grey));
             constant.baseColor *= Rgb(float(grey) / 255) * Rgb(tint[0], tint[1], tint[2]);
             const Met met = meet(b, coloured, textured), other = meet(b, plain, constant);
             const Bsdf found = met.bsdf(), expected = other.bsdf();
@@ -538,7 +525,7 @@ TEST(SurfacePoint, TexturesLieByTheSetTheyAskFor) {
 TEST(SurfacePoint, ASecondSetTurnsNormalMaps) {
     SceneBuilder b;
     lacuna::Material material = matte(Rgb(0.5f));
-    material.normalTexture = b.add(tilt(255, 128, 128));  // towards growing u
+    material.normalTexture = b.add(texelOf(255, 128, 128));  // towards growing u
     material.normalTexture.secondSet = true;
     Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     mesh.uvs1 = {{0, 0}, {0, 1}, {1, 0}};  // u along y
