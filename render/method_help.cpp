@@ -51,6 +51,9 @@ std::string methodHelp(const MethodRow& row) {
             "\n  chains         mirrors and smooth glass between a light without a size and an eye "
             "vertex, where nothing else joins the path";
     }
+    if (t.hits && t.connects && t.refractions) {
+        text += "\n  refractions    smooth glass between a lamp or the sky and an eye vertex";
+    }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {
         text += merges == Merges::FirstFromEye

@@ -51,12 +51,15 @@ class Printer {
 
     void contribution(const PathEvent& e) {
         const int k = e.path.edges, t = e.technique.t;
-        const char* const made = e.technique.merges   ? "merged at i"
-                                 : e.technique.chains ? "chain to i"
-                                                      : "s";
-        double sum = e.technique.chains ? 1.0 : 0.0;
+        const char* const made = e.technique.merges()     ? "merged at i"
+                                 : e.technique.chains()   ? "chain to i"
+                                 : e.technique.refracts() ? "refracted at i"
+                                                          : "s";
+        double sum = e.technique.chains() ? 1.0 : 0.0;
         for (int i = 1; i <= k + 1; ++i) sum += misWeight(e.path, e.counts, i);
-        for (int i = 1; i < k; ++i) sum += misWeight(e.path, e.counts, {k + 1 - i, true});
+        for (int i = 1; i < k; ++i)
+            sum += misWeight(e.path, e.counts, {k + 1 - i, Technique::By::Merge});
+        sum += misWeight(e.path, e.counts, {t, Technique::By::Refraction});
         std::printf(
             "contribution %d: %s = %d, t = %d, value %.9g %.9g %.9g, weight %.9g (by products "
             "%.9g, "

@@ -22,6 +22,7 @@ enum class StreamKind : std::uint32_t {
     CacheDraw,   ///< draws at a cache point, index = cache point
     Chain,       ///< searches for specular chains along an eye path, index = pixel
     Mattes,      ///< coverage by objects and materials, index = pixel
+    Refraction,  ///< next event through glass along an eye path, index = pixel
 };
 
 /// A point of a sequence whose points lie evenly (owen.h).

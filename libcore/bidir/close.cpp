@@ -191,8 +191,9 @@ std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath ey
     const PathVertex& photon = light.back();
     const PathVertex& z = eye.back();
     const BsdfEvaluation at = walker.scattering(z, z.toPrevious, photon.toPrevious);
-    const Closed closed{
-        z.throughput * at.f * photon.throughput, Technique(int(eye.size()), true), {}};
+    const Closed closed{z.throughput * at.f * photon.throughput,
+                        Technique(int(eye.size()), Technique::By::Merge),
+                        {}};
     if (isBlack(closed.contribution)) return std::nullopt;
 
     const std::size_t i = light.size() - 1;
@@ -220,7 +221,26 @@ Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& a
     path.delta[light.size()] = false;
     path.scatter[light.size()] = atEye;
     setSource(path, walker.scene(), light[0]);
-    return {contribution, Technique::chain(int(eye.size())), {}};
+    return {contribution, Technique(int(eye.size()), Technique::By::Chain), {}};
+}
+
+Closed closeRefraction(const Walker& walker, Subpath light, Subpath eye,
+                       const BsdfEvaluation& atEye, const Rgb& contribution, FullPath& path) {
+    setEdges(path, light.size(), eye.size());
+    fillLightPart(path, light);
+    fillEyePart(path, eye);
+    const std::size_t s = light.size();
+    const PathVertex &y = light.back(), &z = eye.back();
+    const Edge edge = edgeBetween(y, z);
+    const BsdfEvaluation atLight = y.bsdf.evaluate(edge.direction, y.toPrevious, y.event);
+    path.delta[s] = false;
+    path.scatter[s] = atEye.f;
+    path.asLight[s] = kNone;  // its walk knows it by another predecessor
+    path.lightPdfA[s] = atLight.pdfWToEye * edge.toSecond;
+    path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
+    if (int(s) + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
+    setSource(path, walker.scene(), light[0]);
+    return {contribution, Technique(int(eye.size()), Technique::By::Refraction), {}};
 }
 
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,

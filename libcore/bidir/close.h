@@ -75,6 +75,11 @@ std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath ey
 Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& atEye,
                   const Rgb& contribution, FullPath& path);
 
+/// A path through refractions, y_1 .. y_{s-1} (appendChain), to the eye subpath's last vertex. Fills
+/// `path`, but for FullPath::refracted.
+Closed closeRefraction(const Walker& walker, Subpath light, Subpath eye,
+                       const BsdfEvaluation& atEye, const Rgb& contribution, FullPath& path);
+
 /// Whether the two vertices see each other.
 bool connected(const Scene& scene, const PathVertex& light, const PathVertex& eye, RayKind kind,
                RayTally& tally);

@@ -1,10 +1,29 @@
 #include "libcore/bidir/delivery.h"
 
+#include "libcore/bidir/refracted_lamps.h"
+
 namespace lacuna {
 
 namespace {
 constexpr std::size_t kReplaysKept = IterationStatistics::kReplaysKept;
+
+TechniqueGroup groupOf(const Contribution& c) {
+    const Technique made = c.closed.technique;
+    const int s = made.firstOfEye(c.path.edges), order = c.path.orderOf(s);
+    switch (made.by) {
+        case Technique::By::Merge:
+            return TechniqueGroup::ofMerge(order);
+        case Technique::By::Chain:
+            return TechniqueGroup::ofChain(order);
+        case Technique::By::Refraction:
+            return TechniqueGroup::ofRefraction(order);
+        case Technique::By::Strategy:
+            break;
+    }
+    return TechniqueGroup::of(s, made.t, order);
 }
+
+}  // namespace
 
 std::string Sample::address(int filmWidth) const {
     const auto width = std::uint64_t(filmWidth);
@@ -18,8 +37,12 @@ PathObserver Delivery::setObserver(PathObserver observer) {
     return std::exchange(observer_, std::move(observer));
 }
 
-Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts) const {
+Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts,
+                                  RayTally& tally) const {
     const Lights& lights = setup_.walker.lights();
+    if (counts.refractedLamps && !c.closed.technique.refracts()) {
+        c.path.refracted = counts.refractedLamps->ratioOf(c.path, tally);
+    }
     const double weight = misWeight(c.path, counts, c.closed.technique);
     const Rgb scaled = c.closed.contribution * float(c.scale);
     const Rgb value = lights.inFileUnits(scaled * float(weight));
@@ -40,7 +63,7 @@ void Delivery::countInvalid(const Sample& sample, TaskResult& result) const {
 void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
                           TaskResult& result) const {
     if (isBackground(c.path)) return;
-    const Weighed w = weigh(c, counts);
+    const Weighed w = weigh(c, counts, result.tally);
     // Values that are finite may add up to more than a float holds.
     const Rgb sum = pixel + w.value;
     if (!isFinite(sum)) return countInvalid(c.sample, result);
@@ -49,17 +72,15 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
         for (const auto& share : sharesOf(c.path, w.value, result)) layerFilm_->add(share, c.pixel);
     }
     if (techniqueFilm_) {
-        const Technique made = c.closed.technique;
-        const int s = made.firstOfEye(c.path.edges);
-        techniqueFilm_->add({s, made.t, c.path.orderOf(s), c.pixel, w.value, w.unweighted,
-                             made.merges, made.chains});
+        const int t = c.closed.technique.t, s = c.closed.technique.firstOfEye(c.path.edges);
+        techniqueFilm_->add({s, t, groupOf(c), c.pixel, w.value, w.unweighted});
     }
 }
 
 void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
                         TaskResult& result) const {
     if (isBackground(c.path)) return;
-    const Weighed w = weigh(c, counts);
+    const Weighed w = weigh(c, counts, result.tally);
     if (!isFinite(w.value)) return countInvalid(c.sample, result);
     result.splats.push_back({c.pixel, w.value});
     result.splatPaths.push_back(c.sample.number);
@@ -69,7 +90,7 @@ void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
         }
     }
     if (techniqueFilm_) {
-        result.techniqueSplats.push_back({c.path.edges, 1, 1, c.pixel, w.value, w.unweighted});
+        result.techniqueSplats.push_back({c.path.edges, 1, {}, c.pixel, w.value, w.unweighted});
     }
 }
 

@@ -89,7 +89,7 @@ class Delivery {
     struct Weighed {
         Rgb value, unweighted;
     };
-    Weighed weigh(const Contribution& c, const TechniqueCounts& counts) const;
+    Weighed weigh(const Contribution& c, const TechniqueCounts& counts, RayTally& tally) const;
     /// What a path that adds `value` to the picture adds to layers; where there is a film of them.
     std::span<const PathLayers::Share> sharesOf(const FullPath& path, const Rgb& value,
                                                 TaskResult& result) const {

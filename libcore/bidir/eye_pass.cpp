@@ -115,6 +115,7 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
     if (chains_ && iteration.counts.merges == Merges::Nowhere) {
         chain(paths, iteration, worker, result);
     }
+    if (iteration.counts.refractedLamps) refract(paths, iteration, worker, result);
 }
 
 /// An eye subpath's last vertex with the photons around it.
@@ -153,6 +154,23 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
                 iteration.counts, paths.value, result);
         }
         result.clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
+    }
+}
+
+/// The eye path's vertices with lamps and the sky behind smooth glass.
+void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                      TaskResult& result) const {
+    Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Refraction, paths.sample.number);
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        const Subpath eye = paths.eye.first(t);
+        const auto closed =
+            refractedLamps_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
+        if (closed) {
+            delivery_.toOwnPixel(
+                {*closed, worker.fullPath, paths.sample, paths.pixel, 1.0, nullptr},
+                iteration.counts, paths.value, result);
+        }
+        result.clock.lap([&] { return TechniqueGroup::ofRefraction(connectionOrder(eye)); });
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "libcore/bidir/light_pass.h"
 #include "libcore/bidir/photon_grid.h"
+#include "libcore/bidir/refracted_lamps.h"
 #include "libcore/bidir/specular_chains.h"
 
 namespace lacuna {
@@ -12,13 +13,14 @@ class EyePass {
     /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged; `chains`
     /// may be null.
     EyePass(const RenderSetup& setup, const LightPass& lightPass, const LightPool& pool,
-            const PhotonGrid& photons, const SpecularChains* chains, Delivery& delivery,
-            const Workers& workers)
+            const PhotonGrid& photons, const SpecularChains* chains,
+            const RefractedLamps* refractedLamps, Delivery& delivery, const Workers& workers)
         : setup_(setup),
           lightPass_(lightPass),
           pool_(pool),
           photons_(photons),
           chains_(chains),
+          refractedLamps_(refractedLamps),
           delivery_(delivery),
           workers_(workers) {}
 
@@ -43,6 +45,8 @@ class EyePass {
                TaskResult& result) const;
     void chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
+    void refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                 TaskResult& result) const;
     void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                 TaskResult& result) const;
     void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
@@ -53,6 +57,7 @@ class EyePass {
     const LightPool& pool_;
     const PhotonGrid& photons_;
     const SpecularChains* chains_;
+    const RefractedLamps* refractedLamps_;
     Delivery& delivery_;
     const Workers& workers_;
 };

@@ -15,6 +15,13 @@ std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
     return chains->empty() ? nullptr : std::move(chains);
 }
 
+std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
+    const Techniques& techniques = setup.techniques;
+    if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
+    auto lamps = std::make_unique<const RefractedLamps>(setup.walker);
+    return lamps->empty() ? nullptr : std::move(lamps);
+}
+
 }  // namespace
 
 BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techniques techniques,
@@ -24,7 +31,9 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
       method_(&method),
       workers_(threads, settings.limits.maxDepth),
       chains_(chainsOf(setup_)),
-      eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), delivery_, workers_) {}
+      refractedLamps_(refractedLampsOf(setup_)),
+      eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), refractedLamps_.get(), delivery_,
+               workers_) {}
 
 Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,
                                  IterationStatistics& statistics, const std::atomic<bool>& cancel) {
@@ -40,6 +49,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     if (setup_.techniques.connects) counts.connectThrough(density, setup_.walker);
     counts.merges = method_->merging().where;
     counts.mergeSamples = double(pooledSubpaths()) * mergeArea(mergeRadius);
+    counts.refractedLamps = refractedLamps_.get();
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;
 }

@@ -73,7 +73,8 @@ class BidirIntegrator {
     CoverageFilm* coverage_ = nullptr;
     LightPool pool_;
     PhotonGrid photons_;
-    std::unique_ptr<const SpecularChains> chains_;  // null: the row or the scene has none
+    std::unique_ptr<const SpecularChains> chains_;          // null: the row or the scene has none
+    std::unique_ptr<const RefractedLamps> refractedLamps_;  // likewise
     EyePass eyePass_;
     std::optional<double> footprint_;  // once a radius comes from it
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libcore/bidir/refracted_lamps.h"
+
 namespace lacuna {
 
 namespace {
@@ -66,7 +68,7 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
         std::vector<PathVertex>& path = worker.light[i];
         const bool pooled = numbers[i] < purpose.pooled;
         const bool kept = pooled || setup_.techniques.ownLightPath;
-        if (kept) iteration.counts.labelWalk(path);
+        if (kept) label(path, iteration, result);
         if (pooled) result.pooled.insert(result.pooled.end(), path.begin(), path.end());
         if (pooled && setup_.techniques.ownLightPath) {
             result.pooledLengths.push_back(std::uint8_t(path.size()));
@@ -75,6 +77,15 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
         if (numbers[i] < purpose.splats) {
             splat(path, kept, numbers[i], worker.rngs[i], iteration, worker, result);
         }
+    }
+}
+
+/// What weights will ask of the subpath.
+void LightPass::label(std::span<PathVertex> path, const Iteration& iteration,
+                      TaskResult& result) const {
+    iteration.counts.labelWalk(path);
+    if (iteration.counts.refractedLamps) {
+        iteration.counts.refractedLamps->look(path, result.tally);
     }
 }
 
@@ -87,7 +98,7 @@ void LightPass::splat(std::span<PathVertex> path, bool labelled, std::uint64_t n
         if (!light.back().connectable()) continue;
         const auto open = lensEdge(walker, light.back(), z0, setup_.settings.crop, result.tally);
         if (!open) continue;
-        if (!labelled) iteration.counts.labelWalk(path);  // here: most paths are never seen
+        if (!labelled) label(path, iteration, result);  // here: most paths are never seen
         labelled = true;
         const auto closed = closeSplat(walker, light, z0, *open, worker.fullPath);
         if (!closed) continue;

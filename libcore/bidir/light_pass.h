@@ -33,6 +33,7 @@ class LightPass {
 
   private:
     bool tracedByItsPixel(std::uint64_t number, const Purpose& purpose) const;
+    void label(std::span<PathVertex> path, const Iteration& iteration, TaskResult& result) const;
     void splat(std::span<PathVertex> path, bool labelled, std::uint64_t number, Rng& rng,
                const Iteration& iteration, Worker& worker, TaskResult& result) const;
 

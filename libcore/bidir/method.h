@@ -81,6 +81,8 @@ struct Techniques {
     /// With connections, and where nothing is merged: specular chains, for paths that none of all these
     /// makes.
     bool chains = true;
+    /// With hits and connections: next event through smooth glass.
+    bool refractions = true;
 };
 
 class Method {

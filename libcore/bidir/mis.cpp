@@ -60,6 +60,15 @@ double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t
     return path.exists(t) ? samplesByDensity(path, counts, t) : 0.0;
 }
 
+double refractedSamples(const FullPath& path, const TechniqueCounts& counts) {
+    if (!counts.refractedLamps || path.refracted == 0.0) return 0.0;
+    double survival = path.eyeRoulette(0, counts.rouletteDepth);
+    for (int i = 1; path.delta[std::size_t(i)]; ++i) {
+        survival *= path.eyeRoulette(i, counts.rouletteDepth);
+    }
+    return path.refracted / survival;
+}
+
 namespace {
 
 /// The balance heuristic, with n r of each strategy by `countOf`, and with merges or without any.
@@ -68,15 +77,17 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
              const CountOf& countOf) {
     const int k = path.edges;
     // Ratios are to p_t. A merge at x_i is measured by the strategy whose light part ends with x_i.
-    const int t = made.merges ? made.t - 1 : made.t;
+    const int t = made.refracts() ? k + 1 : made.merges() ? made.t - 1 : made.t;
     const int rouletteDepth = counts.rouletteDepth;
     const auto lightPdf = [&](int i) {
         return path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth);
     };
     const auto eyePdf = [&](int i) { return path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth); };
+    const double refracted = refractedSamples(path, counts);
     const double ofStrategy = countOf(t);
-    const double own =
-        made.merges ? mergedSamples(path, counts, k - t) * eyePdf(k - t) : ofStrategy;
+    const double own = made.merges()     ? mergedSamples(path, counts, k - t) * eyePdf(k - t)
+                       : made.refracts() ? refracted
+                                         : ofStrategy;
     if (own <= 0.0) return 0.0;
     double sum = ofStrategy;
 
@@ -90,6 +101,7 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
         if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
         sum += ratio * countOf(k - i + 1);
     }
+    if (refracted > 0.0 && ratio > 0.0) sum += ratio * refracted;  // beside s = 0
     // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}, or x_0 at most.
     const int last = counts.onlyDirect() ? 0 : k - 1;
     ratio = 1.0;
@@ -113,7 +125,7 @@ double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique m
 }  // namespace
 
 double misWeight(FullPath& path, const TechniqueCounts& counts, Technique made) {
-    if (made.chains) return 1.0;
+    if (made.chains()) return 1.0;
     if (!counts.connections || counts.constants) {
         return weightBy(path, counts, made, CountsByKind(path, counts));
     }

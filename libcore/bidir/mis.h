@@ -18,19 +18,23 @@
 
 namespace lacuna {
 
-/// What made a path: the strategy t; a merge of light's last vertex with that of t from the eye; or a
-/// specular chain from a light to t vertices from the eye, which no other technique makes
-/// (specular_chains.h).
-struct Technique {
-    int t;
-    bool merges = false, chains = false;
+class RefractedLamps;
 
-    Technique(int t_, bool merges_ = false) : t(t_), merges(merges_) {}
-    static Technique chain(int t_) {
-        Technique technique(t_);
-        technique.chains = true;
-        return technique;
-    }
+/// What made a path, by its t vertices from the eye.
+struct Technique {
+    enum class By : std::uint8_t {
+        Strategy,    ///< s = edges + 1 - t from the light
+        Merge,       ///< of light's last vertex with the eye's
+        Chain,       ///< specular, which no other technique makes (specular_chains.h)
+        Refraction,  ///< next event through glass (refracted_lamps.h)
+    };
+    int t;
+    By by = By::Strategy;
+
+    Technique(int t_, By by_ = By::Strategy) : t(t_), by(by_) {}
+    bool merges() const { return by == By::Merge; }
+    bool chains() const { return by == By::Chain; }
+    bool refracts() const { return by == By::Refraction; }
     /// s: the first vertex of the eye's part (merges: the one that both walks have).
     int firstOfEye(int edges) const { return edges + 1 - t; }
     bool operator==(const Technique&) const = default;
@@ -50,6 +54,7 @@ struct TechniqueCounts {
     /// Of a merge where there is one: n_m pi R^2, light subpaths times the area around an eye vertex
     /// in which photons count. Times the densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;
+    const RefractedLamps* refractedLamps = nullptr;  ///< null: no next event through glass
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
     /// Whether there are none but s = 0 and s = 1.
@@ -88,6 +93,9 @@ double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t
 inline double mergedSamples(const FullPath& path, const TechniqueCounts& counts, int i) {
     return path.mergesAt(i, counts.merges) ? counts.mergeSamples : 0.0;
 }
+
+/// Of next event through glass, in samples of s = 0; zero where it does not exist.
+double refractedSamples(const FullPath& path, const TechniqueCounts& counts);
 
 /// Weight of the technique that made the path (1 <= t <= edges + 1; merges: 2 <= t <= edges), in
 /// [0, 1]. O(k). Fills path.beta where the density asks for it.

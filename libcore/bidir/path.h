@@ -55,6 +55,10 @@ struct PathVertex {
     std::uint32_t region =
         kNone;  ///< of the guide that walks follow here; kNone: none (walk_guide.h)
     std::uint32_t object = kNone;  ///< Surface only: the scene's
+    /// Light subpaths, at the first vertex behind nothing but smooth glass: the density of next event
+    /// through that glass, per what an eye walk's direction has from here; zero where it would not find
+    /// this way (refracted_lamps.h).
+    float throughGlass = 0;
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
     std::uint8_t index = 0;                     ///< 0 on the light or the lens
@@ -65,7 +69,7 @@ struct PathVertex {
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
-static_assert(sizeof(PathVertex) == 240);  // pools hold millions of them
+static_assert(sizeof(PathVertex) == 248);  // pools hold millions of them
 
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
 /// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either

@@ -4,31 +4,9 @@
 #include <cmath>
 
 #include "libcore/bidir/absorption.h"
+#include "libcore/bidir/chain_vertices.h"
 
 namespace lacuna {
-
-namespace {
-
-/// y_1 .. y_{s-1}, behind y_0.
-void appendVertices(const Chain& chain, std::vector<PathVertex>& light) {
-    for (std::size_t i = chain.size(); i-- > 0;) {
-        const ChainVertex& from = chain[i];
-        PathVertex& v = light.emplace_back();
-        v.index = std::uint8_t(light.size() - 1);
-        v.position = from.point.position;
-        v.ng = from.point.ng;
-        v.toPrevious = from.toLight;
-        v.bsdf = from.bsdf;
-        v.event = from.event.event;
-        v.scatter = from.scatter;
-        v.light = from.point.light;
-        v.lightUv = from.point.barycentric;
-        v.material = from.point.material;
-        v.object = from.point.object;
-    }
-}
-
-}  // namespace
 
 SpecularChains::SpecularChains(const Walker& walker) : walker_(walker), search_(walker.scene()) {
     const Lights& lights = walker.lights();
@@ -90,7 +68,7 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
 
     const Chain& chain = found->chain;
     light.assign(1, y0);
-    appendVertices(chain, light);
+    appendChain(walker_, chain, light);
     const Vec3 toChain(chain.firstDirection());
     const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
     const float profile = walker_.lights().profile(y0.light, y0.ng, -Vec3(chain.last().direction));

@@ -70,16 +70,13 @@ std::size_t TechniqueFilm::indexOf(int s, int t) const {
 }
 
 void TechniqueFilm::add(const TechniqueSample& sample) {
-    Technique& technique = (sample.merged ? merges_ : techniques_)[indexOf(sample.s, sample.t)];
+    const bool merged = sample.group.kind == TechniqueKind::Merges;
+    Technique& technique = (merged ? merges_ : techniques_)[indexOf(sample.s, sample.t)];
     technique.weighted[sample.pixel] += sample.weighted;
     technique.unweighted[sample.pixel] += sample.unweighted;
     const float value = lacuna::mean(sample.weighted);
     technique.moments.now[sample.pixel] += value;
-    const TechniqueGroup group = sample.merged ? TechniqueGroup::ofMerge(sample.order)
-                                 : sample.chained
-                                     ? TechniqueGroup::ofChain(sample.order)
-                                     : TechniqueGroup::of(sample.s, sample.t, sample.order);
-    groups_[group.index()].now[sample.pixel] += value;
+    groups_[sample.group.index()].now[sample.pixel] += value;
 }
 
 template <class Visit>

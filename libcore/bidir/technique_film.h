@@ -12,11 +12,10 @@ namespace lacuna {
 
 /// What a technique adds to a pixel.
 struct TechniqueSample {
-    int s, t, order;  ///< Connection::order of the eye's end; t = 1 has none
+    int s, t;  ///< merges: at x_s, the last of t vertices from the eye
+    TechniqueGroup group;
     std::uint32_t pixel;
     Rgb weighted, unweighted;
-    bool merged = false;   ///< at x_s, the last of t vertices from the eye
-    bool chained = false;  ///< by a specular chain, which ends at x_s
 };
 
 /// Summed over a block's iterations: --techniques.

@@ -14,13 +14,14 @@ enum class TechniqueKind : std::uint8_t {
     Connections,  ///< s >= 2, t >= 2
     Merges,       ///< with photons
     Chains,       ///< of mirrors and smooth glass, to lights that no ray can hit
+    Refractions,  ///< next event through smooth glass
 };
 
 /// A kind and, but for splats, the order of the eye subpath's last vertex before the connection or
 /// the light that was hit, of the merged one, or of the one at a chain's end (Connection::order); the last of kOrders stands for all that follow.
 struct TechniqueGroup {
     static constexpr int kOrders = 3;
-    static constexpr std::size_t kCount = 1 + 5 * std::size_t(kOrders);
+    static constexpr std::size_t kCount = 1 + 6 * std::size_t(kOrders);
 
     TechniqueKind kind = TechniqueKind::Splats;
     int order = 1;
@@ -38,6 +39,9 @@ struct TechniqueGroup {
     static TechniqueGroup ofChain(int order) {
         return {TechniqueKind::Chains, std::min(order, kOrders)};
     }
+    static TechniqueGroup ofRefraction(int order) {
+        return {TechniqueKind::Refractions, std::min(order, kOrders)};
+    }
     /// Splats first.
     static TechniqueGroup at(std::size_t index) {
         if (index == 0) return {};
@@ -49,8 +53,8 @@ struct TechniqueGroup {
         return (std::size_t(kind) - 1) * kOrders + std::size_t(order);
     }
     const char* kindName() const {
-        constexpr const char* kNames[] = {"splats",      "hits",   "direct",
-                                          "connections", "merges", "chains"};
+        constexpr const char* kNames[] = {"splats", "hits",   "direct",     "connections",
+                                          "merges", "chains", "refractions"};
         return kNames[std::size_t(kind)];
     }
     /// Of its layers: "splats", "direct2".

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "libcore/bidir/absorption.h"
+#include "libcore/bidir/refracted_lamps.h"
 
 namespace lacuna {
 
@@ -42,9 +43,13 @@ class Products {
 
     double weight() const {
         // A chain: it has no density, and the weight one if nothing else makes the path.
-        const double own = made_.chains ? 0.0 : made_.merges ? logMerge(split_) : logTerm(made_.t);
+        const double refracted = logRefraction();
+        const double own = made_.chains()     ? 0.0
+                           : made_.merges()   ? logMerge(split_)
+                           : made_.refracts() ? refracted
+                                              : logTerm(made_.t);
         if (own == kNever) return 0.0;
-        double sum = made_.chains ? 1.0 : 0.0;
+        double sum = (made_.chains() ? 1.0 : 0.0) + std::exp(refracted - own);
         for (int i = 1; i <= k_ + 1; ++i) sum += std::exp(logTerm(i) - own);
         for (int i = 1; i < k_; ++i) sum += std::exp(logMerge(i) - own);
         return 1.0 / sum;
@@ -55,7 +60,7 @@ class Products {
     /// x_{i+1} as an edge from x_i ends there: a merged vertex has two places, that of the light's
     /// walk (the photon) and that of the eye's, where all other things are asked.
     const PathVertex& endOfEdge(int i) const {
-        return made_.merges && i + 1 == split_ ? *path_.photon : x(i + 1);
+        return made_.merges() && i + 1 == split_ ? *path_.photon : x(i + 1);
     }
     /// Towards the lens, from x_i to x_{i+1}.
     Vec3 towardsLens(int i) const { return direction_[std::size_t(i)]; }
@@ -65,7 +70,7 @@ class Products {
     void setEdge(int i) {
         const PathVertex &a = x(i), &b = endOfEdge(i);
         const auto e = std::size_t(i);
-        if (i + 1 < split_ + int(made_.merges)) {
+        if (i + 1 < split_ + int(made_.merges())) {
             direction_[e] = -b.toPrevious;  // light walk: b's previous is a
         } else if (i >= split_) {
             direction_[e] = a.toPrevious;  // eye walk: a's previous is b
@@ -101,7 +106,8 @@ class Products {
     /// two ends, or the merged vertex, scatter smoothly; every other one did what its walk says.
     void setScatter(int i) {
         const auto v = std::size_t(i);
-        const bool end = i == split_ || (i == split_ - 1 && !made_.merges && !made_.chains);
+        const bool connects = made_.by == Technique::By::Strategy;
+        const bool end = i == split_ || (connects && i == split_ - 1);
         event_[v] = end ? ScatterEvent::Smooth : x(i).event;
         BsdfEvaluation e = x(i).bsdf.evaluate(towardsLens(i), -towardsLens(i - 1), event_[v]);
         if (const WalkGuide* guide = walker_.guide(); guide && x(i).connectable()) {
@@ -207,6 +213,16 @@ class Products {
         for (int i = first; i < k_; ++i) {
             sum += logOf(eyePdfA_[std::size_t(i)]) + logOf(eyeRoulette(i));
         }
+        return sum;
+    }
+
+    /// log p of next event through glass: an eye walk's, but that the chain is a function of its ends.
+    double logRefraction() const {
+        if (!counts_.refractedLamps) return kNever;
+        RayTally ignored;
+        double sum =
+            logOf(counts_.refractedLamps->ratioOf(path_, ignored, true)) + logDensities(0, 0);
+        for (int i = 0; i == 0 || !smooth(i); ++i) sum -= logOf(eyeRoulette(i));
         return sum;
     }
 

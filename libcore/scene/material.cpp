@@ -95,10 +95,13 @@ bool mayTransmit(const Material& m) {
     return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
 }
 
-bool mayBeSpecular(const Material& m) {
-    return (mayBeMirror(m) && !m.without.has(LobeKind::Mirror)) ||
-           (mayRefractSmoothly(m) && !m.without.has(LobeKind::SmoothRefraction)) ||
+bool mayBeSmoothGlass(const Material& m) {
+    return (mayRefractSmoothly(m) && !m.without.has(LobeKind::SmoothRefraction)) ||
            (mayPassSmoothly(m) && !m.without.has(LobeKind::SmoothThinTransmission));
+}
+
+bool mayBeSpecular(const Material& m) {
+    return (mayBeMirror(m) && !m.without.has(LobeKind::Mirror)) || mayBeSmoothGlass(m);
 }
 
 bool mayBePane(const Material& m) {

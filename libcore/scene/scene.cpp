@@ -84,17 +84,18 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
 
 Scene::~Scene() = default;
 
+float Scene::shareStopped(const Hit& hit, const Vec3& direction) const {
+    const Material& material = surfaces_.materialOf(baked_.objects[hit.object]);
+    if (!material.pane && material.alphaMode == Material::Alpha::Opaque) return 1.0f;
+    if (!material.pane) return surfaces_.opacity(hit);
+    SurfacePoint point;
+    surfaceAt(hit, point);
+    return 1.0f - bsdfAt(point).passing(direction);
+}
+
 bool Scene::stops(const Hit& hit, Vec3 origin, Vec3 direction) const {
     const SceneObject& object = baked_.objects[hit.object];
-    float share = 0.0f;
-    if (surfaces_.materialOf(object).pane) {
-        SurfacePoint point;
-        surfaceAt(hit, point);
-        share =
-            1.0f - bsdfAt(point).passing(object.instanced ? object.vector(direction) : direction);
-    } else {
-        share = surfaces_.opacity(hit);
-    }
+    const float share = shareStopped(hit, object.instanced ? object.vector(direction) : direction);
     if (share <= 0.0f || share >= 1.0f) return share > 0.0f;
     // A share of the rays, which they draw themselves: no state, and the same ray again meets the
     // same surfaces. Every strategy of a path has the same chance at each of its edges and vertices

@@ -89,6 +89,9 @@ class Scene {
 
     /// Whether some textures of bsdfAt are larger than the processor's nearer caches.
     bool hasFarTextures() const { return hasFarTextures_; }
+    /// The share of rays along `direction`, of any length, that a surface stops: one, but where alpha
+    /// or a pane lets some of them pass.
+    float shareStopped(const Hit& hit, const Vec3& direction) const;
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const { return shading_.bsdfAt(point); }
     const AlbedoTables& albedoTables() const { return shading_.albedoTables(); }

@@ -65,7 +65,7 @@ MovingRay MovingRay::from(const Vec3d& origin, const Vec3d& direction) {
 }
 
 std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event) const {
-    const auto& [shape, bsdf, isClearcoat] = layer;
+    const auto& [shape, bsdf, isClearcoat, stopped] = layer;
     if (!bsdf.has(event.event)) return std::nullopt;
     const Vec3d& d = last_.direction;
     const double side = dot(d, shape.ng) < 0.0 ? 1.0 : -1.0;
@@ -110,16 +110,17 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
     step.toLight = Vec3(step.out.direction);
     const BsdfEvaluation e = bsdf.evaluateDelta(step.toEye, step.toLight, event.event);
     // f with its cosine over what a walk's generalised density has but for its pmf (bsdf.h).
-    double density = std::fabs(dot(step.out.direction, n));
+    step.measure = std::fabs(dot(step.out.direction, n));
     if (transmits) {
         const double index = double(bsdf.indexOn(dot(step.out.direction, shape.ng) > 0.0));
-        density = straight ? std::fabs(dot(d, shape.ng)) : density * index * index;
+        step.measure = straight ? std::fabs(dot(d, shape.ng)) : step.measure * index * index;
     }
     step.scatter = e.f;
     if (!isClearcoat) {
         step.scatter *= vertices_[size_].bsdf.underOwnClearcoat(step.toEye, step.toLight);
     }
-    step.through = step.scatter * float(std::fabs(dot(step.out.direction, shape.ng)) / density);
+    step.through =
+        step.scatter * stopped * float(std::fabs(dot(step.out.direction, shape.ng)) / step.measure);
     if (isBlack(step.through)) return std::nullopt;
     return step;
 }
@@ -143,16 +144,20 @@ std::optional<Chain::Layer> Chain::layerAt(const Scene& scene, const Hit& hit,
                       : clearcoat ? v.bsdf.clearcoatAlone()
                                   : v.bsdf.withoutClearcoat();
     if (!isSpecular(bsdf)) return std::nullopt;
-    return Layer{scene.shapeAt(hit, v.point, clearcoat), bsdf, clearcoat};
+    return Layer{scene.shapeAt(hit, v.point, clearcoat), bsdf, clearcoat,
+                 scene.shareStopped(hit, Vec3(last_.direction))};
 }
 
-void Chain::take(const Step& step) {
+void Chain::take(const Hit& hit, const Layer& layer, const Step& step) {
     ChainVertex& v = vertices_[size_++];
+    v.hit = hit;
+    v.corners = layer.shape.corners;
     v.event = step.event;
     v.toEye = step.toEye;
     v.toLight = step.toLight;
     v.through = step.through;
     v.scatter = step.scatter;
+    v.measure = step.measure;
     v.point.position = Vec3(step.out.origin);
     last_ = step.out;
 }
@@ -162,13 +167,17 @@ bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event) {
     const std::optional<Layer> layer = layerAt(scene, hit, event.onClearcoat);
     if (!layer) return false;
     const std::optional<Step> step = stepAt(*layer, event);
-    if (step) take(*step);
+    if (step) take(hit, *layer, *step);
     return step.has_value();
 }
 
 bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
     if (!arriveAt(scene, hit)) return false;
-    std::array<std::optional<Step>, 8> steps;
+    struct Way {
+        Layer layer;
+        Step step;
+    };
+    std::array<std::optional<Way>, 8> ways;
     double sum = 0.0;
     std::size_t count = 0;
     for (const bool clearcoat : {false, true}) {
@@ -181,19 +190,38 @@ bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
             const bool twice = tilted && (event == ScatterEvent::DeltaReflection || bsdf.bends());
             for (const bool aboutNg : {false, true}) {
                 if (aboutNg && !twice) continue;
-                steps[count] = stepAt(*layer, {event, aboutNg, clearcoat});
-                if (steps[count]) sum += double(mean(steps[count++]->through));
+                const auto step = stepAt(*layer, {event, aboutNg, clearcoat});
+                if (!step) continue;
+                sum += double(mean(step->through));
+                ways[count++] = Way{*layer, *step};
             }
         }
     }
     double left = u * sum;
     for (std::size_t i = 0; i < count; ++i) {
-        left -= double(mean(steps[i]->through));
+        left -= double(mean(ways[i]->step.through));
         if (left >= 0.0 && i + 1 < count) continue;
-        take(*steps[i]);
+        take(hit, ways[i]->layer, ways[i]->step);
         return true;
     }
     return false;
+}
+
+std::optional<Hit> Chain::meetAgain(const ChainVertex& vertex) const {
+    // [Moeller97]
+    const auto& [a, b, c] = vertex.corners;
+    const Vec3d u = b - a, v = c - a, p = cross(last_.direction, v);
+    const double determinant = dot(u, p);
+    if (determinant == 0.0) return std::nullopt;
+    const Vec3d from = last_.origin - a, q = cross(from, u);
+    const double alongU = dot(from, p) / determinant;
+    const double alongV = dot(last_.direction, q) / determinant;
+    const double distance = dot(v, q) / determinant;
+    if (!(alongU >= 0.0 && alongV >= 0.0 && alongU + alongV <= 1.0 && distance > 0.0)) {
+        return std::nullopt;
+    }
+    return Hit{vertex.hit.object, vertex.hit.primitive, float(alongU), float(alongV),
+               float(distance)};
 }
 
 bool Chain::sameEventsAs(const Chain& other) const {

@@ -34,13 +34,17 @@ struct SpecularEvent {
 
 struct ChainVertex {
     SurfacePoint point;
+    Hit hit;
+    std::array<Vec3d, 3> corners;  ///< of its triangle
     Bsdf bsdf;
     SpecularEvent event;
     Vec3 toEye, toLight;  ///< unit
     /// Share of the radiance from toLight that leaves along toEye, with the square of the index that
-    /// refraction changes it by.
+    /// refraction changes it by, and with the share of rays that meet the surface at all.
     Rgb through;
     Rgb scatter;  ///< f of the event (bsdf.h)
+    /// What the event's generalised densities have beside their probabilities (bsdf.h).
+    double measure;
 };
 
 /// From the eye's side. A value type: searches keep several.
@@ -64,6 +68,8 @@ class Chain {
     /// Goes on at `hit` of last() by `event`. False, with the chain as it was, where the surface has no
     /// such event for this ray.
     bool extend(const Scene& scene, const Hit& hit, SpecularEvent event);
+    /// Where last() meets the triangle of another chain's vertex, if it does.
+    std::optional<Hit> meetAgain(const ChainVertex& vertex) const;
     /// Likewise by one of all events that there are, each with the probability that is its share of the
     /// mean of `through`. `u` in [0, 1).
     bool extend(const Scene& scene, const Hit& hit, double u);
@@ -77,17 +83,19 @@ class Chain {
         MovingRay out;
         Vec3 toEye, toLight;
         Rgb through, scatter;
+        double measure;
     };
     /// What mirrors and refracts at a hit: all that is there, or one of two layers.
     struct Layer {
         SurfaceShape shape;
         Bsdf bsdf;
-        bool isClearcoat = false;
+        bool isClearcoat;
+        float stopped;  ///< share of rays that meet the surface
     };
     bool arriveAt(const Scene& scene, const Hit& hit);
     std::optional<Layer> layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const;
     std::optional<Step> stepAt(const Layer& layer, SpecularEvent event) const;
-    void take(const Step& step);
+    void take(const Hit& hit, const Layer& layer, const Step& step);
 
     MovingRay first_, last_;
     std::array<ChainVertex, kMost> vertices_;

@@ -58,10 +58,14 @@ std::optional<std::array<double, 2>> stepOf(const Miss& miss) {
     return step;
 }
 
-/// Whether two searches for the same target, of the same events, found the same chain. Two solutions
-/// that lie close together, at a fold of a caustic, have determinants of opposite signs.
+/// Two solutions that lie close together, at a fold of a caustic, have determinants of opposite signs.
+bool onSameSideOfFold(const Jacobian& a, const Jacobian& b) {
+    return (determinantOf(a) > 0.0) == (determinantOf(b) > 0.0);
+}
+
+/// Whether two searches for the same target, of the same events, found the same chain.
 bool same(const FoundChain& a, const FoundChain& b) {
-    if ((determinantOf(a.missBy) > 0.0) != (determinantOf(b.missBy) > 0.0)) return false;
+    if (!onSameSideOfFold(a.missBy, b.missBy)) return false;
     const Vec3d apart = b.chain.firstDirection() - a.chain.firstDirection();
     const auto& axes = a.chain.first().directionBy;
     const double u = dot(apart, axes[0]), v = dot(apart, axes[1]);
@@ -118,13 +122,16 @@ std::optional<Chain> ChainSearch::seed(const ChainQuery& query, Rng& rng, RayTal
     return chain;
 }
 
-/// The chain of the same events along another first ray.
+/// The chain of the same events along another first ray. It stays on the same triangles where it can:
+/// mostly so, without tracing rays. Whether it sees its way is asked of what is found.
 std::optional<Chain> ChainSearch::retrace(const ChainStart& start, const Vec3d& direction,
                                           const Chain& events, RayTally& tally) const {
     Chain chain(MovingRay::from(Vec3d(start.position), direction));
     while (chain.size() < events.size()) {
-        const std::optional<Hit> hit = next(start, chain, tally);
-        if (!hit || !chain.extend(scene_, *hit, events[chain.size()].event)) return std::nullopt;
+        const ChainVertex& before = events[chain.size()];
+        std::optional<Hit> hit = chain.meetAgain(before);
+        if (!hit) hit = next(start, chain, tally);
+        if (!hit || !chain.extend(scene_, *hit, before.event)) return std::nullopt;
     }
     return chain;
 }
@@ -163,6 +170,39 @@ std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query, Rng& rng,
                                             RayTally& tally) const {
     const std::optional<Chain> from = seed(query, rng, tally);
     return from ? solve(query, *from, tally) : std::nullopt;
+}
+
+bool ChainSearch::mayBeThroughGlass(std::uint32_t index) const {
+    const Material& material = scene_.description().materials[index];
+    return !material.pane && material.alphaMode == Material::Alpha::Opaque;
+}
+
+std::optional<FoundChain> ChainSearch::throughGlass(const ChainQuery& query,
+                                                    RayTally& tally) const {
+    const ChainStart& start = query.start;
+    const ChainTarget& target = query.target;
+    const Vec3d way = Vec3d(target.position) - (target.infinite ? Vec3d{} : Vec3d(start.position));
+    if (!(lengthSquared(way) > 0.0)) return std::nullopt;
+    Chain chain(MovingRay::from(Vec3d(start.position), normalize(way)));
+    while (chain.size() < query.most) {
+        const std::optional<Hit> hit = next(start, chain, tally);
+        if (!hit) break;
+        if (!target.infinite) {
+            const Vec3d left = Vec3d(target.position) - chain.last().origin;
+            if (double(hit->distance) >= length(left)) break;
+        }
+        if (!chain.extend(scene_, *hit, {.event = ScatterEvent::DeltaTransmission})) break;
+        if (!mayBeThroughGlass(chain[chain.size() - 1].point.material)) return std::nullopt;
+    }
+    if (chain.size() == 0) return std::nullopt;
+    return solve(query, chain, tally);
+}
+
+bool ChainSearch::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
+                          double angle, RayTally& tally) const {
+    if (!(length(direction - found.chain.firstDirection()) < angle)) return false;
+    const std::optional<Chain> path = retrace(query.start, direction, found.chain, tally);
+    return !path || onSameSideOfFold(found.missBy, missOf(path->last(), query.target).acrossBy);
 }
 
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,

@@ -56,6 +56,18 @@ class ChainSearch {
     /// Whether the chain sees its start and the light is for the caller to ask.
     std::optional<FoundChain> draw(const ChainQuery& query, Rng& rng, RayTally& tally) const;
 
+    /// The chain of refractions alone that the straight ray to the target leads to: by what it runs
+    /// through before the target, then by Newton's method. A function of the query [Hanika15].
+    std::optional<FoundChain> throughGlass(const ChainQuery& query, RayTally& tally) const;
+
+    /// Whether chains through glass run through this material: it stops every ray, which alpha and panes
+    /// do not.
+    bool mayBeThroughGlass(std::uint32_t material) const;
+    /// Whether a path of the same events between the same ends, which begins along a unit direction that
+    /// is known but for an angle, is this chain.
+    bool isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
+                 double angle, RayTally& tally) const;
+
     /// An estimate of one over the probability that draw() finds `found`, without bias. It has no
     /// bound; the mean number of searches is at most that number.
     double reciprocalProbability(const FoundChain& found, const ChainQuery& query, Rng& rng,

@@ -12,7 +12,7 @@ namespace lacuna {
 
 class SpecularTriangles {
   public:
-    /// Of all instances. Panes are left out: rays pass them as if they were not there.
+    /// Of all instances.
     explicit SpecularTriangles(const Scene& scene);
 
     bool empty() const { return byArea_.empty(); }

@@ -81,6 +81,8 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
         to.techniques->splats = false;
     } else if (name == "chains") {
         to.techniques->chains = false;
+    } else if (name == "refractions") {
+        to.techniques->refractions = false;
     }
     for (const LobeRow& row : lobeTable()) {
         if (name != row.name) continue;

@@ -171,6 +171,13 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Ef
                   ? "lights without a size that are seen over up to four mirrors or surfaces of "
                     "smooth glass, where no connection can be; over more they are missing"
                   : "no mirror and no smooth glass");
+    const bool glass = simulated({"smooth_refraction", "smooth_thin_transmission"});
+    table.add("refractions", t.hits && t.connects && t.refractions && hittable && glass,
+              !t.connects ? method.name + " connects no vertices"
+              : !t.hits   ? method.name + " has no technique s = 0"
+              : !hittable ? "no lamp with a size and no sky"
+              : glass     ? "next event through up to four surfaces of smooth glass"
+                          : "no smooth glass");
     for (Effect& e : table.rows) e.ofScene = false;
     return table.rows;
 }

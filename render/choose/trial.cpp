@@ -34,7 +34,7 @@ class LeastSeconds {
 
 /// Whether merges alone can make the path.
 bool isOnlyMerged(const PathEvent& event) {
-    if (!event.technique.merges || SpecularChains::reach(event.path)) return false;
+    if (!event.technique.merges() || SpecularChains::reach(event.path)) return false;
     for (int t = 1; t <= event.path.edges + 1; ++t) {
         if (effectiveCount(event.path, event.counts, t) > 0.0) return false;
     }
@@ -98,6 +98,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     techniques.connects &= stage.techniques.connects;
     techniques.splats &= stage.techniques.splats;
     techniques.chains &= stage.techniques.chains;
+    techniques.refractions &= stage.techniques.refractions;
     BidirIntegrator integrator(*stage.scene, camera, techniques, *method, render, pool);
 
     IterationStatistics warmUp, statistics;

@@ -212,7 +212,7 @@ TEST(Merging, pathsOfTwoEdgesAreMergedAtTheirOnlyVertex) {
         std::atomic<bool> same = true;
         const Walker* walker = nullptr;
         shot.observer = [&](const PathEvent& event) {
-            if (!event.technique.merges) return;
+            if (!event.technique.merges()) return;
             ++merged;
             const double again =
                 misWeightByProducts(*walker, event.path, event.counts, event.technique);

@@ -267,9 +267,23 @@ NamedScene lampsWithAlpha() {
     return s;
 }
 
+NamedScene behindGlass() {
+    SceneBuilder b;
+    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, b.add(plastic({0.2f, 0.4f, 0.3f}, 0))));
+    b.add(box({-1.6f, 1, -0.6f}, {1.6f, 1.1f, 0.6f}, b.add(colouredGlass({0.8f, 0.5f, 0.4f}))));
+    b.add(sphere({0, 0.5f, 0.3f}, 0.3f, 16, b.add(glass(1.2f)), true));
+    b.add(quad({-0.5f, 1.8f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter({2, 3, 4}))));
+    b.environment(sunnySky());
+    b.add(lookAt({0.3, 1.2, 3}, {0, 0.4, 0}, 45));
+    return {"behind glass", std::move(b), true};
+}
+
 std::vector<NamedScene> weightScenes() {
-    return {diffuseBox(),        glossyBox(),   deltaBox(),       underTheSky(),   punctualLights(),
-            instancedEmitters(), bentNormals(), colouredBodies(), lampsWithAlpha()};
+    return {diffuseBox(),     glossyBox(),         deltaBox(),    underTheSky(),
+            punctualLights(), instancedEmitters(), bentNormals(), colouredBodies(),
+            lampsWithAlpha(), behindGlass()};
 }
 
 }  // namespace lacuna::test

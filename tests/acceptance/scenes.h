@@ -63,6 +63,8 @@ NamedScene bentNormals();
 NamedScene lampsWithAlpha();
 /// Rough and smooth bodies of coloured glass, one within another, a lamp and the camera outside.
 NamedScene colouredBodies();
+/// A lamp and a sky behind a slab of coloured glass, and behind a ball.
+NamedScene behindGlass();
 /// All of these.
 std::vector<NamedScene> weightScenes();
 

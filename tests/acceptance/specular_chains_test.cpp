@@ -206,6 +206,29 @@ TEST_P(Caustics, ofLacquerAreTheSameByChainsAndBySplats) {
                Judge::BlocksAndMean);
 }
 
+/// A mirror that alpha leaves a part of, and a coloured window that reflects a little: rays meet either
+/// by chance.
+TEST_P(Caustics, ofHalfAMirrorAndAWindowAreTheSameByChainsAndBySplats) {
+    SceneBuilder b;
+    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    lacuna::Material half = mirror({0.8f, 0.6f, 0.3f});
+    half.alphaMode = lacuna::Material::Alpha::Blend;
+    half.baseAlpha = 0.5f;
+    b.add(quad({-2, 0, -1}, {4, 0, 0}, {0, 3, 0}, b.add(half)));
+    b.add(quad({-1.5f, 0, -2}, {0, 0, 4}, {0, 3, 0}, b.add(pane({0.9f, 0.4f, 0.6f}))));
+    addLight(b, GetParam());
+    b.add(lookAt({0.3, 1.6, 3}, {0, 0.2, 0}, 45));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 4;
+    shot.iterations = 2000;
+    const Picture splats = render(*scene, rowNamed("bpt"), shot);
+    shot.seed = 2;
+    expectSame(render(*scene, rowNamed("pt"), shot), splats,
+               nameOf(GetParam()) + ", alpha and a pane", Judge::BlocksAndMean);
+}
+
 /// A chain's path has no other technique in any row: its weight by products is one.
 TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
     const auto scene = specularStage(LightChoice::Point).build();
@@ -214,7 +237,7 @@ TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
     std::atomic<int> chains{0};
     std::optional<Render> run;
     shot.observer = [&](const PathEvent& event) {
-        if (!event.technique.chains) return;
+        if (!event.technique.chains()) return;
         ++chains;
         EXPECT_EQ(event.weight, 1.0);
         EXPECT_EQ(misWeightByProducts(run->integrator().walker(), event.path, event.counts,

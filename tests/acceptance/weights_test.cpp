@@ -79,7 +79,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
     const MethodRow row = rowNamed(GetParam().row);
     Shot shot = weightShot();
     shot.guide = shot.walkGuide = GetParam().guide;
-    int judged = 0;
+    int judged = 0, refracted = 0;
     double worstSum = 0, worstProduct = 0, ownDifference = 0;
     std::string worstPath;
     const Walker* walker = nullptr;
@@ -99,10 +99,19 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
         }
         for (int i = 1; i < path.edges; ++i) {
             if (!mergeable(path, event.counts, i)) continue;
-            const Technique merge(path.edges + 1 - i, true);
+            const Technique merge(path.edges + 1 - i, Technique::By::Merge);
             const double w = misWeight(path, event.counts, merge);
             sum += w;
             if (event.technique == merge) {
+                ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
+            }
+        }
+        if (refractedSamples(path, event.counts) > 0) {
+            const Technique refraction(event.technique.t, Technique::By::Refraction);
+            const double w = misWeight(path, event.counts, refraction);
+            sum += w;
+            if (event.technique == refraction) {
+                ++refracted;
                 ownDifference = std::max(ownDifference, std::fabs(w - event.weight));
             }
         }
@@ -124,7 +133,7 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
             worstPath =
                 "shortest edge " + std::to_string(shortest) + ", " + std::to_string(path.edges) +
                 " edges, t = " + std::to_string(event.technique.t) +
-                (event.technique.merges ? " merged" : "") + ", weight " +
+                (event.technique.merges() ? " merged" : "") + ", weight " +
                 std::to_string(event.weight) + ", sample " + std::to_string(event.sample.number) +
                 " of iteration " + std::to_string(event.sample.iteration);
         }
@@ -135,6 +144,10 @@ TEST_P(Weights, sumToOneAndEqualFullProducts) {
     for (std::uint32_t i = 0; judged < kPaths && i < 2000; ++i) render.iterate(i);
 
     EXPECT_EQ(judged, kPaths);
+    const Techniques& t = row.techniques;
+    if (named.name == behindGlass().name && t.hits && t.connects) {
+        EXPECT_GT(refracted, 50);
+    }
     EXPECT_EQ(ownDifference, 0.0);
     EXPECT_LE(worstSum, 1e-9);
     EXPECT_LE(worstProduct, 1e-6) << worstPath;

@@ -219,10 +219,10 @@ TEST(Film, holdsThePowersThatAFloatHolds) {
 TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     TechniqueFilm film(2, 1, 3);
     film.countIteration();
-    film.add({1, 2, 1, 0, Rgb(3.0f), Rgb(6.0f)});
-    film.add({0, 2, 1, 0, Rgb(1.0f), Rgb(1.0f)});  // a hit: no connection
-    film.add({2, 1, 1, 0, Rgb(2.0f), Rgb(2.0f)});
-    film.add({2, 1, 1, 1, Rgb(2.0f), Rgb(2.0f)});
+    film.add({1, 2, TechniqueGroup::of(1, 2, 1), 0, Rgb(3.0f), Rgb(6.0f)});
+    film.add({0, 2, TechniqueGroup::of(0, 2, 1), 0, Rgb(1.0f), Rgb(1.0f)});  // a hit: no connection
+    film.add({2, 1, TechniqueGroup::of(2, 1, 1), 0, Rgb(2.0f), Rgb(2.0f)});
+    film.add({2, 1, TechniqueGroup::of(2, 1, 1), 1, Rgb(2.0f), Rgb(2.0f)});
     film.countIteration();
     EXPECT_EQ(film.weighted(1, 2).at(0, 0), Rgb(1.5f));
     EXPECT_EQ(film.unweighted(1, 2).at(0, 0), Rgb(3.0f));
@@ -245,9 +245,9 @@ Layers layersOf(const std::vector<std::vector<float>>& blocks, bool blocksAreSam
     const ThreadPool threads(1);
     for (const std::vector<float>& block : blocks) {
         for (const float value : block) {
-            technique.add({2, 3, 1, 0, Rgb(0.5f * value), Rgb(value)});
-            technique.add({2, 3, 1, 0, Rgb(0.5f * value), Rgb(value)});
-            technique.add({3, 2, 1, 0, Rgb(1.0f), Rgb(1.0f)});
+            technique.add({2, 3, TechniqueGroup::of(2, 3, 1), 0, Rgb(0.5f * value), Rgb(value)});
+            technique.add({2, 3, TechniqueGroup::of(2, 3, 1), 0, Rgb(0.5f * value), Rgb(value)});
+            technique.add({3, 2, TechniqueGroup::of(3, 2, 1), 0, Rgb(1.0f), Rgb(1.0f)});
             technique.countIteration();
             film.add(std::vector<Rgb>{Rgb(value)}, threads);
         }

@@ -235,7 +235,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
             }
             for (int i = 1; i < k; ++i) {
                 if (merged[i] <= 0.0) continue;
-                const double w = misWeight(path, counts, {k + 1 - i, true});
+                const double w = misWeight(path, counts, {k + 1 - i, Technique::By::Merge});
                 EXPECT_NEAR(w, merged[i] / sum, 1e-9) << row.name << " k " << k << " x_" << i;
                 weights += w;
             }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "libcore/specular/chain_search.h"
+#include "libcore/specular/glass_boxes.h"
 #include "tests/material/statistics.h"
 #include "tests/scene/scene_builder.h"
 
@@ -210,6 +211,88 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
         return;
     }
     FAIL() << "nothing found in 100 searches";
+}
+
+/// Through both faces of a slab, as Snell's law has it: where the ray comes out, and how it spreads.
+TEST(ChainSearch, goesThroughASlabByItself) {
+    SceneBuilder b;
+    b.add(box({-50, 1, -50}, {50, 1.5f, 50}, b.add(glass(1.5f))));
+    const auto scene = b.build();
+    const ChainSearch search(*scene);
+    const ChainStart start = floorOf(*scene);
+    RayTally tally;
+    const auto sideways = [](double sine) {  // 2 of air and .5 of glass
+        const double inside = sine / 1.5;
+        return 2 * sine / std::sqrt(1 - sine * sine) +
+               0.5 * inside / std::sqrt(1 - inside * inside);
+    };
+    for (const double x : {0.1, 1.0, 3.0, 8.0}) {
+        const ChainTarget lamp = lampAt(*scene, {x, 2.5, 0});
+        const auto found = search.throughGlass({start, lamp, Chain::kMost}, tally);
+        ASSERT_TRUE(found) << x;
+        EXPECT_EQ(found->chain.size(), 2u);
+        const Vec3d along = found->chain.firstDirection();
+        EXPECT_NEAR(sideways(along.x), x, 1e-4 * x);
+        // sin d(sin) / cos over the ring at the lamp, seen along the ray.
+        const double sine = along.x, cosine = along.y, by = 1e-5;
+        const double ring = (sideways(sine + by) - sideways(sine - by)) / (2 * by);
+        EXPECT_NEAR(found->spread * x * ring * cosine * cosine / sine, 1.0, 1e-3);
+        EXPECT_TRUE(search.isAlong(*found, {start, lamp, Chain::kMost}, along, 1e-3, tally));
+        const Vec3d straight = normalize(Vec3d{x, 2.5, 0});
+        EXPECT_FALSE(search.isAlong(*found, {start, lamp, Chain::kMost}, straight, 1e-4, tally));
+    }
+    // What lies at infinity is seen in the direction that it is in.
+    const ChainTarget sky{normalize(Vec3{0.3f, 0.8f, 0.2f}), true};
+    const auto found = search.throughGlass({start, sky, Chain::kMost}, tally);
+    ASSERT_TRUE(found);
+    EXPECT_LT(length(found->chain.firstDirection() - Vec3d(sky.position)), 1e-6);
+    EXPECT_NEAR(found->spread, 1.0, 1e-6);
+    // Nothing bends the way to a lamp below it, and no way leads through a mirror.
+    EXPECT_FALSE(search.throughGlass({start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
+    SceneBuilder shut;
+    shut.add(box({-50, 1, -50}, {50, 1.5f, 50}, shut.add(mirror())));
+    const auto closed = shut.build();
+    EXPECT_FALSE(ChainSearch(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
+}
+
+/// Rays that meet glass lie in the boxes, and most others do not.
+TEST(GlassBoxes, holdAllGlass) {
+    SceneBuilder b;
+    const auto mesh = b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f))));
+    b.instance(mesh, translation({9, 1, 0}) * scaling({1, 2, 0.5}));
+    b.add(box({-2, 3, -9}, {-1, 3.01f, 9}, 1));
+    b.add(quad({-20, -5, 20}, {40, 0, 0}, {0, 0, -40}));
+    lacuna::Material veil = glass();
+    veil.alphaMode = lacuna::Material::Alpha::Blend;
+    b.add(ball({0, 9, 0}, 2, b.add(veil)));
+    const auto scene = b.build();
+    const GlassBoxes glass(*scene);
+    RayTally tally;
+    Rng rng(4, 0, StreamKind::User, 0);
+    int hits = 0, others = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const auto point = [&] {
+            return Vec3{rng.uniform() * 24 - 12, rng.uniform() * 12 - 4, rng.uniform() * 24 - 12};
+        };
+        const Vec3 origin = point(), way = n % 7 == 0 ? Vec3{1, 0, 0} : point() - origin;
+        const auto hit = scene->trace(origin, {}, way, RayKind::Chain, tally);
+        bool meets = false;
+        if (hit) {
+            SurfacePoint at;
+            scene->surfaceAt(*hit, at);
+            meets = at.material == 1;
+        }
+        if (meets) {
+            ++hits;
+            EXPECT_TRUE(glass.mayLieOn(origin, way, true));
+            if (hit->distance < 1) {
+                EXPECT_TRUE(glass.mayLieOn(origin, way, false));
+            }
+        }
+        others += !glass.mayLieOn(origin, way, true);
+    }
+    EXPECT_GT(hits, 300);
+    EXPECT_GT(others, 10000);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "libcore/bidir/chain_vertices.h"
+
+namespace lacuna {
+
+void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
+    float pdfW = 0.0f;  // of what leaves the vertex before
+    for (std::size_t i = chain.size(); i-- > 0;) {
+        const ChainVertex& from = chain[i];
+        PathVertex& v = light.emplace_back();
+        PathVertex& before = light[light.size() - 2];
+        v.index = std::uint8_t(light.size() - 1);
+        v.position = from.point.position;
+        v.ng = from.point.ng;
+        v.toPrevious = from.toLight;
+        v.bsdf = from.bsdf;
+        v.event = from.event.event;
+        v.light = from.point.light;
+        v.lightUv = from.point.barycentric;
+        v.material = from.point.material;
+        v.object = from.point.object;
+        v.survival = v.bsdf.survivalAlbedo();
+        if (before.index == 0) {
+            const Lights::Emission emission =
+                emissionOf(walker.lights(), before, -v.toPrevious, v.position);
+            before.scatter = Rgb(emission.profile);
+            pdfW = emission.pdfW;
+        }
+        const Edge edge = edgeBetween(before, v);
+        v.pdfA = pdfW * edge.toSecond;
+        v.toPreviousFactor = edge.toFirst;
+        const BsdfEvaluation e = v.bsdf.evaluate(from.toEye, from.toLight, v.event);
+        v.scatter = e.f;
+        before.pdfReverseA = e.pdfWToLight * v.toPreviousFactor;
+        pdfW = e.pdfWToEye;
+    }
+}
+
+}  // namespace lacuna

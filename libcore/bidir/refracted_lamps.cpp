@@ -1,0 +1,143 @@
+#include "libcore/bidir/refracted_lamps.h"
+
+#include <algorithm>
+
+#include "libcore/bidir/absorption.h"
+#include "libcore/bidir/chain_vertices.h"
+
+namespace lacuna {
+
+namespace {
+
+/// What a walk's path may differ from a chain in double between the same ends: the angle of its first
+/// direction, and by how far of the scene's radius rays leave surfaces.
+constexpr double kAngle = 1e-3, kOffset = 1e-5;
+
+/// Expected samples at an eye vertex, by its order: deep ones carry little, and there are many.
+double samplesAt(int order) {
+    constexpr double kSamples[] = {1.0, 0.5, 0.25};
+    return kSamples[std::min(order, 3) - 1];
+}
+
+/// What a chain is a function of.
+ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
+    return {{z.position, z.ng, {}}, {y0.position, y0.infinite()}, Chain::kMost};
+}
+
+}  // namespace
+
+RefractedLamps::RefractedLamps(const Walker& walker)
+    : walker_(walker), search_(walker.scene()), glass_(walker.scene()) {
+    const Lights& lights = walker.lights();
+    for (std::uint32_t i = 0; i < lights.size(); ++i) anyLamp_ |= isHittable(lights.kind(i));
+}
+
+/// p(y_0) over what an eye walk that leaves z along the chain has for it, but for the direction's density
+/// at z: the events' probabilities, and how far the chain spreads a solid angle.
+double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
+                                 const PathVertex& z) const {
+    const Lights& lights = walker_.lights();
+    const Chain& chain = found.chain;
+    double walk = found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
+                  double(lights.opacity(y0.light, y0.lightUv));
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const ChainVertex& v = chain[i];
+        walk *= double(v.bsdf.evaluate(v.toEye, v.toLight, v.event.event).pdfWToLight) / v.measure;
+    }
+    const double samples = double(lightPointOf(lights, y0).pdf) * walker_.seenSamples(y0, z);
+    return walk > 0.0 ? samples / walk : 0.0;
+}
+
+/// That of a path through so many refractions, `last` the one next to z.
+double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
+                                      const PathVertex& last, std::size_t vertices,
+                                      const Vec3& toChain, RayTally& tally) const {
+    const ChainQuery query = queryOf(z, y0);
+    const auto found = search_.throughGlass(query, tally);
+    if (!found || found->chain.size() != vertices) return 0.0;
+    const double distance = length(Vec3d(last.position) - Vec3d(z.position));
+    const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
+    if (!search_.isAlong(*found, query, Vec3d(toChain), angle, tally)) return 0.0;
+    return densityAt(y0, *found, z);
+}
+
+bool RefractedLamps::isGlass(const PathVertex& v) const {
+    return v.event == ScatterEvent::DeltaTransmission && search_.mayBeThroughGlass(v.material);
+}
+
+void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
+    if (light.empty() || !isHittable(walker_.lights().kind(light[0].light))) return;
+    // A connection may end at a vertex where the walk itself went on through a layer of glass.
+    for (std::size_t last = 1; last + 1 < light.size() && last <= Chain::kMost; ++last) {
+        if (!isGlass(light[last])) return;
+        PathVertex& z = light[last + 1];
+        if (!z.connectable()) continue;
+        z.throughGlass = float(densityOfChain(z, light[0], light[last], last, z.toPrevious, tally));
+    }
+}
+
+double RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew) const {
+    if (!path.hittable) return 0.0;
+    std::size_t count = 0;
+    while (int(count) + 1 < path.edges && path.delta[count + 1] &&
+           isGlass(*path.vertex[count + 1])) {
+        ++count;
+    }
+    const bool ends = int(count) + 1 == path.edges || path.delta[count + 1];
+    if (count == 0 || count > Chain::kMost || ends) return 0.0;
+    const Vec3 toChain = -path.directionOf(int(count));
+    const PathVertex& z = *path.vertex[count + 1];
+    const double density = !anew && path.lightEdges > int(count)
+                               ? double(path.lightsEnd(int(count)).throughGlass)
+                               : densityOfChain(path.lightsEnd(int(count)), *path.vertex[0],
+                                                *path.vertex[count], count, toChain, tally);
+    if (!(density > 0.0)) return 0.0;
+    const Vec3 toEye = path.directionOf(int(count) + 1);
+    const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
+    const double samples = samplesAt(path.orderOf(int(count) + 1));
+    return eyePdfW > 0.0 ? samples * density / eyePdfW : 0.0;
+}
+
+std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& tally,
+                                             std::vector<PathVertex>& light, FullPath& path) const {
+    const PathVertex& z = eye.back();
+    const int left = walker_.limits().maxDepth - int(eye.size());
+    if (left < 1 || z.kind != VertexKind::Surface || !z.connectable()) return std::nullopt;
+    const double expected = samplesAt(connectionOrder(eye));
+    if (rng.uniformDouble() >= expected) return std::nullopt;
+    PathVertex y0;
+    const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
+    if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
+    const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
+    if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
+    if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
+    const auto found = search_.throughGlass(queryOf(z, y0), tally);
+    if (!found || int(found->chain.size()) > left) return std::nullopt;
+
+    const Chain& chain = found->chain;
+    const Vec3 toChain(chain.firstDirection());
+    const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
+    light.assign(1, y0);
+    appendChain(walker_, chain, light);
+    const std::span<const Rgb> absorption = walker_.scene().absorption();
+    Rgb through = transmittance(absorption, z, toChain, light.back());
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const Subpath rest = Subpath(light).first(light.size() - i);
+        through *= chain[i].through *
+                   transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
+    }
+    const double spread = found->spread * measureCosine(z, toChain) *
+                          measureCosine(y0, chain[chain.size() - 1].toLight) / samples;
+    const Rgb contribution =
+        z.throughput * atEye.f * through * light[0].scatter * y0.throughput * float(spread);
+    if (isBlack(contribution)) return std::nullopt;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const PathVertex& end = i + 1 < light.size() ? light[i + 1] : z;
+        if (!connected(walker_.scene(), light[i], end, RayKind::Chain, tally)) return std::nullopt;
+    }
+    const Closed closed = closeRefraction(walker_, light, eye, atEye, contribution, path);
+    path.refracted = expected * densityAt(y0, *found, z) / double(atEye.pdfWToLight);
+    return closed;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,224 @@
+// Lamps and skies behind smooth glass, by next event through it: no light is lost or counted twice, in any
+// row that has it. (theory.md, "Next event through glass")
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "libcore/material/fresnel.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+bool refracts(const MethodRow& row) {
+    const Techniques& t = asSet(row, resolve(row, {})).techniques;
+    return t.hits && t.connects && t.refractions;
+}
+
+std::vector<std::string> rowsWithRefractions() {
+    std::vector<std::string> names;
+    for (const std::string& name : rowNames()) {
+        if (refracts(rowNamed(name))) names.push_back(name);
+    }
+    return names;
+}
+
+MethodRow withoutRefractions(MethodRow row) {
+    row.techniques.refractions = false;
+    return row;
+}
+
+class RefractedLampsOf : public RowTest {};
+INSTANTIATE_TEST_SUITE_P(All, RefractedLampsOf, testing::ValuesIn(rowsWithRefractions()),
+                         ByParameter());
+
+/// A floor under a slab of glass under an even sky: what both faces let through, from everywhere.
+TEST_P(RefractedLampsOf, skyThroughASlab) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(quad({-90, 0, 90}, {180, 0, 0}, {0, 0, -180}));
+    b.add(box({-90, 1, -90}, {90, 1.2f, 90}, b.add(glass())));
+    b.add(lookAt({0.3, 0.8, 0.9}, {0, 0, 0.2}, 40));
+    b.environment(constantSky(2));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 4;  // nothing is reflected back
+    shot.iterations = 1200;
+    shot.lightPaths = 256;
+    std::atomic<int> refractions{0};
+    shot.observer = [&](const PathEvent& event) { refractions += event.technique.refracts(); };
+    double open = 0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double squaredSine = (i + 0.5) / kSteps;  // evenly by projected solid angle
+        const double f = fresnelDielectric(std::sqrt(1 - squaredSine), 1.5);
+        open += (1 - f) * (1 - f) / kSteps;
+    }
+    // The slab ends where the sky lies 89 degrees from the vertical.
+    expectRadiance(render(*scene, row(), shot), 0.6 * 2 * open, row().name + ", sky and slab",
+                   Judge::MeanOnly);
+    EXPECT_GT(refractions, 10000);
+}
+
+/// A wide lamp behind what bends and colours its light: a slab with a relief, a ball with normals, a block
+/// in it that absorbs, under a veil, and a sheet that only one row of vertices holds.
+SceneBuilder glassAboveAStage() {
+    SceneBuilder b;
+    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(quad({-2, 0, -1.2f}, {4, 0, 0}, {0, 2, 0}, b.add(plastic({0.2f, 0.4f, 0.3f}, 0))));
+    lacuna::Material bumpy = glass(1.3f);
+    bumpy.normalTexture = b.add(waves());
+    bumpy.normalScale = 0.1f;
+    b.add(box({-1.6f, 1, -0.5f}, {-0.5f, 1.1f, 0.6f}, b.add(bumpy)));
+    b.add(sphere({0, 0.7f, 0.1f}, 0.4f, 24, b.add(colouredGlass({0.2f, 0.5f, 0.1f}, 1.1f)), true));
+    const auto coloured = b.add(colouredGlass({0.8f, 0.3f, 0.2f}, 1.5f));
+    const auto block = b.add(box({0.6f, 0.8f, -0.4f}, {1.6f, 1, 0.6f}, coloured));
+    b.instance(block,
+               translation({0.1, -0.4, 0.9}) * rotation({1, 0, 1}, 20) * scaling({-1, 1, 1}));
+    lacuna::Material veil = matte(Rgb(0.6f));
+    veil.alphaMode = lacuna::Material::Alpha::Blend;
+    veil.baseAlpha = 0.5f;
+    b.add(quad({0.5f, 1.3f, 0.6f}, {1.2f, 0, 0}, {0, 0, -1.1f}, b.add(veil)));
+    b.add(lookAt({0.3, 1.3, 3}, {0, 0.4, 0}, 45));
+    return b;
+}
+
+struct Lit {
+    std::string name;
+    void (*light)(SceneBuilder&);
+};
+void PrintTo(const Lit& lit, std::ostream* out) {
+    *out << lit.name;
+}
+
+/// Against walks alone, which run into light this wide.
+class BehindGlass : public testing::TestWithParam<Lit> {};
+INSTANTIATE_TEST_SUITE_P(
+    All, BehindGlass,
+    testing::Values(Lit{"lamp",
+                        [](SceneBuilder& b) {
+                            b.add(quad({-1.8f, 2, -1.2f}, {3.6f, 0, 0}, {0, 0, 2.4f},
+                                       b.add(emitter({2, 3, 4}))));
+                        }},
+                    Lit{"lamp with alpha",
+                        [](SceneBuilder& b) {
+                            lacuna::Material lamp = emitter({2, 3, 4}, true);
+                            lamp.alphaMode = lacuna::Material::Alpha::Blend;
+                            lamp.baseAlpha = 0.4f;
+                            b.add(quad({-1.8f, 2, -1.2f}, {3.6f, 0, 0}, {0, 0, 2.4f}, b.add(lamp)));
+                        }},
+                    Lit{"sky", [](SceneBuilder& b) { b.environment(sunnySky()); }}),
+    ByParameter());
+
+TEST_P(BehindGlass, isWhatWalksFind) {
+    SceneBuilder b = glassAboveAStage();
+    GetParam().light(b);
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 7;
+    shot.iterations = 8000;
+    shot.seed = 100;
+    const Picture walks = render(*scene, withoutRefractions(rowNamed("pt")), shot);
+    shot.seed = 1;
+    shot.iterations = 2000;
+    for (const char* name : {"pt", "bpt", "spcbpt", "vcm"}) {
+        expectSame(render(*scene, rowNamed(name), shot), walks,
+                   std::string(name) + ", " + GetParam().name + " behind glass",
+                   Judge::BlocksAndMean);
+    }
+}
+
+/// A lamp in a bulb: one surface, with the vertex inside it and outside.
+TEST_P(RefractedLampsOf, lampInABulb) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.5f));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(sphere({0, 0.9f, 0}, 0.5f, 16, b.add(glass(1.2f)), true));
+    b.add(sphere({0, 0.9f, 0}, 0.3f, 12, b.add(emitter(Rgb(3.0f)))));
+    b.add(lookAt({0.3, 1.3, 3}, {0, 0.4, 0}, 45));
+    const auto scene = b.build();
+    Shot shot;
+    shot.maxDepth = 5;
+    shot.iterations = 4000;
+    shot.seed = 100;
+    static const Picture walks = render(*scene, withoutRefractions(rowNamed("pt")), shot);
+    shot.seed = 1;
+    shot.iterations = 300;
+    shot.lightPaths = 1024;
+    expectSame(render(*scene, row(), shot), walks, row().name + ", lamp in a bulb",
+               Judge::BlocksAndMean);
+}
+
+/// What a path adds, by this technique and by an eye walk that runs into the lamp, are in the ratio of the
+/// densities that weights have. No weight would be wrong without it, only worse.
+TEST(RefractedLamps, knowTheirDensity) {
+    for (const bool alpha : {false, true}) {
+        SceneBuilder b;
+        b.d.materials[0] = plastic({0.5f, 0.4f, 0.3f}, 0.6f);
+        b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+        b.add(box({-3, 1, -3}, {3, 1.1f, 3}, b.add(glass())));
+        b.add(sphere({0.5f, 0.5f, 0.2f}, 0.3f, 16, b.add(glass(1.2f)), true));
+        lacuna::Material lamp = emitter({2, 3, 4}, true);
+        if (alpha) {
+            lamp.alphaMode = lacuna::Material::Alpha::Blend;
+            lamp.baseAlpha = 0.3f;
+        }
+        b.add(quad({-0.5f, 1.8f, -0.5f}, {1, 0, 0}, {0, 0.2f, 1}, b.add(lamp)));
+        b.environment(sunnySky());
+        b.add(lookAt({0.3, 0.8, 2}, {0, 0, 0.2}, 40));
+        const auto scene = b.build();
+        Shot shot = quickShot(30);
+        shot.maxDepth = 7;
+        shot.rouletteDepth = 2;
+        std::atomic<int> judged{0};
+        double worst = 0;
+        const ThreadPool one(1);
+        shot.threads = &one;
+        std::optional<Render> run;
+        shot.observer = [&](const PathEvent& event) {
+            if (!event.technique.refracts()) return;
+            const FullPath& path = event.path;
+            const int depth = event.counts.rouletteDepth;
+            int i = path.edges + 1 - event.technique.t;  // z
+            Rgb walk = path.vertex[std::size_t(i)]->throughput;
+            for (; i > 0; --i) {
+                const auto n = std::size_t(i);
+                const double pdf = path.eyePdfA[n - 1] * path.eyeRoulette(i - 1, depth);
+                walk *= path.scatter[n] * float(path.geometryOf(i - 1) / pdf);
+            }
+            walk *= path.scatter[0] * path.sourceBeta * path.lightPdfA[0];
+            const Lights& lights = run->integrator().walker().lights();
+            const Rgb here = event.contribution * float(1 / event.weight);
+            const double ratio = double(mean(lights.inFileUnits(walk))) / double(mean(here));
+            worst = std::max(worst, std::fabs(ratio / refractedSamples(path, event.counts) - 1));
+            ++judged;
+        };
+        run.emplace(*scene, rowNamed("pt"), shot);
+        run->run();
+        EXPECT_GT(judged, 500);
+        EXPECT_LT(worst, 1e-3);
+    }
+}
+
+/// Less noise where walks seldom run into a small lamp.
+TEST(RefractedLamps, findWhatWalksMiss) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.5f));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(box({-3, 1, -3}, {3, 1.1f, 3}, b.add(glass())));
+    b.add(quad({-0.1f, 1.8f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, b.add(emitter(Rgb(50.0f)))));
+    b.add(lookAt({0.3, 0.8, 2}, {0, 0, 0.2}, 40));
+    const auto scene = b.build();
+    Shot shot = quickShot(200);
+    shot.maxDepth = 5;
+    const MethodRow pt = rowNamed("pt");
+    const Picture with = render(*scene, pt, shot);
+    const Picture without = render(*scene, withoutRefractions(pt), shot);
+    EXPECT_LT(with.standardError(), 0.2 * without.standardError());
+}
+
+}  // namespace
+}  // namespace lacuna::test
