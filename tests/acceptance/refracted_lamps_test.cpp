@@ -66,7 +66,9 @@ TEST_P(RefractedLampsOf, skyThroughASlab) {
 /// in it that absorbs, under a veil, and a sheet that only one row of vertices holds.
 SceneBuilder glassAboveAStage() {
     SceneBuilder b;
-    b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
+    // Half a mirror, half a colour: walks go on from it by either, and connections end at it.
+    b.d.materials[0] = plastic({0.5f, 0.4f, 0.3f}, 0);
+    b.d.materials[0].metallic = 0.5f;
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
     b.add(quad({-2, 0, -1.2f}, {4, 0, 0}, {0, 2, 0}, b.add(plastic({0.2f, 0.4f, 0.3f}, 0))));
     lacuna::Material bumpy = glass(1.3f);
@@ -98,19 +100,14 @@ void PrintTo(const Lit& lit, std::ostream* out) {
 class BehindGlass : public testing::TestWithParam<Lit> {};
 INSTANTIATE_TEST_SUITE_P(
     All, BehindGlass,
-    testing::Values(Lit{"lamp",
-                        [](SceneBuilder& b) {
-                            b.add(quad({-1.8f, 2, -1.2f}, {3.6f, 0, 0}, {0, 0, 2.4f},
-                                       b.add(emitter({2, 3, 4}))));
-                        }},
-                    Lit{"lamp with alpha",
+    testing::Values(Lit{"lamp with alpha",
                         [](SceneBuilder& b) {
                             lacuna::Material lamp = emitter({2, 3, 4}, true);
                             lamp.alphaMode = lacuna::Material::Alpha::Blend;
                             lamp.baseAlpha = 0.4f;
                             b.add(quad({-1.8f, 2, -1.2f}, {3.6f, 0, 0}, {0, 0, 2.4f}, b.add(lamp)));
                         }},
-                    Lit{"sky", [](SceneBuilder& b) { b.environment(sunnySky()); }}),
+                    Lit{"sky", [](SceneBuilder& b) { b.environment(constantSky(2)); }}),
     ByParameter());
 
 TEST_P(BehindGlass, isWhatWalksFind) {

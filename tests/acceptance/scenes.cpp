@@ -271,7 +271,9 @@ NamedScene behindGlass() {
     SceneBuilder b;
     b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
-    b.add(quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, b.add(plastic({0.2f, 0.4f, 0.3f}, 0))));
+    lacuna::Material halfMirror = plastic({0.2f, 0.4f, 0.3f}, 0);
+    halfMirror.metallic = 0.5f;
+    b.add(quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, b.add(halfMirror)));
     b.add(box({-1.6f, 1, -0.6f}, {1.6f, 1.1f, 0.6f}, b.add(colouredGlass({0.8f, 0.5f, 0.4f}))));
     b.add(sphere({0, 0.5f, 0.3f}, 0.3f, 16, b.add(glass(1.2f)), true));
     b.add(quad({-0.5f, 1.8f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter({2, 3, 4}))));

@@ -255,6 +255,42 @@ TEST(ChainSearch, goesThroughASlabByItself) {
     EXPECT_FALSE(ChainSearch(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
 }
 
+/// A ball of glass shows a lamp near its focus several times: which of two images a path belongs to shows
+/// in the sign of their spread, however near the two are.
+TEST(ChainSearch, tellsImagesOnEitherSideOfAFoldApart) {
+    SceneBuilder b;
+    b.add(ball({0, 1.5f, 0}, 0.5f, b.add(glass(1.5f))));
+    const auto scene = b.build();
+    const ChainSearch search(*scene);
+    const ChainQuery query{floorOf(*scene), lampAt(*scene, {0.02, 2.6, 0.01}), 2};
+    const auto signOf = [](const FoundChain& found) {
+        const auto& [a, c] = found.missBy;
+        return a[0] * c[1] - a[1] * c[0] > 0;
+    };
+    RayTally tally;
+    Rng rng(5, 0, StreamKind::User, 0);
+    std::vector<FoundChain> images;
+    for (int i = 0; i < 400; ++i) {
+        const auto found = search.draw(query, rng, tally);
+        const bool refracts =
+            found && found->chain.size() == 2 &&
+            found->chain[0].event == SpecularEvent{ScatterEvent::DeltaTransmission} &&
+            found->chain[1].event == SpecularEvent{ScatterEvent::DeltaTransmission};
+        if (refracts) images.push_back(*found);
+    }
+    int alike = 0, different = 0;
+    for (const FoundChain& one : images) {
+        for (const FoundChain& other : images) {
+            const bool same = signOf(one) == signOf(other);
+            (same ? alike : different) += 1;
+            const Vec3d& along = other.chain.firstDirection();
+            EXPECT_EQ(search.isAlong(one, query, along, 3.0, tally), same);
+        }
+    }
+    EXPECT_GT(alike, 0);
+    EXPECT_GT(different, 0);
+}
+
 /// Rays that meet glass lie in the boxes, and most others do not.
 TEST(GlassBoxes, holdAllGlass) {
     SceneBuilder b;
