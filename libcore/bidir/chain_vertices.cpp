@@ -1,5 +1,8 @@
 #include "libcore/bidir/chain_vertices.h"
 
+#include "libcore/bidir/absorption.h"
+#include "libcore/bidir/close.h"
+
 namespace lacuna {
 
 void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
@@ -33,6 +36,25 @@ void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVerte
         before.pdfReverseA = e.pdfWToLight * v.toPreviousFactor;
         pdfW = e.pdfWToEye;
     }
+}
+
+Rgb shareThrough(const Walker& walker, const Chain& chain, Subpath light, const PathVertex& z) {
+    const std::span<const Rgb> absorption = walker.scene().absorption();
+    Rgb through = transmittance(absorption, z, Vec3(chain.firstDirection()), light.back());
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const Subpath rest = light.first(light.size() - i);
+        through *= chain[i].through *
+                   transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
+    }
+    return through;
+}
+
+bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally) {
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const PathVertex& end = i + 1 < light.size() ? light[i + 1] : z;
+        if (!connected(walker.scene(), light[i], end, RayKind::Chain, tally)) return false;
+    }
+    return true;
 }
 
 }  // namespace lacuna

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "libcore/bidir/absorption.h"
 #include "libcore/bidir/chain_vertices.h"
 
 namespace lacuna {
@@ -32,6 +31,16 @@ RefractedLamps::RefractedLamps(const Walker& walker)
     for (std::uint32_t i = 0; i < lights.size(); ++i) anyLamp_ |= isHittable(lights.kind(i));
 }
 
+/// The chain: a function of the two, whichever walk made z. No ray is traced where the lamp lies behind z
+/// or nothing lies between.
+std::optional<FoundChain> RefractedLamps::between(const PathVertex& z, const PathVertex& y0,
+                                                  RayTally& tally) const {
+    const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
+    if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
+    if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
+    return search_.throughGlass(queryOf(z, y0), tally);
+}
+
 /// p(y_0) over what an eye walk that leaves z along the chain has for it, but for the direction's density
 /// at z: the events' probabilities, and how far the chain spreads a solid angle.
 double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
@@ -52,12 +61,11 @@ double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const PathVertex& last, std::size_t vertices,
                                       const Vec3& toChain, RayTally& tally) const {
-    const ChainQuery query = queryOf(z, y0);
-    const auto found = search_.throughGlass(query, tally);
+    const auto found = between(z, y0, tally);
     if (!found || found->chain.size() != vertices) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
-    if (!search_.isAlong(*found, query, Vec3d(toChain), angle, tally)) return 0.0;
+    if (!search_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
     return densityAt(y0, *found, z);
 }
 
@@ -108,10 +116,7 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     PathVertex y0;
     const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
-    const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
-    if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
-    if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
-    const auto found = search_.throughGlass(queryOf(z, y0), tally);
+    const auto found = between(z, y0, tally);
     if (!found || int(found->chain.size()) > left) return std::nullopt;
 
     const Chain& chain = found->chain;
@@ -119,22 +124,11 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
     light.assign(1, y0);
     appendChain(walker_, chain, light);
-    const std::span<const Rgb> absorption = walker_.scene().absorption();
-    Rgb through = transmittance(absorption, z, toChain, light.back());
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-        const Subpath rest = Subpath(light).first(light.size() - i);
-        through *= chain[i].through *
-                   transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
-    }
     const double spread = found->spread * measureCosine(z, toChain) *
                           measureCosine(y0, chain[chain.size() - 1].toLight) / samples;
-    const Rgb contribution =
-        z.throughput * atEye.f * through * light[0].scatter * y0.throughput * float(spread);
-    if (isBlack(contribution)) return std::nullopt;
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        const PathVertex& end = i + 1 < light.size() ? light[i + 1] : z;
-        if (!connected(walker_.scene(), light[i], end, RayKind::Chain, tally)) return std::nullopt;
-    }
+    const Rgb contribution = z.throughput * atEye.f * shareThrough(walker_, chain, light, z) *
+                             light[0].scatter * y0.throughput * float(spread);
+    if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
     const Closed closed = closeRefraction(walker_, light, eye, atEye, contribution, path);
     path.refracted = expected * densityAt(y0, *found, z) / double(atEye.pdfWToLight);
     return closed;

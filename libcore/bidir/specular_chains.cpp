@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcore/bidir/absorption.h"
 #include "libcore/bidir/chain_vertices.h"
 
 namespace lacuna {
@@ -42,15 +41,6 @@ bool SpecularChains::reach(const FullPath& path) {
     return deltas > 0 && deltas <= Chain::kMost && int(deltas) + 1 < path.edges;
 }
 
-bool SpecularChains::visible(Subpath light, const PathVertex& z, RayTally& tally) const {
-    const Scene& scene = walker_.scene();
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        const PathVertex& eye = i + 1 < light.size() ? light[i + 1] : z;
-        if (!connected(scene, light[i], eye, RayKind::Chain, tally)) return false;
-    }
-    return true;
-}
-
 std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally,
                                              std::vector<PathVertex>& light, FullPath& path) const {
     const PathVertex& z = eye.back();
@@ -72,16 +62,10 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     const Vec3 toChain(chain.firstDirection());
     const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
     const float profile = walker_.lights().profile(y0.light, y0.ng, -Vec3(chain.last().direction));
-    const std::span<const Rgb> absorption = walker_.scene().absorption();
-    Rgb through = transmittance(absorption, z, toChain, light.back());
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-        const Subpath rest = Subpath(light).first(light.size() - i);
-        through *= chain[i].through *
-                   transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
-    }
+    const Rgb through = shareThrough(walker_, chain, light, z);
     const double spread = found->spread * measureCosine(z, toChain) * double(profile);
     const Rgb contribution = z.throughput * atEye.f * through * y0.throughput * float(spread);
-    if (isBlack(contribution) || !visible(light, z, tally)) return std::nullopt;
+    if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
 
     const double repeats = search_.reciprocalProbability(*found, query, rng, tally);
     return closeChain(walker_, light, eye, atEye.f, contribution * float(repeats), path);

@@ -35,8 +35,6 @@ class SpecularChains {
                                  std::vector<PathVertex>& light, FullPath& path) const;
 
   private:
-    bool visible(Subpath light, const PathVertex& z, RayTally& tally) const;
-
     const Walker& walker_;
     ChainSearch search_;
     std::vector<std::uint32_t> lights_;  ///< without an extent

@@ -662,7 +662,7 @@ FAULTS = [
     # Next event through glass
     Fault("any-way-through-glass", "weights take any path through glass for the one that next event finds",
           "libcore/bidir/refracted_lamps.cpp",
-          "if (!search_.isAlong(*found, query, Vec3d(toChain), angle, tally)) return 0.0;", "(void)toChain, (void)angle;",
+          "if (!search_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;", "(void)toChain, (void)angle;",
           {"acceptance": "*BehindGlass*:*RefractedLampsOf.lampInABulb*"}),
     Fault("ways-on-either-side-of-a-fold", "likewise for the two that meet at a fold of a caustic",
           "libcore/specular/chain_search.cpp",
