@@ -11,6 +11,7 @@ constexpr int kMostSteps = 12;         // of Newton's method, those that did not
 constexpr double kConverged = 1e-10;   // of the miss: rounding in double
 constexpr double kAccepted = 1e-6;     // where texels of a normal map end the descent before
 constexpr double kSame = 1e-5;         // two chains, by the miss that would lie between them
+constexpr double kAtTarget = 1e-4;     // of the way: what lies there is the target's own surface
 constexpr double kShortestStep = 0.1;  // of a full one
 
 double determinantOf(const Jacobian& j) {
@@ -162,8 +163,9 @@ std::optional<FoundChain> ChainSearch::solve(const ChainQuery& query, const Chai
         scale *= 0.5;
     }
     const double determinant = std::fabs(determinantOf(miss.acrossBy));
-    if (!(miss.size() < kAccepted) || !(determinant > 0.0)) return std::nullopt;
-    return FoundChain{chain, 1.0 / (determinant * miss.distance * miss.distance), miss.acrossBy};
+    const double spread = 1.0 / (determinant * miss.distance * miss.distance);
+    if (!(miss.size() < kAccepted) || !std::isfinite(spread)) return std::nullopt;
+    return FoundChain{chain, spread, miss.acrossBy};
 }
 
 std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query, Rng& rng,
@@ -195,7 +197,12 @@ std::optional<FoundChain> ChainSearch::throughGlass(const ChainQuery& query,
         if (!mayBeThroughGlass(chain[chain.size() - 1].point.material)) return std::nullopt;
     }
     if (chain.size() == 0) return std::nullopt;
-    return solve(query, chain, tally);
+    const auto found = solve(query, chain, tally);
+    if (!found || target.infinite) return found;
+    // A lamp may be of glass itself, and rounding put its surface before it.
+    const Vec3d last = Vec3d(target.position) - found->chain.last().origin;
+    if (!(length(last) > kAtTarget * length(way))) return std::nullopt;
+    return found;
 }
 
 bool ChainSearch::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,

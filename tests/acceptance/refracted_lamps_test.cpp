@@ -200,6 +200,29 @@ TEST(RefractedLamps, knowTheirDensity) {
     }
 }
 
+/// A lamp whose body is smooth glass, thin or solid: what a ray meets there is the lamp.
+TEST(RefractedLamps, areNoGlassBeforeThemselves) {
+    for (const bool solid : {false, true}) {
+        SceneBuilder b;
+        b.d.materials[0] = matte(Rgb(0.5f));
+        b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+        lacuna::Material lamp = solid ? glass(1.2f) : pane({0.7f, 0.9f, 0.8f});
+        lamp.emission = Rgb(2.0f);
+        b.add(sphere({0, 0.9f, 0}, 0.5f, 12, b.add(lamp), true));
+        b.add(lookAt({0.3, 1.3, 3}, {0, 0.4, 0}, 45));
+        const auto scene = b.build();
+        Shot shot;
+        shot.iterations = 1000;
+        shot.seed = 100;
+        const Picture walks = render(*scene, withoutRefractions(rowNamed("pt")), shot);
+        shot.seed = 1;
+        for (const char* name : {"pt", "bpt"}) {
+            expectSame(render(*scene, rowNamed(name), shot), walks,
+                       std::string(name) + ", lamp of glass", Judge::BlocksAndMean);
+        }
+    }
+}
+
 /// Less noise where walks seldom run into a small lamp.
 TEST(RefractedLamps, findWhatWalksMiss) {
     SceneBuilder b;

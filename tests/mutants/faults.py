@@ -640,7 +640,7 @@ FAULTS = [
           {"acceptance": "SpecularChains.aBallAboutALampTakesNothingAway"}),
     Fault("chains-by-angles", "a chain's spread is taken per solid angle at its light",
           "libcore/specular/chain_search.cpp",
-          "1.0 / (determinant * miss.distance * miss.distance)", "1.0 / determinant",
+          "1.0 / (determinant * miss.distance * miss.distance);", "1.0 / determinant;",
           {"specular": "ChainSearch.knowsTheDistanceToAnImage"}),
     Fault("chains-of-flat-glass", "rays bend as if shading normals did not change along a surface",
           "libcore/specular/chain.cpp",
