@@ -1,6 +1,7 @@
 #include "libcore/specular/glass_boxes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -58,25 +59,28 @@ GlassBoxes::GlassBoxes(const Scene& scene) {
         again(again, part.first(first), divisions - 1);
         again(again, part.subspan(first), divisions - 1);
     };
+    if (!triangles.empty()) whole_ = enclose(triangles);
     divide(divide, triangles, kDivisions);
 }
 
 bool GlassBoxes::mayLieOn(const Vec3& origin, const Vec3& way, bool forEver) const {
     const float farthest = forEver ? std::numeric_limits<float>::infinity() : 1.0f;
-    return std::ranges::any_of(boxes_, [&](const Box& box) {
+    const Vec3 inverse{1.0f / way.x, 1.0f / way.y, 1.0f / way.z};
+    const auto meets = [&](const Box& box) {
         float from = 0.0f, to = farthest;
         for (int axis = 0; axis < 3; ++axis) {
-            const float o = at(origin, axis), w = at(way, axis);
-            if (w == 0.0f) {
+            const float o = at(origin, axis), i = at(inverse, axis);
+            if (std::isinf(i)) {
                 if (o < at(box.low, axis) || o > at(box.high, axis)) return false;
                 continue;
             }
-            const float a = (at(box.low, axis) - o) / w, b = (at(box.high, axis) - o) / w;
+            const float a = (at(box.low, axis) - o) * i, b = (at(box.high, axis) - o) * i;
             from = std::max(from, std::min(a, b));
             to = std::min(to, std::max(a, b));
         }
         return from <= to;
-    });
+    };
+    return meets(whole_) && std::ranges::any_of(boxes_, meets);
 }
 
 }  // namespace lacuna

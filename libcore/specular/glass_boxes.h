@@ -21,6 +21,7 @@ class GlassBoxes {
     struct Box {
         Vec3 low, high;
     };
+    Box whole_;  ///< around all of them
     std::vector<Box> boxes_;
 };
 
