@@ -5,7 +5,7 @@
 
 namespace lacuna {
 
-void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
+float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
     float pdfW = 0.0f;  // of what leaves the vertex before
     for (std::size_t i = chain.size(); i-- > 0;) {
         const ChainVertex& from = chain[i];
@@ -32,21 +32,28 @@ void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVerte
         v.pdfA = pdfW * edge.toSecond;
         v.toPreviousFactor = edge.toFirst;
         const BsdfEvaluation e = v.bsdf.evaluate(from.toEye, from.toLight, v.event);
-        v.scatter = e.f;
+        v.scatter = from.scatter;
         before.pdfReverseA = e.pdfWToLight * v.toPreviousFactor;
         pdfW = e.pdfWToEye;
     }
+    return pdfW;
 }
 
-Rgb shareThrough(const Walker& walker, const Chain& chain, Subpath light, const PathVertex& z) {
+Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, const PathVertex& z,
+              const Rgb& atEye) {
+    const Chain& chain = found.chain;
+    const PathVertex& y0 = light[0];
+    const Vec3 toChain(chain.firstDirection());
     const std::span<const Rgb> absorption = walker.scene().absorption();
-    Rgb through = transmittance(absorption, z, Vec3(chain.firstDirection()), light.back());
+    Rgb through = transmittance(absorption, z, toChain, light.back());
     for (std::size_t i = 0; i < chain.size(); ++i) {
         const Subpath rest = light.first(light.size() - i);
         through *= chain[i].through *
                    transmittance(absorption, rest.back(), chain[i].toLight, rest[rest.size() - 2]);
     }
-    return through;
+    const double spread = found.spread * measureCosine(z, toChain) *
+                          measureCosine(y0, chain[chain.size() - 1].toLight);
+    return z.throughput * atEye * through * y0.scatter * y0.throughput * float(spread);
 }
 
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally) {

@@ -4,17 +4,18 @@
 #include <vector>
 
 #include "libcore/bidir/walk.h"
-#include "libcore/specular/chain.h"
+#include "libcore/specular/chain_solver.h"
 
 namespace lacuna {
 
 /// Appends y_1 .. behind y_0, the last one where the chain begins, with the densities of both walks;
-/// pdfReverseA of the last one is left as it is.
-void appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light);
+/// pdfReverseA of the last one is left as it is. Returns the density per solid angle of what leaves it.
+float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light);
 
-/// Share of the radiance from y_0 that comes to z, where the chain begins: by its events, and by what
-/// bodies absorb. `light` ends with the chain.
-Rgb shareThrough(const Walker& walker, const Chain& chain, Subpath light, const PathVertex& z);
+/// What comes from y_0 over the chain to z, where it begins, and is scattered there by `atEye`, over the
+/// densities of y_0 and of z's own walk. `light` ends with the chain.
+Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, const PathVertex& z,
+              const Rgb& atEye);
 /// Whether all edges from y_0 to z are open, by a ray each.
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally);
 

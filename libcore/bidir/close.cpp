@@ -224,19 +224,18 @@ Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& a
     return {contribution, Technique(int(eye.size()), Technique::By::Chain), {}};
 }
 
-Closed closeRefraction(const Walker& walker, Subpath light, Subpath eye,
+Closed closeRefraction(const Walker& walker, Subpath light, float pdfWToEye, Subpath eye,
                        const BsdfEvaluation& atEye, const Rgb& contribution, FullPath& path) {
     setEdges(path, light.size(), eye.size());
     fillLightPart(path, light);
     fillEyePart(path, eye);
     const std::size_t s = light.size();
-    const PathVertex &y = light.back(), &z = eye.back();
-    const Edge edge = edgeBetween(y, z);
-    const BsdfEvaluation atLight = y.bsdf.evaluate(edge.direction, y.toPrevious, y.event);
+    const PathVertex& z = eye.back();
+    const Edge edge = edgeBetween(light.back(), z);
     path.delta[s] = false;
     path.scatter[s] = atEye.f;
     path.asLight[s] = kNone;  // its walk knows it by another predecessor
-    path.lightPdfA[s] = atLight.pdfWToEye * edge.toSecond;
+    path.lightPdfA[s] = pdfWToEye * edge.toSecond;
     path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
     if (int(s) + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;
     setSource(path, walker.scene(), light[0]);

@@ -75,9 +75,9 @@ std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath ey
 Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& atEye,
                   const Rgb& contribution, FullPath& path);
 
-/// A path through refractions, y_1 .. y_{s-1} (appendChain), to the eye subpath's last vertex. Fills
-/// `path`, but for FullPath::refracted.
-Closed closeRefraction(const Walker& walker, Subpath light, Subpath eye,
+/// A path through refractions, y_1 .. y_{s-1} (appendChain, and the density that it returns), to the eye
+/// subpath's last vertex. Fills `path`, but for FullPath::refracted.
+Closed closeRefraction(const Walker& walker, Subpath light, float pdfWToEye, Subpath eye,
                        const BsdfEvaluation& atEye, const Rgb& contribution, FullPath& path);
 
 /// Whether the two vertices see each other.

@@ -85,11 +85,6 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
                     TaskResult& result) const {
     select(paths, iteration, worker, result);
     open(paths, iteration, worker, result);
-    const auto deliver = [&](const Closed& closed, const Proposal* proposal) {
-        const double scale = proposal ? proposal->weight : 1.0;
-        delivery_.toOwnPixel({closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal},
-                             iteration.counts, paths.value, result);
-    };
     TechniqueClock& clock = result.clock;
     clock.start();
     std::size_t next = 0;
@@ -97,13 +92,15 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
         const Subpath eye = paths.eye.first(t);
         if (setup_.techniques.hits && eye.back().light != kNone) {
             const auto closed = closeHit(setup_.walker, eye, worker.fullPath);
-            if (closed) deliver(*closed, nullptr);
+            if (closed) deliver(*closed, paths, iteration, worker, result);
             clock.lap([&] { return groupOf(0, eye); });
         }
         for (; next < worker.open.size() && worker.open[next].eye.size() == t; ++next) {
             const OpenConnection& open = worker.open[next];
             const auto closed = closeConnection(setup_.walker, open, worker.fullPath);
-            if (closed) deliver(*closed, worker.openedBy[next]);
+            const Proposal* proposal = worker.openedBy[next];
+            if (closed)
+                deliver(*closed, paths, iteration, worker, result, proposal->weight, proposal);
             clock.lap([&] { return groupOf(open.light.size(), eye); });
         }
         if (!photons_.empty() && asksForPhotons(eye, iteration.counts.merges)) {
@@ -133,8 +130,7 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
         if (!closed) continue;
         // By the photons' number and the kernel's area, constant over it.
         const double scale = 1.0 / iteration.counts.mergeSamples;
-        delivery_.toOwnPixel({*closed, worker.fullPath, paths.sample, paths.pixel, scale, nullptr},
-                             iteration.counts, paths.value, result);
+        deliver(*closed, paths, iteration, worker, result, scale);
     }
 }
 
@@ -148,11 +144,7 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
         if (!SpecularChains::begin(eye, iteration.counts)) continue;
         if (share < 1.0 && rng.uniformDouble() >= share) continue;
         const auto closed = chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
-        if (closed) {
-            delivery_.toOwnPixel(
-                {*closed, worker.fullPath, paths.sample, paths.pixel, 1.0 / share, nullptr},
-                iteration.counts, paths.value, result);
-        }
+        if (closed) deliver(*closed, paths, iteration, worker, result, 1.0 / share);
         result.clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
     }
 }
@@ -163,13 +155,9 @@ void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worke
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Refraction, paths.sample.number);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
-        const auto closed =
-            refractedLamps_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
-        if (closed) {
-            delivery_.toOwnPixel(
-                {*closed, worker.fullPath, paths.sample, paths.pixel, 1.0, nullptr},
-                iteration.counts, paths.value, result);
-        }
+        const auto closed = iteration.counts.refractedLamps->sample(eye, rng, result.tally,
+                                                                    worker.chain, worker.fullPath);
+        if (closed) deliver(*closed, paths, iteration, worker, result);
         result.clock.lap([&] { return TechniqueGroup::ofRefraction(connectionOrder(eye)); });
     }
 }

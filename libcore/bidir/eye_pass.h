@@ -13,14 +13,13 @@ class EyePass {
     /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged; `chains`
     /// may be null.
     EyePass(const RenderSetup& setup, const LightPass& lightPass, const LightPool& pool,
-            const PhotonGrid& photons, const SpecularChains* chains,
-            const RefractedLamps* refractedLamps, Delivery& delivery, const Workers& workers)
+            const PhotonGrid& photons, const SpecularChains* chains, Delivery& delivery,
+            const Workers& workers)
         : setup_(setup),
           lightPass_(lightPass),
           pool_(pool),
           photons_(photons),
           chains_(chains),
-          refractedLamps_(refractedLamps),
           delivery_(delivery),
           workers_(workers) {}
 
@@ -41,6 +40,13 @@ class EyePass {
 
     void close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
+    /// The path that was closed last, to its own pixel.
+    void deliver(const Closed& closed, const PixelPaths& paths, const Iteration& iteration,
+                 Worker& worker, TaskResult& result, double scale = 1.0,
+                 const Proposal* proposal = nullptr) const {
+        delivery_.toOwnPixel({closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal},
+                             iteration.counts, paths.value, result);
+    }
     void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
     void chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
@@ -57,7 +63,6 @@ class EyePass {
     const LightPool& pool_;
     const PhotonGrid& photons_;
     const SpecularChains* chains_;
-    const RefractedLamps* refractedLamps_;
     Delivery& delivery_;
     const Workers& workers_;
 };

@@ -32,8 +32,7 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
       workers_(threads, settings.limits.maxDepth),
       chains_(chainsOf(setup_)),
       refractedLamps_(refractedLampsOf(setup_)),
-      eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), refractedLamps_.get(), delivery_,
-               workers_) {}
+      eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), delivery_, workers_) {}
 
 Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,
                                  IterationStatistics& statistics, const std::atomic<bool>& cancel) {

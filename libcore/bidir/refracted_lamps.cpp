@@ -26,7 +26,7 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
 }  // namespace
 
 RefractedLamps::RefractedLamps(const Walker& walker)
-    : walker_(walker), search_(walker.scene()), glass_(walker.scene()) {
+    : walker_(walker), solver_(walker.scene()), glass_(walker.scene()) {
     const Lights& lights = walker.lights();
     for (std::uint32_t i = 0; i < lights.size(); ++i) anyLamp_ |= isHittable(lights.kind(i));
 }
@@ -38,7 +38,7 @@ std::optional<FoundChain> RefractedLamps::between(const PathVertex& z, const Pat
     const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
     if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
     if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
-    return search_.throughGlass(queryOf(z, y0), tally);
+    return solver_.throughGlass(queryOf(z, y0), tally);
 }
 
 /// p(y_0) over what an eye walk that leaves z along the chain has for it, but for the direction's density
@@ -65,12 +65,13 @@ double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
     if (!found || found->chain.size() != vertices) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
-    if (!search_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
+    if (!solver_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
     return densityAt(y0, *found, z);
 }
 
 bool RefractedLamps::isGlass(const PathVertex& v) const {
-    return v.event == ScatterEvent::DeltaTransmission && search_.mayBeThroughGlass(v.material);
+    return v.event == ScatterEvent::DeltaTransmission &&
+           stopsAllRays(walker_.scene().description().materials[v.material]);
 }
 
 void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
@@ -94,11 +95,11 @@ double RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew)
     const bool ends = int(count) + 1 == path.edges || path.delta[count + 1];
     if (count == 0 || count > Chain::kMost || ends) return 0.0;
     const Vec3 toChain = -path.directionOf(int(count));
-    const PathVertex& z = *path.vertex[count + 1];
-    const double density = !anew && path.lightEdges > int(count)
-                               ? double(path.lightsEnd(int(count)).throughGlass)
-                               : densityOfChain(path.lightsEnd(int(count)), *path.vertex[0],
-                                                *path.vertex[count], count, toChain, tally);
+    const PathVertex &z = *path.vertex[count + 1], &end = path.lightsEnd(int(count));
+    const double density =
+        !anew && path.lightEdges > int(count)
+            ? double(end.throughGlass)
+            : densityOfChain(end, *path.vertex[0], *path.vertex[count], count, toChain, tally);
     if (!(density > 0.0)) return 0.0;
     const Vec3 toEye = path.directionOf(int(count) + 1);
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
@@ -119,17 +120,14 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const auto found = between(z, y0, tally);
     if (!found || int(found->chain.size()) > left) return std::nullopt;
 
-    const Chain& chain = found->chain;
-    const Vec3 toChain(chain.firstDirection());
-    const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
+    const BsdfEvaluation atEye =
+        walker_.scattering(z, z.toPrevious, Vec3(found->chain.firstDirection()));
     light.assign(1, y0);
-    appendChain(walker_, chain, light);
-    const double spread = found->spread * measureCosine(z, toChain) *
-                          measureCosine(y0, chain[chain.size() - 1].toLight) / samples;
-    const Rgb contribution = z.throughput * atEye.f * shareThrough(walker_, chain, light, z) *
-                             light[0].scatter * y0.throughput * float(spread);
+    const float pdfWToEye = appendChain(walker_, found->chain, light);
+    const Rgb contribution = broughtBy(walker_, *found, light, z, atEye.f) * float(1.0 / samples);
     if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
-    const Closed closed = closeRefraction(walker_, light, eye, atEye, contribution, path);
+    const Closed closed =
+        closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
     path.refracted = expected * densityAt(y0, *found, z) / double(atEye.pdfWToLight);
     return closed;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libcore/bidir/close.h"
-#include "libcore/specular/chain_search.h"
+#include "libcore/specular/chain_solver.h"
 #include "libcore/specular/glass_boxes.h"
 
 namespace lacuna {
@@ -43,7 +43,7 @@ class RefractedLamps {
                           std::size_t vertices, const Vec3& toChain, RayTally& tally) const;
 
     const Walker& walker_;
-    ChainSearch search_;
+    ChainSolver solver_;
     GlassBoxes glass_;
     bool anyLamp_ = false;
 };

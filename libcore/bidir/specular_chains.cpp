@@ -56,15 +56,11 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     const std::optional<FoundChain> found = search_.draw(query, rng, tally);
     if (!found) return std::nullopt;
 
-    const Chain& chain = found->chain;
     light.assign(1, y0);
-    appendChain(walker_, chain, light);
-    const Vec3 toChain(chain.firstDirection());
-    const BsdfEvaluation atEye = walker_.scattering(z, z.toPrevious, toChain);
-    const float profile = walker_.lights().profile(y0.light, y0.ng, -Vec3(chain.last().direction));
-    const Rgb through = shareThrough(walker_, chain, light, z);
-    const double spread = found->spread * measureCosine(z, toChain) * double(profile);
-    const Rgb contribution = z.throughput * atEye.f * through * y0.throughput * float(spread);
+    appendChain(walker_, found->chain, light);
+    const BsdfEvaluation atEye =
+        walker_.scattering(z, z.toPrevious, Vec3(found->chain.firstDirection()));
+    const Rgb contribution = broughtBy(walker_, *found, light, z, atEye.f);
     if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
 
     const double repeats = search_.reciprocalProbability(*found, query, rng, tally);

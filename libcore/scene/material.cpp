@@ -95,6 +95,10 @@ bool mayTransmit(const Material& m) {
     return m.transmission > 0.0f && (m.metallic < 1.0f || m.metallicRoughnessTexture);
 }
 
+bool stopsAllRays(const Material& m) {
+    return !m.pane && m.alphaMode == Material::Alpha::Opaque;
+}
+
 bool mayBeSmoothGlass(const Material& m) {
     return (mayRefractSmoothly(m) && !m.without.has(LobeKind::SmoothRefraction)) ||
            (mayPassSmoothly(m) && !m.without.has(LobeKind::SmoothThinTransmission));

@@ -123,6 +123,8 @@ bool mayReflect(const Material& material);
 bool mayTransmit(const Material& material);
 /// Some perfectly smooth reflection or transmission, of lobes that are not left out.
 bool mayBeSpecular(const Material& material);
+/// Whether every ray that comes by meets it, which those of alpha and panes do not.
+bool stopsAllRays(const Material& material);
 /// Whether rays go on straight or bent through it, scattered nowhere else.
 bool mayBeSmoothGlass(const Material& material);
 /// Thin smooth glass and nothing else, with or without a colour: a pane where it is flat.

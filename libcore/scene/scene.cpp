@@ -86,7 +86,7 @@ Scene::~Scene() = default;
 
 float Scene::shareStopped(const Hit& hit, const Vec3& direction) const {
     const Material& material = surfaces_.materialOf(baked_.objects[hit.object]);
-    if (!material.pane && material.alphaMode == Material::Alpha::Opaque) return 1.0f;
+    if (stopsAllRays(material)) return 1.0f;
     if (!material.pane) return surfaces_.opacity(hit);
     SurfacePoint point;
     surfaceAt(hit, point);

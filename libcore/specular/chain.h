@@ -68,11 +68,11 @@ class Chain {
     /// Goes on at `hit` of last() by `event`. False, with the chain as it was, where the surface has no
     /// such event for this ray.
     bool extend(const Scene& scene, const Hit& hit, SpecularEvent event);
-    /// Where last() meets the triangle of another chain's vertex, if it does.
-    std::optional<Hit> meetAgain(const ChainVertex& vertex) const;
     /// Likewise by one of all events that there are, each with the probability that is its share of the
     /// mean of `through`. `u` in [0, 1).
     bool extend(const Scene& scene, const Hit& hit, double u);
+    /// Where last() meets the triangle of another chain's vertex, if it does.
+    std::optional<Hit> meetAgain(const ChainVertex& vertex) const;
 
     /// Of events in turn.
     bool sameEventsAs(const Chain& other) const;

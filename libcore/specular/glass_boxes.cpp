@@ -26,8 +26,7 @@ Vec3 middleOf(const Triangle& t) {
 
 GlassBoxes::GlassBoxes(const Scene& scene) {
     std::vector<Triangle> triangles = scene.trianglesOf([](const Material& material) {
-        return !material.pane && mayBeSmoothGlass(material) &&
-               material.alphaMode == Material::Alpha::Opaque;
+        return mayBeSmoothGlass(material) && stopsAllRays(material);
     });
     const float wide = kMargin * scene.radius();
     const Vec3 margin{wide, wide, wide};

@@ -9,7 +9,8 @@ namespace lacuna {
 
 class GlassBoxes {
   public:
-    /// Boxes around the triangles of all instances whose material is smooth glass and no pane.
+    /// Boxes around the triangles of all instances whose material is smooth glass that stops
+    /// all rays.
     explicit GlassBoxes(const Scene& scene);
 
     bool empty() const { return boxes_.empty(); }

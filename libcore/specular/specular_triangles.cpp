@@ -5,8 +5,7 @@
 namespace lacuna {
 
 SpecularTriangles::SpecularTriangles(const Scene& scene)
-    : triangles_(
-          scene.trianglesOf([](const Material& material) { return mayBeSpecular(material); })) {
+    : triangles_(scene.trianglesOf(mayBeSpecular)) {
     std::vector<double> areas;
     areas.reserve(triangles_.size());
     for (const auto& [a, b, c] : triangles_) {

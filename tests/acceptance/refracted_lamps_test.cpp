@@ -62,8 +62,8 @@ TEST_P(RefractedLampsOf, skyThroughASlab) {
     EXPECT_GT(refractions, 10000);
 }
 
-/// A wide lamp behind what bends and colours its light: a slab with a relief, a ball with normals, a block
-/// in it that absorbs, under a veil, and a sheet that only one row of vertices holds.
+/// For a wide lamp behind what bends and colours its light: a slab with a relief, a ball with normals, and
+/// blocks that absorb, one of them turned and mirrored, the other under a veil.
 SceneBuilder glassAboveAStage() {
     SceneBuilder b;
     // Half a mirror, half a colour: walks go on from it by either, and connections end at it.

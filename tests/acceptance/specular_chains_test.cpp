@@ -167,15 +167,20 @@ SceneBuilder specularStage(LightChoice light) {
     return b;
 }
 
-TEST_P(Caustics, areTheSameByChainsAndBySplats) {
-    const auto scene = specularStage(GetParam()).build();
+void expectChainsAsSplats(const SceneBuilder& b, int maxDepth, int iterations,
+                          const std::string& what) {
+    const auto scene = b.build();
     Shot shot;
-    shot.maxDepth = 6;  // chains are of four vertices at most
-    shot.iterations = 3000;
+    shot.maxDepth = maxDepth;
+    shot.iterations = iterations;
     const Picture splats = render(*scene, rowNamed("bpt"), shot);
     shot.seed = 2;
-    expectSame(render(*scene, rowNamed("pt"), shot), splats, nameOf(GetParam()) + ", caustics",
-               Judge::BlocksAndMean);
+    expectSame(render(*scene, rowNamed("pt"), shot), splats, what, Judge::BlocksAndMean);
+}
+
+TEST_P(Caustics, areTheSameByChainsAndBySplats) {
+    // Chains are of four vertices at most.
+    expectChainsAsSplats(specularStage(GetParam()), 6, 3000, nameOf(GetParam()) + ", caustics");
 }
 
 /// Mirrors with a little relief under flat lacquer, and flat mirrors under lacquer with a relief: two images of
@@ -196,14 +201,7 @@ TEST_P(Caustics, ofLacquerAreTheSameByChainsAndBySplats) {
     b.add(box({0.4f, 0, -0.4f}, {1, 0.7f, 0.2f}, b.add(lacquer)), rotation({0, 1, 0}, -25));
     addLight(b, GetParam());
     b.add(lookAt({0.3, 1.6, 3}, {0, 0.2, 0}, 45));
-    const auto scene = b.build();
-    Shot shot;
-    shot.maxDepth = 4;
-    shot.iterations = 2000;
-    const Picture splats = render(*scene, rowNamed("bpt"), shot);
-    shot.seed = 2;
-    expectSame(render(*scene, rowNamed("pt"), shot), splats, nameOf(GetParam()) + ", lacquer",
-               Judge::BlocksAndMean);
+    expectChainsAsSplats(b, 4, 2000, nameOf(GetParam()) + ", lacquer");
 }
 
 /// A mirror that alpha leaves a part of, and a coloured window that reflects a little: rays meet either
@@ -219,14 +217,7 @@ TEST_P(Caustics, ofHalfAMirrorAndAWindowAreTheSameByChainsAndBySplats) {
     b.add(quad({-1.5f, 0, -2}, {0, 0, 4}, {0, 3, 0}, b.add(pane({0.9f, 0.4f, 0.6f}))));
     addLight(b, GetParam());
     b.add(lookAt({0.3, 1.6, 3}, {0, 0.2, 0}, 45));
-    const auto scene = b.build();
-    Shot shot;
-    shot.maxDepth = 4;
-    shot.iterations = 2000;
-    const Picture splats = render(*scene, rowNamed("bpt"), shot);
-    shot.seed = 2;
-    expectSame(render(*scene, rowNamed("pt"), shot), splats,
-               nameOf(GetParam()) + ", alpha and a pane", Judge::BlocksAndMean);
+    expectChainsAsSplats(b, 4, 2000, nameOf(GetParam()) + ", alpha and a pane");
 }
 
 /// A chain's path has no other technique in any row: its weight by products is one.

@@ -214,11 +214,11 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
 }
 
 /// Through both faces of a slab, as Snell's law has it: where the ray comes out, and how it spreads.
-TEST(ChainSearch, goesThroughASlabByItself) {
+TEST(ChainSolver, goesThroughASlabByItself) {
     SceneBuilder b;
     b.add(box({-50, 1, -50}, {50, 1.5f, 50}, b.add(glass(1.5f))));
     const auto scene = b.build();
-    const ChainSearch search(*scene);
+    const ChainSolver solver(*scene);
     const ChainStart start = floorOf(*scene);
     RayTally tally;
     const auto sideways = [](double sine) {  // 2 of air and .5 of glass
@@ -228,7 +228,7 @@ TEST(ChainSearch, goesThroughASlabByItself) {
     };
     for (const double x : {0.1, 1.0, 3.0, 8.0}) {
         const ChainTarget lamp = lampAt(*scene, {x, 2.5, 0});
-        const auto found = search.throughGlass({start, lamp, Chain::kMost}, tally);
+        const auto found = solver.throughGlass({start, lamp, Chain::kMost}, tally);
         ASSERT_TRUE(found) << x;
         EXPECT_EQ(found->chain.size(), 2u);
         const Vec3d along = found->chain.firstDirection();
@@ -237,31 +237,32 @@ TEST(ChainSearch, goesThroughASlabByItself) {
         const double sine = along.x, cosine = along.y, by = 1e-5;
         const double ring = (sideways(sine + by) - sideways(sine - by)) / (2 * by);
         EXPECT_NEAR(found->spread * x * ring * cosine * cosine / sine, 1.0, 1e-3);
-        EXPECT_TRUE(search.isAlong(*found, {start, lamp, Chain::kMost}, along, 1e-3, tally));
+        EXPECT_TRUE(solver.isAlong(*found, {start, lamp, Chain::kMost}, along, 1e-3, tally));
         const Vec3d straight = normalize(Vec3d{x, 2.5, 0});
-        EXPECT_FALSE(search.isAlong(*found, {start, lamp, Chain::kMost}, straight, 1e-4, tally));
+        EXPECT_FALSE(solver.isAlong(*found, {start, lamp, Chain::kMost}, straight, 1e-4, tally));
     }
     // What lies at infinity is seen in the direction that it is in.
     const ChainTarget sky{normalize(Vec3{0.3f, 0.8f, 0.2f}), true};
-    const auto found = search.throughGlass({start, sky, Chain::kMost}, tally);
+    const auto found = solver.throughGlass({start, sky, Chain::kMost}, tally);
     ASSERT_TRUE(found);
     EXPECT_LT(length(found->chain.firstDirection() - Vec3d(sky.position)), 1e-6);
     EXPECT_NEAR(found->spread, 1.0, 1e-6);
     // Nothing bends the way to a lamp below it, and no way leads through a mirror.
-    EXPECT_FALSE(search.throughGlass({start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
+    EXPECT_FALSE(solver.throughGlass({start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
     SceneBuilder shut;
     shut.add(box({-50, 1, -50}, {50, 1.5f, 50}, shut.add(mirror())));
     const auto closed = shut.build();
-    EXPECT_FALSE(ChainSearch(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
+    EXPECT_FALSE(ChainSolver(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
 }
 
 /// A ball of glass shows a lamp near its focus several times: which of two images a path belongs to shows
 /// in the sign of their spread, however near the two are.
-TEST(ChainSearch, tellsImagesOnEitherSideOfAFoldApart) {
+TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
     SceneBuilder b;
     b.add(ball({0, 1.5f, 0}, 0.5f, b.add(glass(1.5f))));
     const auto scene = b.build();
     const ChainSearch search(*scene);
+    const ChainSolver solver(*scene);
     const ChainQuery query{floorOf(*scene), lampAt(*scene, {0.02, 2.6, 0.01}), 2};
     const auto signOf = [](const FoundChain& found) {
         const auto& [a, c] = found.missBy;
@@ -284,7 +285,7 @@ TEST(ChainSearch, tellsImagesOnEitherSideOfAFoldApart) {
             const bool same = signOf(one) == signOf(other);
             (same ? alike : different) += 1;
             const Vec3d& along = other.chain.firstDirection();
-            EXPECT_EQ(search.isAlong(one, query, along, 3.0, tally), same);
+            EXPECT_EQ(solver.isAlong(one, query, along, 3.0, tally), same);
         }
     }
     EXPECT_GT(alike, 0);

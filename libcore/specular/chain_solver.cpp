@@ -1,0 +1,150 @@
+#include "libcore/specular/chain_solver.h"
+
+#include <cmath>
+
+namespace lacuna {
+
+namespace {
+
+constexpr int kMostSteps = 12;         // of Newton's method, those that did not help included
+constexpr double kConverged = 1e-10;   // of the miss: rounding in double
+constexpr double kAccepted = 1e-6;     // where texels of a normal map end the descent before
+constexpr double kAtTarget = 1e-4;     // of the way: what lies there is the target's own surface
+constexpr double kShortestStep = 0.1;  // of a full one
+
+double determinantOf(const Jacobian& j) {
+    return j[0][0] * j[1][1] - j[0][1] * j[1][0];
+}
+
+/// By how much the last ray misses the target: the difference of two unit directions, and of it the
+/// two coordinates across the target's, by each parameter.
+struct Miss {
+    Vec3d by;
+    std::array<double, 2> across;
+    Jacobian acrossBy;
+    double distance;  // to the target; 1 at infinity
+
+    double size() const { return length(by); }
+};
+
+Miss missOf(const MovingRay& ray, const ChainTarget& target) {
+    const Vec3d to = target.wayFrom(ray.origin);
+    const double distance = target.infinite ? 1.0 : length(to);
+    const Vec3d towards = target.infinite ? to : to * (1.0 / distance);
+    Miss miss{ray.direction - towards, {}, {}, distance};
+    const MovingRay axes = MovingRay::from({}, towards);
+    for (std::size_t c = 0; c < 2; ++c) {
+        const Vec3d& axis = axes.directionBy[c];
+        miss.across[c] = dot(miss.by, axis);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double turned = target.infinite ? 0.0 : dot(ray.originBy[i], axis) / distance;
+            miss.acrossBy[c][i] = dot(ray.directionBy[i], axis) + turned;
+        }
+    }
+    return miss;
+}
+
+/// Newton's step: the angles that would take the miss away; at most a radian.
+std::optional<std::array<double, 2>> stepOf(const Miss& miss) {
+    const double determinant = determinantOf(miss.acrossBy);
+    if (!(std::fabs(determinant) > 0.0)) return std::nullopt;
+    const auto& [a, b] = miss.acrossBy;
+    std::array<double, 2> step = {(b[1] * miss.across[0] - a[1] * miss.across[1]) / -determinant,
+                                  (a[0] * miss.across[1] - b[0] * miss.across[0]) / -determinant};
+    const double size = std::hypot(step[0], step[1]);
+    if (!std::isfinite(size)) return std::nullopt;
+    if (size > 1.0) step = {step[0] / size, step[1] / size};
+    return step;
+}
+
+}  // namespace
+
+bool onSameSideOfFold(const Jacobian& a, const Jacobian& b) {
+    return (determinantOf(a) > 0.0) == (determinantOf(b) > 0.0);
+}
+
+std::optional<Hit> ChainSolver::next(const ChainStart& start, const Chain& chain,
+                                     RayTally& tally) const {
+    const Vec3 ng = chain.size() > 0 ? chain.lastNormal() : start.ng;
+    return scene_.trace(Vec3(chain.last().origin), ng, Vec3(chain.last().direction), RayKind::Chain,
+                        tally);
+}
+
+/// The chain of the same events along another first ray. It stays on the same triangles where it can:
+/// mostly so, without tracing rays. Whether it sees its way is asked of what is found.
+std::optional<Chain> ChainSolver::retrace(const ChainStart& start, const Vec3d& direction,
+                                          const Chain& events, RayTally& tally) const {
+    Chain chain(MovingRay::from(Vec3d(start.position), direction));
+    while (chain.size() < events.size()) {
+        const ChainVertex& before = events[chain.size()];
+        std::optional<Hit> hit = chain.meetAgain(before);
+        if (!hit) hit = next(start, chain, tally);
+        if (!hit || !chain.extend(scene_, *hit, before.event)) return std::nullopt;
+    }
+    return chain;
+}
+
+std::optional<FoundChain> ChainSolver::solve(const ChainQuery& query, const Chain& seed,
+                                             RayTally& tally) const {
+    Chain chain = seed;
+    Miss miss = missOf(chain.last(), query.target);
+    double scale = 1.0;
+    for (int i = 0; i < kMostSteps && miss.size() > kConverged && scale > kShortestStep; ++i) {
+        const auto step = stepOf(miss);
+        if (!step) break;
+        const MovingRay& first = chain.first();
+        const Vec3d direction =
+            normalize(first.direction + first.directionBy[0] * ((*step)[0] * scale) +
+                      first.directionBy[1] * ((*step)[1] * scale));
+        const std::optional<Chain> moved = retrace(query.start, direction, chain, tally);
+        if (moved) {
+            const Miss now = missOf(moved->last(), query.target);
+            if (now.size() < miss.size()) {
+                chain = *moved;
+                miss = now;
+                scale = std::min(1.0, 2.0 * scale);
+                continue;
+            }
+            if (miss.size() < kAccepted) break;  // nothing but rounding is left
+        }
+        scale *= 0.5;
+    }
+    const double determinant = std::fabs(determinantOf(miss.acrossBy));
+    const double spread = 1.0 / (determinant * miss.distance * miss.distance);
+    if (!(miss.size() < kAccepted) || !std::isfinite(spread)) return std::nullopt;
+    return FoundChain{chain, spread, miss.acrossBy};
+}
+
+std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query,
+                                                    RayTally& tally) const {
+    const ChainStart& start = query.start;
+    const ChainTarget& target = query.target;
+    const Vec3d way = target.wayFrom(Vec3d(start.position));
+    if (!(lengthSquared(way) > 0.0)) return std::nullopt;
+    Chain chain(MovingRay::from(Vec3d(start.position), normalize(way)));
+    while (chain.size() < query.most) {
+        const std::optional<Hit> hit = next(start, chain, tally);
+        if (!hit) break;
+        const bool behind = !target.infinite &&
+                            double(hit->distance) >= length(target.wayFrom(chain.last().origin));
+        if (behind) break;
+        if (!chain.extend(scene_, *hit, {.event = ScatterEvent::DeltaTransmission})) break;
+        const std::uint32_t material = chain[chain.size() - 1].point.material;
+        if (!stopsAllRays(scene_.description().materials[material])) return std::nullopt;
+    }
+    if (chain.size() == 0) return std::nullopt;
+    const auto found = solve(query, chain, tally);
+    if (!found || target.infinite) return found;
+    // A lamp may be of glass itself, and rounding put its surface before it.
+    const double last = length(target.wayFrom(found->chain.last().origin));
+    return last > kAtTarget * length(way) ? found : std::nullopt;
+}
+
+bool ChainSolver::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
+                          double angle, RayTally& tally) const {
+    if (!(length(direction - found.chain.firstDirection()) < angle)) return false;
+    const std::optional<Chain> path = retrace(query.start, direction, found.chain, tally);
+    return !path || onSameSideOfFold(found.missBy, missOf(path->last(), query.target).acrossBy);
+}
+
+}  // namespace lacuna
