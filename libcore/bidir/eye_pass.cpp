@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace lacuna {
 
@@ -152,11 +153,16 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
 /// The eye path's vertices with lamps and the sky behind smooth glass.
 void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                       TaskResult& result) const {
-    Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Refraction, paths.sample.number);
+    const RefractedLamps& lamps = *iteration.counts.refractedLamps;
+    std::optional<Rng> rng;
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
-        const auto closed = iteration.counts.refractedLamps->sample(eye, rng, result.tally,
-                                                                    worker.chain, worker.fullPath);
+        if (!lamps.mayBring(eye.back())) continue;
+        if (!rng) {
+            rng = setup_.sampler.stream(iteration.number, StreamKind::Refraction,
+                                        paths.sample.number);
+        }
+        const auto closed = lamps.sample(eye, *rng, result.tally, worker.chain, worker.fullPath);
         if (closed) deliver(*closed, paths, iteration, worker, result);
         result.clock.lap([&] { return TechniqueGroup::ofRefraction(connectionOrder(eye)); });
     }

@@ -12,12 +12,6 @@ namespace {
 /// direction, and by how far of the scene's radius rays leave surfaces.
 constexpr double kAngle = 1e-3, kOffset = 1e-5;
 
-/// Expected samples at an eye vertex, by its order: deep ones carry little, and there are many.
-double samplesAt(int order) {
-    constexpr double kSamples[] = {1.0, 0.5, 0.25};
-    return kSamples[std::min(order, 3) - 1];
-}
-
 /// What a chain is a function of.
 ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
     return {{z.position, z.ng, {}}, {y0.position, y0.infinite()}, Chain::kMost};
@@ -25,10 +19,10 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
 
 }  // namespace
 
-RefractedLamps::RefractedLamps(const Walker& walker)
-    : walker_(walker), solver_(walker.scene()), glass_(walker.scene()) {
-    const Lights& lights = walker.lights();
-    for (std::uint32_t i = 0; i < lights.size(); ++i) anyLamp_ |= isHittable(lights.kind(i));
+/// Of deep vertices there are many, and each carries little.
+double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
+    constexpr double kByOrder[] = {1.0, 0.5, 0.25};
+    return kByOrder[std::min(order, 3) - 1] * shadows_.triesAt(z.position);
 }
 
 /// The chain: a function of the two, whichever walk made z. No ray is traced where the lamp lies behind z
@@ -80,7 +74,7 @@ void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
     for (std::size_t last = 1; last + 1 < light.size() && last <= Chain::kMost; ++last) {
         if (!isGlass(light[last])) return;
         PathVertex& z = light[last + 1];
-        if (!z.connectable()) continue;
+        if (!z.connectable() || !mayBring(z)) continue;
         z.throughGlass = float(densityOfChain(z, light[0], light[last], last, z.toPrevious, tally));
     }
 }
@@ -103,7 +97,7 @@ double RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew)
     if (!(density > 0.0)) return 0.0;
     const Vec3 toEye = path.directionOf(int(count) + 1);
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
-    const double samples = samplesAt(path.orderOf(int(count) + 1));
+    const double samples = samplesAt(end, path.orderOf(int(count) + 1));
     return eyePdfW > 0.0 ? samples * density / eyePdfW : 0.0;
 }
 
@@ -112,7 +106,7 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const PathVertex& z = eye.back();
     const int left = walker_.limits().maxDepth - int(eye.size());
     if (left < 1 || z.kind != VertexKind::Surface || !z.connectable()) return std::nullopt;
-    const double expected = samplesAt(connectionOrder(eye));
+    const double expected = samplesAt(z, connectionOrder(eye));
     if (rng.uniformDouble() >= expected) return std::nullopt;
     PathVertex y0;
     const double samples = expected * walker_.sampleSeenLight(z, rng, y0);

@@ -11,16 +11,18 @@
 #include "libcore/bidir/close.h"
 #include "libcore/specular/chain_solver.h"
 #include "libcore/specular/glass_boxes.h"
+#include "libcore/specular/glass_shadows.h"
 
 namespace lacuna {
 
 class RefractedLamps {
   public:
     /// `walker` must outlive it.
-    explicit RefractedLamps(const Walker& walker);
+    explicit RefractedLamps(const Walker& walker)
+        : RefractedLamps(walker, glassInBoxes(walker.scene())) {}
 
     /// The scene has no lamp with a size and no sky, or no smooth glass.
-    bool empty() const { return !anyLamp_ || glass_.empty(); }
+    bool empty() const { return shadows_.empty(); }
 
     /// A path from an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2, through glass to a lamp; mostly
     /// none. Fills `light`, y_0 .. y_{s-1} with a refraction at each but y_0, and `path`.
@@ -34,7 +36,18 @@ class RefractedLamps {
     /// looked up again, unless `anew`.
     double ratioOf(const FullPath& path, RayTally& tally, bool anew = false) const;
 
+    /// Whether there may be anything to sample at z: mostly, in most scenes, there is not.
+    bool mayBring(const PathVertex& z) const { return !z.infinite() && shadows_.reach(z.position); }
+    /// n(z), the expected number of samples at an eye vertex of this order: the same, whichever walk made z.
+    double samplesAt(const PathVertex& z, int order) const;
+
   private:
+    RefractedLamps(const Walker& walker, std::span<const BoxedTriangles> glass)
+        : walker_(walker),
+          solver_(walker.scene()),
+          glass_(glass),
+          shadows_(walker.scene(), glass) {}
+
     bool isGlass(const PathVertex& v) const;
     std::optional<FoundChain> between(const PathVertex& z, const PathVertex& y0,
                                       RayTally& tally) const;
@@ -45,7 +58,7 @@ class RefractedLamps {
     const Walker& walker_;
     ChainSolver solver_;
     GlassBoxes glass_;
-    bool anyLamp_ = false;
+    GlassShadows shadows_;
 };
 
 }  // namespace lacuna

@@ -232,7 +232,10 @@ BakedScene bake(SceneDescription& d, const ThreadPool& pool) {
     BakedScene out;
     const Box bounds = boundsOf(d, pool);
     out.centre = bounds.centre();
-    if (!bounds.empty()) out.radius = float(0.5 * length(bounds.high - bounds.low));
+    if (!bounds.empty()) {
+        out.halfSize = Vec3((bounds.high - bounds.low) * 0.5);
+        out.radius = float(0.5 * length(bounds.high - bounds.low));
+    }
 
     std::vector<MeshUse> uses = countUses(d);
     for (const Instance& instance : d.instances) {

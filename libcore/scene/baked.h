@@ -64,6 +64,7 @@ struct SceneObject {
 struct BakedScene {
     Vec3d centre;         ///< middle of the file's bounding box: file coordinates = ours + centre
     float radius = 0.0f;  ///< of the bounding sphere about the origin; 0 without geometry
+    Vec3 halfSize;        ///< of the bounding box, half of each side; likewise
     std::size_t triangles = 0;  ///< instances each time
     std::vector<BakedMesh> meshes;
     std::vector<SceneObject> objects;

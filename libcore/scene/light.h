@@ -98,6 +98,10 @@ class Lights {
     bool empty() const { return selection_.empty(); }
     std::size_t size() const { return kinds_.size(); }
     LightKind kind(std::uint32_t light) const { return kinds_[light]; }
+    /// EmissiveTriangle::corners of an area light.
+    const std::array<Vec3, 3>& corners(std::uint32_t light) const {
+        return triangles_[light].corners;
+    }
     /// What EmissiveTriangle::material was, of an area light.
     std::uint32_t material(std::uint32_t light) const { return triangles_[light].material; }
     const Environment* environment() const { return environment_; }

@@ -53,6 +53,8 @@ class Scene {
     Vec3d centre() const { return baked_.centre; }
     /// Radius of the bounding sphere about the origin; 0 without geometry.
     float radius() const { return baked_.radius; }
+    /// Half the sides of the bounding box, whose middle is the origin; zero without geometry.
+    const Vec3& halfSize() const { return baked_.halfSize; }
     std::size_t triangleCount() const { return baked_.triangles; }
     /// The triangles that stop light, in our coordinates, instances each time, in a fixed order.
     /// That is all of them, glass that bends light too: a connection does not pass it either. Left out

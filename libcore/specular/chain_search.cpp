@@ -32,7 +32,7 @@ Vec3d ChainSearch::seedDirection(const ChainQuery& query, Rng& rng) const {
         return query.target.infinite ? straight : normalize(straight);
     }
     if (way == 1) {
-        return normalize(Vec3d(triangles_.samplePoint(rng)) - Vec3d(start.position));
+        return normalize(Vec3d(triangles_.sample(rng).position) - Vec3d(start.position));
     }
     const float u1 = rng.uniform(), u2 = rng.uniform();
     const bool otherSide = rng.uniform() < 0.5f;

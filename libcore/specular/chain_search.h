@@ -7,14 +7,15 @@
 
 #include "libcore/base/rng.h"
 #include "libcore/specular/chain_solver.h"
-#include "libcore/specular/specular_triangles.h"
+#include "libcore/specular/triangles_by_area.h"
 
 namespace lacuna {
 
 class ChainSearch {
   public:
     /// `scene` must outlive it.
-    explicit ChainSearch(const Scene& scene) : solver_(scene), triangles_(scene) {}
+    explicit ChainSearch(const Scene& scene)
+        : solver_(scene), triangles_(scene.trianglesOf(mayBeSpecular)) {}
 
     /// Nothing in the scene that a chain could begin at.
     bool empty() const { return triangles_.empty(); }
@@ -33,7 +34,7 @@ class ChainSearch {
     std::optional<Chain> seed(const ChainQuery& query, Rng& rng, RayTally& tally) const;
 
     ChainSolver solver_;
-    SpecularTriangles triangles_;
+    TrianglesByArea triangles_;  // mirrors and smooth glass: what a chain may meet first
 };
 
 }  // namespace lacuna

@@ -1,29 +1,33 @@
 // Where there is smooth glass, so that rays which could not meet any need not be traced.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "libcore/scene/scene.h"
+#include "libcore/specular/boxes.h"
 
 namespace lacuna {
 
+/// At most 32 boxes around the triangles of all instances whose material is smooth glass that stops all
+/// rays.
+std::vector<BoxedTriangles> glassInBoxes(const Scene& scene);
+
+/// How much wider boxes are than what is in them: rays leave surfaces by an offset.
+float boxMargin(const Scene& scene);
+
 class GlassBoxes {
   public:
-    /// Boxes around the triangles of all instances whose material is smooth glass that stops
-    /// all rays.
-    explicit GlassBoxes(const Scene& scene);
+    /// Of glassInBoxes().
+    explicit GlassBoxes(std::span<const BoxedTriangles> glass);
 
-    bool empty() const { return boxes_.empty(); }
     /// Whether the straight way from `origin` along `way` may meet glass: as far as `way` is long, or
     /// for ever. Never false where it does.
     bool mayLieOn(const Vec3& origin, const Vec3& way, bool forEver) const;
 
   private:
-    struct Box {
-        Vec3 low, high;
-    };
-    Box whole_;  ///< around all of them
     std::vector<Box> boxes_;
+    Box whole_{};  ///< around all of them
 };
 
 }  // namespace lacuna

@@ -200,6 +200,49 @@ TEST(RefractedLamps, knowTheirDensity) {
     }
 }
 
+/// How many samples a path counts as is a function of the path: what the technique itself has, what a light
+/// subpath knew when it was traced, and what is found anew, also where few are drawn because little of the
+/// light comes as far as the glass.
+TEST(RefractedLamps, countTheSameFromAllSides) {
+    SceneBuilder b;
+    b.d.materials[0] = plastic({0.5f, 0.4f, 0.3f}, 0.6f);
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    const auto pane = b.add(glass());
+    for (const float x : {-1.2f, -0.7f, -0.2f, 0.3f, 0.8f}) {  // the middle is lit best
+        b.add(box({x, 1, -1.5f}, {x + 0.4f, 1.1f, 1.5f}, pane));
+    }
+    b.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, b.add(emitter({2, 3, 4}))));
+    b.add(quad({-2, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));  // a gap is left
+    b.add(quad({0.06f, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));
+    b.add(lookAt({0.3, 0.8, 2}, {0, 0, 0.2}, 40));
+    const auto scene = b.build();
+    for (const char* name : {"pt", "bpt", "vcm"}) {
+        Shot shot = quickShot(150);
+        shot.maxDepth = 6;
+        int own = 0, others = 0, few = 0;
+        double worst = 0;
+        const ThreadPool one(1);
+        shot.threads = &one;
+        shot.observer = [&](const PathEvent& event) {
+            const FullPath& path = event.path;
+            if (!(path.refracted > 0)) return;
+            RayTally ignored;
+            const RefractedLamps& lamps = *event.counts.refractedLamps;
+            const double again = lamps.ratioOf(path, ignored, true);
+            worst = std::max(worst, std::fabs(again / path.refracted - 1));
+            ++(event.technique.refracts() ? own : others);
+            int z = 1;
+            while (path.delta[std::size_t(z)]) ++z;
+            few += lamps.samplesAt(path.lightsEnd(z - 1), 1) < 1.0;
+        };
+        render(*scene, rowNamed(name), shot);
+        EXPECT_GT(own, 300) << name;
+        EXPECT_GT(others, 30) << name;
+        EXPECT_GT(few, 100) << name;
+        EXPECT_LT(worst, 1e-5) << name;
+    }
+}
+
 /// A lamp whose body is smooth glass, thin or solid: what a ray meets there is the lamp.
 TEST(RefractedLamps, areNoGlassBeforeThemselves) {
     for (const bool solid : {false, true}) {

@@ -303,7 +303,7 @@ TEST(GlassBoxes, holdAllGlass) {
     veil.alphaMode = lacuna::Material::Alpha::Blend;
     b.add(ball({0, 9, 0}, 2, b.add(veil)));
     const auto scene = b.build();
-    const GlassBoxes glass(*scene);
+    const GlassBoxes glass(glassInBoxes(*scene));
     RayTally tally;
     Rng rng(4, 0, StreamKind::User, 0);
     int hits = 0, others = 0;

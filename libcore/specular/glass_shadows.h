@@ -1,0 +1,74 @@
+// Where next event through smooth glass is worth a try: where glass lies between a place and a lamp, and
+// the more of the lamp's light comes as far as the glass, the more so. A table over the scene's space.
+// (theory.md, "Next event through glass")
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/scene/scene.h"
+#include "libcore/specular/boxes.h"
+
+namespace lacuna {
+
+class GlassShadows {
+  public:
+    /// `glass`: glassInBoxes().
+    GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass);
+
+    /// There is no glass, or neither a lamp with a size nor a sky.
+    bool empty() const { return cells_.empty(); }
+    /// Whether some straight way from a place of the scene to a lamp or the sky may meet glass. Not to be
+    /// called when empty(), nor is the next one.
+    bool reach(const Vec3& place) const {
+        const Cell cell = cellOf(place);
+        return (rows_[cell.row] >> cell.x & 1) != 0;
+    }
+    /// How often to try there: zero where they do not reach, else from kLeast to one.
+    double triesAt(const Vec3& place) const {
+        const Cell cell = cellOf(place);
+        return kOfCode * double(cells_[cell.row * kSide + cell.x]);
+    }
+
+    /// Glass that no lamp was seen to shine on is tried all the same: the light may come through a gap.
+    static constexpr double kLeast = 1.0 / 16.0;
+
+  private:
+    static constexpr std::size_t kSide = 32;  // cells; so many bits has a row
+    static constexpr double kOfCode = 1.0 / 240.0;
+
+    /// Glass, and a lamp or the sky, whose light it may bring.
+    struct Pair {
+        Box glass;
+        Box lamp;
+        bool sky;
+        std::uint8_t code;  ///< tries over kOfCode
+    };
+    /// Of cells, from one corner on.
+    struct Cube {
+        std::size_t x, y, z, side;
+    };
+
+    struct Cell {
+        std::size_t row, x;
+    };
+    Cell cellOf(const Vec3& place) const {
+        const auto index = [](float x, float toCells) {
+            constexpr float kMiddle = float(kSide) / 2;
+            return std::min<std::uint32_t>(std::uint32_t(int(x * toCells + kMiddle)), kSide - 1);
+        };
+        return {index(place.z, toCells_.z) * kSide + index(place.y, toCells_.y),
+                index(place.x, toCells_.x)};
+    }
+    Box boxOf(const Cube& cube, const Vec3& half, float margin) const;
+    void fill(const Cube& cube, std::span<const Pair> pairs, const Vec3& half, float margin);
+
+    Vec3 toCells_;
+    std::vector<std::uint8_t> cells_;  // Pair::code of the best pair
+    std::vector<std::uint32_t>
+        rows_;  // whether there is one, a bit each: small enough to stay at hand
+};
+
+}  // namespace lacuna
