@@ -119,11 +119,11 @@ int trainTool(int argc, char** argv) {
     const TableOptions<WalkSettings> walkTable(app, walkOptions(Walks::Plain));
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
-        "Writes KEY.emission, KEY.walks and KEY.subspaces into the scene's cache, for "
-        "lacuna-render --method\n"
-        "spcbpt with the same options of scene, picture and camera: what is learned is of what "
-        "they\n"
-        "show. Other methods take the former with --set emission=learned.\n"
+        "Writes KEY.emission, KEY.walks and KEY.subspaces into the scene's cache, for the methods "
+        "spcbpt\n"
+        "and sharebpt of lacuna-render with the same options of scene, picture and camera: what is "
+        "learned\n"
+        "is of what they show. Other methods take the former with --set emission=learned.\n"
         "Examples:\n"
         "  lacuna-train door.glb --paths 200000\n"
         "  lacuna-render door.glb -o door.exr --method spcbpt --set train.paths=200000\n"

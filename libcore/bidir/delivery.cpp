@@ -25,14 +25,6 @@ TechniqueGroup groupOf(const Contribution& c) {
 
 }  // namespace
 
-std::string Sample::address(int filmWidth) const {
-    const auto width = std::uint64_t(filmWidth);
-    const std::string place =
-        ofLight ? "light:" + std::to_string(number)
-                : std::to_string(number % width) + "," + std::to_string(number / width);
-    return place + "," + std::to_string(iteration);
-}
-
 PathObserver Delivery::setObserver(PathObserver observer) {
     return std::exchange(observer_, std::move(observer));
 }
@@ -45,12 +37,15 @@ Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& 
     }
     const double weight = misWeight(c.path, counts, c.closed.technique);
     const Rgb scaled = c.closed.contribution * float(c.scale);
-    const Rgb value = lights.inFileUnits(scaled * float(weight));
-    if (observer_) {
-        observer_(
-            {c.path, c.closed.technique, weight, value, c.pixel, c.proposal, counts, c.sample});
-    }
-    return {value, techniqueFilm_ ? lights.inFileUnits(scaled) : Rgb{}};
+    return {weight, lights.inFileUnits(scaled * float(weight)),
+            techniqueFilm_ ? lights.inFileUnits(scaled) : Rgb{}};
+}
+
+void Delivery::observe(const Contribution& c, const TechniqueCounts& counts,
+                       const Weighed& w) const {
+    if (!observer_) return;
+    observer_(
+        {c.path, c.closed.technique, w.weight, w.value, c.pixel, c.proposal, counts, c.sample});
 }
 
 void Delivery::countInvalid(const Sample& sample, TaskResult& result) const {
@@ -60,14 +55,19 @@ void Delivery::countInvalid(const Sample& sample, TaskResult& result) const {
     }
 }
 
-void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
-                          TaskResult& result) const {
-    if (isBackground(c.path)) return;
+Rgb Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb* pixel,
+                         TaskResult& result) const {
+    if (isBackground(c.path)) return {};
     const Weighed w = weigh(c, counts, result.tally);
+    if (!pixel) return isFinite(w.value) ? w.value : Rgb{};
+    observe(c, counts, w);
     // Values that are finite may add up to more than a float holds.
-    const Rgb sum = pixel + w.value;
-    if (!isFinite(sum)) return countInvalid(c.sample, result);
-    pixel = sum;
+    const Rgb sum = *pixel + w.value;
+    if (!isFinite(sum)) {
+        countInvalid(c.sample, result);
+        return {};
+    }
+    *pixel = sum;
     if (layerFilm_) {
         for (const auto& share : sharesOf(c.path, w.value, result)) layerFilm_->add(share, c.pixel);
     }
@@ -75,12 +75,14 @@ void Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, 
         const int t = c.closed.technique.t, s = c.closed.technique.firstOfEye(c.path.edges);
         techniqueFilm_->add({s, t, groupOf(c), c.pixel, w.value, w.unweighted});
     }
+    return w.value;
 }
 
 void Delivery::toSplats(const Contribution& c, const TechniqueCounts& counts,
                         TaskResult& result) const {
     if (isBackground(c.path)) return;
     const Weighed w = weigh(c, counts, result.tally);
+    observe(c, counts, w);
     if (!isFinite(w.value)) return countInvalid(c.sample, result);
     result.splats.push_back({c.pixel, w.value});
     result.splatPaths.push_back(c.sample.number);

@@ -16,16 +16,6 @@
 
 namespace lacuna {
 
-/// Which of a render's samples a path comes from.
-struct Sample {
-    std::uint32_t iteration = 0;
-    bool ofLight = false;      ///< a light subpath (t = 1), else an eye path
-    std::uint64_t number = 0;  ///< of the light subpath; of the pixel, row-major in the full film
-
-    /// "x,y,iteration" or "light:NUMBER,iteration": what --replay takes.
-    std::string address(int filmWidth) const;
-};
-
 /// One weighted path, as observers see it: tests, --verify, --replay.
 struct PathEvent {
     FullPath& path;
@@ -64,9 +54,11 @@ class Delivery {
     void setRecording(bool on) { recording_ = on; }
     std::vector<RecordedRay> takeRecording() { return std::exchange(recorded_, {}); }
 
-    /// Adds an eye path's contribution to its pixel, which no other task adds to.
-    void toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb& pixel,
-                    TaskResult& result) const;
+    /// Adds an eye path's contribution to its pixel, which no other task adds to. Returns what it added.
+    /// Null: what it would add.
+    /// Null: what it would add.
+    Rgb toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb* pixel,
+                   TaskResult& result) const;
     /// Appends a light subpath's contribution to the task's splats.
     void toSplats(const Contribution& c, const TechniqueCounts& counts, TaskResult& result) const;
 
@@ -85,11 +77,13 @@ class Delivery {
     }
 
   private:
-    /// The contribution with and without its weight, in the file's units; observed.
+    /// The contribution with and without its weight, in the file's units.
     struct Weighed {
+        double weight;
         Rgb value, unweighted;
     };
     Weighed weigh(const Contribution& c, const TechniqueCounts& counts, RayTally& tally) const;
+    void observe(const Contribution& c, const TechniqueCounts& counts, const Weighed& w) const;
     /// What a path that adds `value` to the picture adds to layers; where there is a film of them.
     std::span<const PathLayers::Share> sharesOf(const FullPath& path, const Rgb& value,
                                                 TaskResult& result) const {

@@ -1,7 +1,7 @@
 #include "libcore/bidir/eye_pass.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
 #include <optional>
 
 namespace lacuna {
@@ -11,17 +11,41 @@ constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bou
 /// Of the vertices that chains begin at, those that search where that is nearly every one: searches at
 /// all of them would take more than three times as long as the rest of the path.
 constexpr double kShareWithoutSplats = 0.25;
-
+/// Side of the squares whose pixels share walks.
+constexpr int kSide = 4;
+static_assert(kSide * kSide == kTile);
 /// Of a light subpath of s vertices with this eye subpath.
 TechniqueGroup groupOf(std::size_t s, Subpath eye) {
     return TechniqueGroup::of(int(s), int(eye.size()), connectionOrder(eye));
 }
 }  // namespace
 
+/// A part of a row, or, where walks are shared, a square of the film, elsewhere in each iteration, so that
+/// the picture has no seams.
+EyePass::Blocks EyePass::blocksOf(const Iteration& iteration) const {
+    const PixelRect& crop = setup_.settings.crop;
+    if (!iteration.counts.sharing.any()) return {crop.x0, crop.y0, kTile, 1, crop};
+    const int shift = int(iteration.number % std::uint32_t(kTile));
+    const Camera::Film film = setup_.camera.film();
+    return {crop.x0 - (crop.x0 + shift % kSide) % kSide,
+            crop.y0 - (crop.y0 + shift / kSide) % kSide,
+            kSide,
+            kSide,
+            {0, film.width, 0, film.height}};
+}
+
+PixelRect EyePass::Blocks::at(int x, int y) const {
+    const int left = x - (x - x0) % width, top = y - (y - y0) % height;
+    return {std::max(left, bounds.x0), std::min(left + width, bounds.x1), std::max(top, bounds.y0),
+            std::min(top + height, bounds.y1)};
+}
+
 bool EyePass::run(const Iteration& iteration) const {
     const PixelRect& crop = setup_.settings.crop;
-    const int tilesX = (crop.width() + kTile - 1) / kTile;
-    const int tilesY = (crop.height() + kTile - 1) / kTile;
+    const Target target{crop, iteration.pixels.data()};
+    const Blocks blocks = blocksOf(iteration);
+    const int tilesX = (crop.x1 - blocks.x0 + kTile - 1) / kTile;
+    const int tilesY = (crop.y1 - blocks.y0 + kTile - 1) / kTile;
     const int rowsPerBatch = std::max(1, kPathsPerBatch / (kTile * kTile * tilesX));
     for (int row = 0; row < tilesY; row += rowsPerBatch) {
         const int rows = std::min(rowsPerBatch, tilesY - row);
@@ -30,12 +54,12 @@ bool EyePass::run(const Iteration& iteration) const {
             if (iteration.cancel) return;
             delivery_.begin(results[task]);
             Worker& worker = workers_.own();
-            const int x0 = crop.x0 + int(task % std::size_t(tilesX)) * kTile;
-            const int y0 = crop.y0 + (row + int(task / std::size_t(tilesX))) * kTile;
-            const auto count = std::size_t(std::min(kTile, crop.x1 - x0));
-            for (int y = y0; y < std::min(y0 + kTile, crop.y1); ++y) {
-                pixelRow(iteration, x0, y, iteration.pixels.subspan(setup_.cropIndex(x0, y), count),
-                         worker, results[task]);
+            const int x0 = blocks.x0 + int(task % std::size_t(tilesX)) * kTile;
+            const int y0 = blocks.y0 + (row + int(task / std::size_t(tilesX))) * kTile;
+            for (int y = y0; y < std::min(y0 + kTile, crop.y1); y += blocks.height) {
+                for (int x = x0; x < std::min(x0 + kTile, crop.x1); x += blocks.width) {
+                    block(iteration, blocks.at(x, y), target, worker, results[task]);
+                }
             }
         });
         if (iteration.cancel) return false;
@@ -45,70 +69,133 @@ bool EyePass::run(const Iteration& iteration) const {
     return true;
 }
 
-void EyePass::pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb> pixels,
-                       Worker& worker, TaskResult& result) const {
-    const std::uint32_t filmIndex = setup_.filmIndex(x0, y);
+std::size_t EyePass::pixel(const Iteration& iteration, int x, int y, Rgb& value, Worker& worker,
+                           TaskResult& result) const {
+    const PixelRect alone{x, x + 1, y, y + 1};
+    const bool shares = iteration.counts.sharing.any();
+    const PixelRect pixels = shares ? blocksOf(iteration).at(x, y) : alone;
+    block(iteration, pixels, {alone, &value}, worker, result);
+    return std::size_t((y - pixels.y0) * pixels.width() + x - pixels.x0);
+}
+
+/// At most kTile pixels.
+void EyePass::block(const Iteration& iteration, const PixelRect& pixels, const Target& target,
+                    Worker& worker, TaskResult& result) const {
+    struct Place {
+        int x, y;
+        std::uint32_t inFilm;
+    };
+    std::array<Place, kTile> all;
+    std::size_t count = 0;
+    for (int y = pixels.y0; y < pixels.y1; ++y) {
+        for (int x = pixels.x0; x < pixels.x1; ++x) all[count++] = {x, y, setup_.filmIndex(x, y)};
+    }
+    const auto places = std::span(all).first(count);
     // One thing after the other for all pixels, and not all things for one pixel: the processor's
     // first cache holds the code of one of them.
     const bool traced = setup_.techniques.ownLightPath && !pool_.findsSubpaths();
     if (traced) {
         std::array<std::uint64_t, kTile> numbers;
-        std::iota(numbers.begin(), numbers.end(), std::uint64_t(filmIndex));
+        std::ranges::transform(places, numbers.begin(), &Place::inFilm);
         const std::uint64_t splats = setup_.techniques.splats ? setup_.lightPaths : 0;
-        lightPass_.trace(std::span(numbers).first(pixels.size()), iteration,
+        lightPass_.trace(std::span(numbers).first(count), iteration,
                          {StreamKind::LightPath, 0, splats}, worker, result);
     }
     result.clock.start();
     worker.rngs.clear();
     worker.walks.clear();
-    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [x, y, inFilm] = places[i];
         Rng& rng = worker.rngs.emplace_back(
-            setup_.sampler.stream(iteration.number, StreamKind::EyePath, filmIndex + i));
-        worker.walks.push_back(setup_.startEye(x0 + int(i), y, rng, worker.eye[i]));
+            setup_.sampler.stream(iteration.number, StreamKind::EyePath, inFilm));
+        worker.walks.push_back(setup_.startEye(x, y, rng, worker.eye[i]));
     }
     setup_.walker.finish(worker.walks, result.tally);
-    for (std::uint32_t i = 0; i < pixels.size(); ++i) iteration.counts.labelWalk(worker.eye[i]);
+    for (std::size_t i = 0; i < count; ++i) iteration.counts.labelWalk(worker.eye[i]);
     result.clock.lapOfWalks(kEyeWalks);
-    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    worker.paths.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [x, y, inFilm] = places[i];
         const Subpath own = traced                  ? worker.light[i]
-                            : pool_.findsSubpaths() ? pool_.subpath(filmIndex + i)
+                            : pool_.findsSubpaths() ? pool_.subpath(inFilm)
                                                     : Subpath{};
-        close({worker.eye[i],
-               own,
-               {iteration.number, false, filmIndex + i},
-               setup_.cropIndex(x0 + int(i), y),
-               pixels[i]},
-              iteration, worker, result);
+        worker.paths.push_back({worker.eye[i],
+                                own,
+                                {iteration.number, false, inFilm},
+                                setup_.cropIndex(x, y),
+                                target.at(x, y)});
+    }
+    if (iteration.counts.sharing.any()) {
+        closeTogether(worker.paths, iteration, worker, result);
+    } else {
+        for (const PixelPaths& paths : worker.paths) closeAlone(paths, iteration, worker, result);
     }
 }
 
-void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
-                    TaskResult& result) const {
-    select(paths, iteration, worker, result);
-    open(paths, iteration, worker, result);
-    TechniqueClock& clock = result.clock;
-    clock.start();
+void EyePass::closeAlone(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                         TaskResult& result) const {
+    Joints& joints = worker.joints[0];
+    select(paths, joints, iteration, result);
+    open(paths, joints, iteration, result);
+    result.clock.start();
+    close(paths, joints, {2, paths.eye.size()}, iteration, worker, result);
+    searchBehindGlass(paths, iteration, worker, result);
+}
+
+/// In the order of t: what the path gets at its vertices from lamps and over connections.
+void EyePass::findEndings(const PixelPaths& paths, const Joints& joints, Ends ends,
+                          std::vector<Ending>& endings) const {
+    endings.clear();
     std::size_t next = 0;
-    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
-        const Subpath eye = paths.eye.first(t);
-        if (setup_.techniques.hits && eye.back().light != kNone) {
-            const auto closed = closeHit(setup_.walker, eye, worker.fullPath);
-            if (closed) deliver(*closed, paths, iteration, worker, result);
-            clock.lap([&] { return groupOf(0, eye); });
+    for (std::size_t t = ends.first; t <= ends.last; ++t) {
+        if (setup_.techniques.hits && paths.eye[t - 1].light != kNone) {
+            endings.push_back({t, nullptr, nullptr});
         }
-        for (; next < worker.open.size() && worker.open[next].eye.size() == t; ++next) {
-            const OpenConnection& open = worker.open[next];
-            const auto closed = closeConnection(setup_.walker, open, worker.fullPath);
-            const Proposal* proposal = worker.openedBy[next];
-            if (closed)
-                deliver(*closed, paths, iteration, worker, result, proposal->weight, proposal);
-            clock.lap([&] { return groupOf(open.light.size(), eye); });
-        }
-        if (!photons_.empty() && asksForPhotons(eye, iteration.counts.merges)) {
-            merge(paths, eye, iteration, worker, result);
-            clock.lap([&] { return TechniqueGroup::ofMerge(connectionOrder(eye)); });
+        while (next < joints.open.size() && joints.open[next].eye.size() < t) ++next;
+        for (; next < joints.open.size() && joints.open[next].eye.size() == t; ++next) {
+            endings.push_back({t, &joints.open[next], joints.openedBy[next]});
         }
     }
+}
+
+Rgb EyePass::closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
+                     const Iteration& iteration, Worker& worker, TaskResult& result,
+                     double scale) const {
+    Rgb value;
+    if (!ending.open) {
+        const auto closed = closeHit(setup_.walker, eye, worker.fullPath);
+        if (closed) value = deliver(*closed, paths, iteration, worker, result, scale);
+        result.clock.lap([&] { return groupOf(0, eye); });
+        return value;
+    }
+    const OpenConnection& open = *ending.open;
+    const auto closed = closeConnection(
+        setup_.walker, {open.light, eye, open.edge, open.lightAsEye, open.eyeAsLight},
+        worker.fullPath);
+    if (closed) {
+        value = deliver(*closed, paths, iteration, worker, result, scale * ending.openedBy->weight,
+                        ending.openedBy);
+    }
+    result.clock.lap([&] { return groupOf(open.light.size(), eye); });
+    return value;
+}
+
+void EyePass::close(const PixelPaths& paths, const Joints& joints, Ends ends,
+                    const Iteration& iteration, Worker& worker, TaskResult& result) const {
+    std::size_t next = 0;
+    findEndings(paths, joints, ends, worker.endings);
+    for (std::size_t t = ends.first; t <= ends.last; ++t) {
+        const Subpath eye = paths.eye.first(t);
+        for (; next < worker.endings.size() && worker.endings[next].t == t; ++next) {
+            closeAt(worker.endings[next], eye, paths, iteration, worker, result);
+        }
+        merge(paths, eye, iteration, worker, result);
+    }
+}
+
+/// Over mirrors and through glass, to where no edge can be joined.
+void EyePass::searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                                TaskResult& result) const {
     // Merges make those paths as well.
     if (chains_ && iteration.counts.merges == Merges::Nowhere) {
         chain(paths, iteration, worker, result);
@@ -119,6 +206,7 @@ void EyePass::close(const PixelPaths& paths, const Iteration& iteration, Worker&
 /// An eye subpath's last vertex with the photons around it.
 void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration,
                     Worker& worker, TaskResult& result) const {
+    if (photons_.empty() || !asksForPhotons(eye, iteration.counts.merges)) return;
     const PathVertex& z = eye.back();
     worker.photons.clear();
     photons_.find(z.position, worker.photons);
@@ -133,6 +221,7 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
         const double scale = 1.0 / iteration.counts.mergeSamples;
         deliver(*closed, paths, iteration, worker, result, scale);
     }
+    result.clock.lap([&] { return TechniqueGroup::ofMerge(connectionOrder(eye)); });
 }
 
 /// The eye path's vertices with lights that no ray can hit, over mirrors and through smooth glass.
@@ -170,41 +259,41 @@ void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worke
 
 /// For all vertices of the path before the first one is connected: light vertices lie anywhere in
 /// memory, and those that were picked are on their way from there meanwhile.
-void EyePass::select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+void EyePass::select(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                      TaskResult& result) const {
-    worker.proposals.clear();
-    worker.proposalEnds.assign(paths.eye.size() + 1, 0);
+    joints.proposals.clear();
+    joints.proposalEnds.assign(paths.eye.size() + 1, 0);
     if (!setup_.techniques.connects) return;
     const auto filmIndex = std::uint32_t(paths.sample.number);
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Connection, filmIndex);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const PathVertex& z = paths.eye[t - 1];
-        const std::size_t before = worker.proposals.proposals().size();
+        const std::size_t before = joints.proposals.proposals().size();
         result.clock.start();
         if (!z.infinite() && z.connectable() && int(t) <= setup_.settings.limits.maxDepth) {
             rng.toDimension(dimension::ofPicks(std::uint32_t(t)));
             iteration.method.select({z, paths.eye.first(t), paths.ownLight, filmIndex,
                                      iteration.number, setup_.walker, setup_.space, result.tally},
-                                    rng, worker.proposals);
+                                    rng, joints.proposals);
         }
-        worker.proposalEnds[t] = worker.proposals.proposals().size();
-        result.clock.lapAmong(worker.proposalEnds[t] - before, [&](std::size_t i) {
-            const Subpath light = worker.proposals.proposals()[before + i].light;
+        joints.proposalEnds[t] = joints.proposals.proposals().size();
+        result.clock.lapAmong(joints.proposalEnds[t] - before, [&](std::size_t i) {
+            const Subpath light = joints.proposals.proposals()[before + i].light;
             return groupOf(light.size(), paths.eye.first(t));
         });
     }
 }
 
 /// Likewise before the first one is weighed: the rest of the light subpaths, and labels.
-void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+void EyePass::open(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                    TaskResult& result) const {
-    worker.open.clear();
-    worker.openedBy.clear();
-    const std::span<const Proposal> proposals = worker.proposals.proposals();
+    joints.open.clear();
+    joints.openedBy.clear();
+    const std::span<const Proposal> proposals = joints.proposals.proposals();
     result.clock.start();
     std::size_t next = 0;
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
-        for (; next < worker.proposalEnds[t]; ++next) {
+        for (; next < joints.proposalEnds[t]; ++next) {
             const Subpath light = proposals[next].light;
             if (int(light.size() + t) - 1 > setup_.settings.limits.maxDepth) continue;
             const auto edge =
@@ -212,13 +301,13 @@ void EyePass::open(const PixelPaths& paths, const Iteration& iteration, Worker& 
             result.clock.lap([&] { return groupOf(light.size(), paths.eye.first(t)); });
             if (!edge) continue;
             for (const PathVertex& v : light.first(light.size() - 1)) prefetch(v);
-            worker.open.push_back({light, paths.eye.first(t), *edge});
-            worker.openedBy.push_back(&proposals[next]);
+            joints.open.push_back({light, paths.eye.first(t), *edge});
+            joints.openedBy.push_back(&proposals[next]);
         }
     }
-    iteration.counts.labelEnds(worker.open);
-    result.clock.lapAmong(worker.open.size(), [&](std::size_t i) {
-        return groupOf(worker.open[i].light.size(), worker.open[i].eye);
+    iteration.counts.labelEnds(joints.open);
+    result.clock.lapAmong(joints.open.size(), [&](std::size_t i) {
+        return groupOf(joints.open[i].light.size(), joints.open[i].eye);
     });
 }
 

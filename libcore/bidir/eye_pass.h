@@ -25,27 +25,66 @@ class EyePass {
 
     /// All pixels of the crop. False if cancelled.
     bool run(const Iteration& iteration) const;
-    /// Pixels x0, x0 + 1, .. of row y, at most kTile of them, into `pixels`.
-    void pixelRow(const Iteration& iteration, int x0, int y, std::span<Rgb> pixels, Worker& worker,
-                  TaskResult& result) const;
+    /// One pixel of the film, with those that share its walk. Returns where in worker.eye and
+    /// worker.light its subpaths are.
+    std::size_t pixel(const Iteration& iteration, int x, int y, Rgb& value, Worker& worker,
+                      TaskResult& result) const;
 
   private:
-    /// A pixel's subpaths, where they belong, and where their light goes.
-    struct PixelPaths {
-        Subpath eye, ownLight;
-        Sample sample;
-        std::uint32_t pixel;  ///< row-major in the crop
-        Rgb& value;
+    /// Which pixels get light, and where they are.
+    struct Target {
+        PixelRect shown;
+        Rgb* values;  ///< row-major in `shown`
+
+        Rgb* at(int x, int y) const {
+            return shown.contains(x, y)
+                       ? values + std::ptrdiff_t(y - shown.y0) * shown.width() + (x - shown.x0)
+                       : nullptr;
+        }
+    };
+    using Joints = Worker::Joints;
+    /// Eye subpaths z_0 .. z_{t-1}, by t.
+    struct Ends {
+        std::size_t first, last;
+    };
+    /// Blocks of pixels whose walks are under way at once, from that corner on.
+    struct Blocks {
+        int x0, y0, width, height;
+        PixelRect bounds;  ///< what is outside is in no block
+
+        PixelRect at(int x, int y) const;
     };
 
-    void close(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
-               TaskResult& result) const;
+    Blocks blocksOf(const Iteration& iteration) const;
+    void block(const Iteration& iteration, const PixelRect& pixels, const Target& target,
+               Worker& worker, TaskResult& result) const;
+    void closeAlone(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                    TaskResult& result) const;
+    void closeTogether(std::span<const PixelPaths> all, const Iteration& iteration, Worker& worker,
+                       TaskResult& result) const;
+    void closeGroup(std::span<const PixelPaths> group, std::span<const Joints> joints,
+                    const Iteration& iteration, Worker& worker, TaskResult& result) const;
+    std::size_t lend(std::size_t lender, std::size_t h, std::span<const PixelPaths> group,
+                     const Joints& joints, const Iteration& iteration, Worker& worker,
+                     TaskResult& result) const;
+    void borrow(std::size_t borrower, const PixelPaths& paths, const Iteration& iteration,
+                Worker& worker, TaskResult& result) const;
+    void findEndings(const PixelPaths& paths, const Joints& joints, Ends ends,
+                     std::vector<Ending>& endings) const;
+    void close(const PixelPaths& paths, const Joints& joints, Ends ends, const Iteration& iteration,
+               Worker& worker, TaskResult& result) const;
+    void searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                           TaskResult& result) const;
+    Rgb closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
+                const Iteration& iteration, Worker& worker, TaskResult& result,
+                double scale = 1.0) const;
     /// The path that was closed last, to its own pixel.
-    void deliver(const Closed& closed, const PixelPaths& paths, const Iteration& iteration,
-                 Worker& worker, TaskResult& result, double scale = 1.0,
-                 const Proposal* proposal = nullptr) const {
-        delivery_.toOwnPixel({closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal},
-                             iteration.counts, paths.value, result);
+    Rgb deliver(const Closed& closed, const PixelPaths& paths, const Iteration& iteration,
+                Worker& worker, TaskResult& result, double scale = 1.0,
+                const Proposal* proposal = nullptr) const {
+        return delivery_.toOwnPixel(
+            {closed, worker.fullPath, paths.sample, paths.pixel, scale, proposal}, iteration.counts,
+            paths.value, result);
     }
     void merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration, Worker& worker,
                TaskResult& result) const;
@@ -53,9 +92,9 @@ class EyePass {
                TaskResult& result) const;
     void refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                  TaskResult& result) const;
-    void select(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+    void select(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                 TaskResult& result) const;
-    void open(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+    void open(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
               TaskResult& result) const;
 
     const RenderSetup& setup_;

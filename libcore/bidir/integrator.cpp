@@ -49,6 +49,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     counts.merges = method_->merging().where;
     counts.mergeSamples = double(pooledSubpaths()) * mergeArea(mergeRadius);
     counts.refractedLamps = refractedLamps_.get();
+    counts.sharing = method_->sharing();
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;
 }
@@ -166,9 +167,9 @@ BidirIntegrator::Replayed BidirIntegrator::replayEyePath(std::uint32_t number, i
     Rgb pixel;
     Worker& worker = workers_.own();
     const PathObserver before = delivery_.setObserver(observer);
-    eyePass_.pixelRow(iteration, x, y, {&pixel, 1}, worker, result);
+    const std::size_t i = eyePass_.pixel(iteration, x, y, pixel, worker, result);
     delivery_.setObserver(before);
-    return {worker.eye[0], worker.light[0]};
+    return {worker.eye[i], worker.light[i]};
 }
 
 BidirIntegrator::Replayed BidirIntegrator::replayLightPath(std::uint32_t number, std::uint64_t path,

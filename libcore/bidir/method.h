@@ -22,6 +22,7 @@
 #include "libcore/bidir/merging.h"
 #include "libcore/bidir/path_space.h"
 #include "libcore/bidir/pool.h"
+#include "libcore/bidir/sharing.h"
 
 namespace lacuna {
 
@@ -97,6 +98,9 @@ class Method {
     /// Which paths are merged with the vertices of the pool, its M subpaths; fixed for the render.
     /// Wherever it is not Nowhere the picture is consistent, not unbiased.
     virtual Merging merging() const { return {}; }
+    /// How pixels share eye walks; fixed for the render. Only for methods that may propose at a vertex, from
+    /// wherever it is seen, whatever they may propose there when it is seen from elsewhere on that side.
+    virtual Sharing sharing() const { return {}; }
 
     /// What the weights believe in the coming iteration: may depend on earlier iterations alone.
     /// Valid until the next call.

@@ -50,14 +50,32 @@ class CountsByKind {
     std::array<double, 5> counts_;
 };
 
-}  // namespace
+/// What n r of a strategy is still to be multiplied by, because pixels share the eye's walk.
+class SamplesByShare {
+  public:
+    SamplesByShare(const FullPath& path, const Sharing& sharing)
+        : samples_(sharing.samples), edge_(sharing.any() ? sharedEdge(path) : 0), k_(path.edges) {}
 
-double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t) {
+    double operator()(int t) const { return k_ + 1 - t < edge_ ? samples_ : 1.0; }
+
+  private:
+    double samples_;
+    int edge_, k_;
+};
+
+/// n r of strategy t, if pixels share no walks.
+double countAlone(const FullPath& path, const TechniqueCounts& counts, int t) {
     const bool connects = t >= 2 && t <= path.edges;
     if (!connects || !counts.connections || counts.constants) {
         return CountsByKind(path, counts)(t);
     }
     return path.exists(t) ? samplesByDensity(path, counts, t) : 0.0;
+}
+
+}  // namespace
+
+double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t) {
+    return countAlone(path, counts, t) * SamplesByShare(path, counts.sharing)(t);
 }
 
 double refractedSamples(const FullPath& path, const TechniqueCounts& counts) {
@@ -116,10 +134,19 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
 }
 
 template <class CountOf>
-double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique made,
-                const CountOf& countOf) {
+double weightAlone(const FullPath& path, const TechniqueCounts& counts, Technique made,
+                   const CountOf& countOf) {
     return counts.merges == Merges::Nowhere ? sweep<false>(path, counts, made, countOf)
                                             : sweep<true>(path, counts, made, countOf);
+}
+
+template <class CountOf>
+double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique made,
+                const CountOf& countOf) {
+    if (!counts.sharing.any()) return weightAlone(path, counts, made, countOf);
+    const SamplesByShare share(path, counts.sharing);
+    return weightAlone(path, counts, made,
+                       [&](int strategy) { return countOf(strategy) * share(strategy); });
 }
 
 }  // namespace
@@ -131,7 +158,7 @@ double misWeight(FullPath& path, const TechniqueCounts& counts, Technique made) 
     }
     path.fillLightThroughputs(counts.rouletteDepth);
     return weightBy(path, counts, made,
-                    [&](int strategy) { return effectiveCount(path, counts, strategy); });
+                    [&](int strategy) { return countAlone(path, counts, strategy); });
 }
 
 }  // namespace lacuna

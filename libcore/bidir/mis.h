@@ -15,6 +15,7 @@
 #include "libcore/bidir/density.h"
 #include "libcore/bidir/full_path.h"
 #include "libcore/bidir/light_sampler.h"
+#include "libcore/bidir/sharing.h"
 
 namespace lacuna {
 
@@ -55,6 +56,7 @@ struct TechniqueCounts {
     /// in which photons count. Times the densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;
     const RefractedLamps* refractedLamps = nullptr;  ///< null: no next event through glass
+    Sharing sharing = {};                            ///< of eye walks, by pixels
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
     /// Whether there are none but s = 0 and s = 1.

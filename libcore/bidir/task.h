@@ -11,16 +11,15 @@
 #include "libcore/base/parallel.h"
 #include "libcore/bidir/film.h"
 #include "libcore/bidir/full_path.h"
+#include "libcore/bidir/lent_walk.h"
 #include "libcore/bidir/method.h"
 #include "libcore/bidir/path_layers.h"
+#include "libcore/bidir/sample.h"
 #include "libcore/bidir/technique_clock.h"
 #include "libcore/bidir/technique_film.h"
 #include "libcore/bidir/walk.h"
 
 namespace lacuna {
-
-/// Subpaths that a thread has under way at once; also the side of a tile of pixels.
-inline constexpr int kTile = 16;
 
 /// A splat's share of a layer.
 struct LayerSplat {
@@ -44,6 +43,39 @@ struct TaskResult {
     std::vector<std::string> invalidReplays;
 };
 
+/// How an eye walk becomes a path at one of its vertices: on a lamp, or over an open connection.
+struct Ending {
+    std::size_t t;
+    const OpenConnection* open;  ///< null: on a lamp
+    const Proposal* openedBy;    ///< likewise
+    double value = 0.0;          ///< what the walk's own pixel got of it
+};
+
+/// A pixel's subpaths, where they belong, and where their light goes.
+struct PixelPaths {
+    Subpath eye, ownLight;
+    Sample sample;
+    std::uint32_t pixel;  ///< row-major in the crop
+    Rgb* value;           ///< null: not in the crop, the pixel only lends its walk
+};
+
+/// A walk that pixels of a group borrow from.
+struct Lent {
+    static constexpr std::uint8_t kNobody = 255;
+
+    LentWalk walk;
+    std::vector<Ending> endings = {};
+    std::array<std::uint8_t, kTile> numbers =
+        {};                  ///< by pixel of the group: number in the walk, or kNobody
+    std::size_t lender = 0;  ///< its own number
+    double value = 0.0;      ///< what its pixel got
+};
+struct Offer {
+    const Lent* lent;
+    std::size_t number;  ///< of the borrower in its walk
+    double worth;        ///< to the borrower, about
+};
+
 /// Scratch memory of one thread: the subpaths of a tile's row of pixels, or of a batch.
 struct Worker {
     explicit Worker(int maxDepth) {
@@ -56,12 +88,21 @@ struct Worker {
     std::array<std::vector<PathVertex>, kTile> eye, light;
     std::vector<Rng> rngs;  // by subpath
     std::vector<Walk> walks;
-    ProposalSink proposals;                 // for all vertices of an eye path
-    std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}
-    std::vector<OpenConnection> open;       // of the proposals, those that are seen
-    std::vector<const Proposal*> openedBy;  // by open connection
-    std::vector<std::uint32_t> photons;     // around an eye vertex: vertices of the pool
-    std::vector<PathVertex> chain;          // from a light to an eye vertex
+    /// What the vertices of an eye path are joined to.
+    struct Joints {
+        ProposalSink proposals;                 // for all vertices
+        std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}
+        std::vector<OpenConnection> open;       // of the proposals, those that are seen
+        std::vector<const Proposal*> openedBy;  // by open connection
+    };
+    std::vector<PixelPaths> paths;       // of a block of pixels
+    std::array<Joints, kTile> joints;    // likewise; the first one alone, where no walks are shared
+    std::vector<Lent> lent;              // by the pixels of a group
+    std::vector<Offer> offers;           // of those, to one of the pixels
+    std::vector<std::uint32_t> photons;  // around an eye vertex: vertices of the pool
+    std::vector<PathVertex> chain;       // from a light to an eye vertex
+    std::vector<PathVertex> borrowed;    // an eye path along another pixel's walk
+    std::vector<Ending> endings;         // of an eye path
     FullPath fullPath;
 };
 

@@ -199,10 +199,22 @@ class Products {
                              .order = orderOf(s)});
     }
 
+    /// What n r of strategy t is worth more, if its eye walk made the edge that pixels share: the first
+    /// one from a vertex that scatters smoothly.
+    double share(int t) const {
+        if (!counts_.sharing.any()) return 1.0;
+        int i = k_ - 1;
+        while (i > 1 && !smooth(i)) --i;
+        const bool isThere =
+            i > 1 && smooth(i) && smooth(i - 1) && forks(x(i)) && mayBeShared(x(i - 1));
+        const bool isOfTheEye = t >= k_ + 2 - i;
+        return isThere && isOfTheEye ? counts_.sharing.samples : 1.0;
+    }
+
     /// log(n_t r_t p_t).
     double logTerm(int t) const {
         const int s = k_ + 1 - t;
-        return logOf(count(t)) + logDensities(s, s);
+        return logOf(count(t)) + logOf(share(t)) + logDensities(s, s);
     }
     /// Of the light's walk over its first `byLight` vertices, and of the eye's from x_first on.
     double logDensities(int byLight, int first) const {

@@ -9,14 +9,25 @@ namespace lacuna {
 
 // Each is defined in the file that bears the method's name.
 MethodRow ptRow(), ltRow(), bptRow(), lvcbptRow(), pcbptRow(), risbptRow(), risbptCurrentRow(),
-    tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow(), vcmRow(), ppmRow();
+    tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow(), sharebptRow(), vcmRow(),
+    ppmRow();
 
 std::span<const MethodRow> methods() {
-    static const std::vector<MethodRow> rows = {
-        ptRow(),    ltRow(),      bptRow(),           lvcbptRow(),
-        pcbptRow(), risbptRow(),  risbptCurrentRow(), tsrbptRow(),
-        icbptRow(), skelbptRow(), spcbptRow(),        spcbptFifoRow(),
-        vcmRow(),   ppmRow()};
+    static const std::vector<MethodRow> rows = {ptRow(),
+                                                ltRow(),
+                                                bptRow(),
+                                                lvcbptRow(),
+                                                pcbptRow(),
+                                                risbptRow(),
+                                                risbptCurrentRow(),
+                                                tsrbptRow(),
+                                                icbptRow(),
+                                                skelbptRow(),
+                                                spcbptRow(),
+                                                spcbptFifoRow(),
+                                                sharebptRow(),
+                                                vcmRow(),
+                                                ppmRow()};
     return rows;
 }
 

@@ -31,9 +31,7 @@
 #include <deque>
 
 #include "libcore/base/parallel.h"
-#include "libcore/methods/registry.h"
-#include "libcore/resampling/merge_options.h"
-#include "libcore/resampling/picks.h"
+#include "libcore/methods/spcbpt.h"
 #include "libcore/resampling/two_stages.h"
 #include "libcore/subspace/gamma_table.h"
 #include "libcore/subspace/subspace_labels.h"
@@ -46,20 +44,9 @@ namespace {
 
 constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
-enum class Weights { Ris, Paper };
-
-struct Options {
-    std::uint64_t subpaths = 100'000;  ///< M
-    PickOptions picks = {.connections = 3, .first = 12, .deep = 1};
-    Weights weights = Weights::Ris;
-    std::uint64_t reuse = 0;  ///< M_0, 0: none
-    bool queue = false;       ///< keep M_0 vertices, not whole iterations: biased
-    MergeOptions merging = {};
-};
-
 /// Subspaces made ready to draw from and to label with.
 struct SubspaceTables {
-    SubspaceTables(std::shared_ptr<const Subspaces> subspaces, const Options& options)
+    SubspaceTables(std::shared_ptr<const Subspaces> subspaces, const SubspaceOptions& options)
         : labels(subspaces),
           gamma(*subspaces),
           q(subspaces->q),
@@ -87,7 +74,7 @@ struct SubspaceTables {
 
 class SubspaceDensity final : public ConnectionDensity {
   public:
-    SubspaceDensity(const Options& options, const SubspaceTables& tables)
+    SubspaceDensity(const SubspaceOptions& options, const SubspaceTables& tables)
         : subpaths_(double(options.subpaths)),
           picks_(options.picks.picks()),
           weights_(options.weights),
@@ -109,20 +96,21 @@ class SubspaceDensity final : public ConnectionDensity {
         const double gamma = tables_.gamma.believed(i, j);
         if (!(gamma > 0.0)) return 0.0;
         const double q = tables_.q.empty() ? 0.0 : tables_.q[i], n = picks_.at(c.order);
-        if (weights_ == Weights::Paper) return n * gamma * beta / (q > 0.0 ? q : tables_.unseen);
+        if (weights_ == SubspaceWeights::Paper)
+            return n * gamma * beta / (q > 0.0 ? q : tables_.unseen);
         return twoStageSamples(subpaths_ * tables_.windows[i], n, gamma, beta, q);
     }
 
   private:
     double subpaths_;
     Picks picks_;
-    Weights weights_;
+    SubspaceWeights weights_;
     const SubspaceTables& tables_;
 };
 
 class SubspaceConnections final : public Method {
   public:
-    explicit SubspaceConnections(const Options& options)
+    explicit SubspaceConnections(const SubspaceOptions& options)
         : options_(options),
           picks_(options.picks.picks()),
           tables_(std::make_shared<const Subspaces>(), options),
@@ -137,6 +125,10 @@ class SubspaceConnections final : public Method {
     int warmupIterations() const override { return tables_.measured() ? 0 : 1; }
     PoolRequest pool() const override { return {options_.subpaths}; }
     Merging merging() const override { return options_.merging.merging(); }
+    Sharing sharing() const override {
+        // All may propose everything: no column of Gamma has a zero.
+        return {options_.sharedPixels, options_.sharedSamples};
+    }
 
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }
 
@@ -229,7 +221,7 @@ class SubspaceConnections final : public Method {
         return kept;
     }
 
-    Options options_;
+    SubspaceOptions options_;
     Picks picks_;
     SubspaceTables tables_;
     SubspaceDensity density_;
@@ -242,19 +234,8 @@ class SubspaceConnections final : public Method {
     std::vector<std::deque<Kept>> kept_ = std::vector<std::deque<Kept>>(1);  // likewise
 };
 
-/// All but `reuse`, which the two rows have in different ranges.
-OptionTable<Options> subspaceOptions(const Options& defaults) {
-    OptionTable<Options> table(defaults);
-    table.integer("candidates", &Options::subpaths, 1, 1e8, "light subpaths", "in the pool, M");
-    table.include("", &Options::picks, pickOptions(defaults.picks, true));
-    table.choice<Weights>(
-        "weights", &Options::weights, {{"ris", Weights::Ris}, {"paper", Weights::Paper}},
-        "density that the weights see: resampling-aware, or the target alone (the paper)");
-    return table;
-}
-
 MethodRow subspaceRow(const std::string& name, const std::string& summary, bool biased,
-                      const OptionTable<Options>& table) {
+                      const OptionTable<SubspaceOptions>& table) {
     return methodRow({.name = name,
                       .reference = "Su22",
                       .summary = summary,
@@ -264,17 +245,32 @@ MethodRow subspaceRow(const std::string& name, const std::string& summary, bool 
                       .biased = biased,
                       .paper = {"first_connections=0", "deep_connections=0", "weights=paper",
                                 "reuse=200", "emission=plain"}},
-                     table,
-                     [](const Options& o) { return std::make_unique<SubspaceConnections>(o); });
+                     table, subspaceConnections);
 }
 
 }  // namespace
 
+OptionTable<SubspaceOptions> subspaceOptions(const SubspaceOptions& defaults) {
+    OptionTable<SubspaceOptions> table(defaults);
+    table.integer("candidates", &SubspaceOptions::subpaths, 1, 1e8, "light subpaths",
+                  "in the pool, M");
+    table.include("", &SubspaceOptions::picks, pickOptions(defaults.picks, true));
+    table.choice<SubspaceWeights>(
+        "weights", &SubspaceOptions::weights,
+        {{"ris", SubspaceWeights::Ris}, {"paper", SubspaceWeights::Paper}},
+        "density that the weights see: resampling-aware, or the target alone (the paper)");
+    return table;
+}
+
+std::unique_ptr<Method> subspaceConnections(const SubspaceOptions& options) {
+    return std::make_unique<SubspaceConnections>(options);
+}
+
 MethodRow spcbptRow() {
-    OptionTable<Options> table = subspaceOptions({});
-    table.integer("reuse", &Options::reuse, 0, 1e6, "light vertices",
+    OptionTable<SubspaceOptions> table = subspaceOptions({});
+    table.integer("reuse", &SubspaceOptions::reuse, 0, 1e6, "light vertices",
                   "kept per subspace across iterations, M_0; 0: none");
-    table.include("", &Options::merging, mergeOptions());
+    table.include("", &SubspaceOptions::merging, mergeOptions());
     return subspaceRow("spcbpt",
                        "light vertices resampled in two stages, by trained subspaces of light "
                        "subpaths",
@@ -282,8 +278,9 @@ MethodRow spcbptRow() {
 }
 
 MethodRow spcbptFifoRow() {
-    OptionTable<Options> table = subspaceOptions({.reuse = 200, .queue = true});
-    table.integer("reuse", &Options::reuse, 1, 1e6, "light vertices", "kept per subspace, M_0");
+    OptionTable<SubspaceOptions> table = subspaceOptions({.reuse = 200, .queue = true});
+    table.integer("reuse", &SubspaceOptions::reuse, 1, 1e6, "light vertices",
+                  "kept per subspace, M_0");
     return subspaceRow("spcbpt-fifo",
                        "spcbpt with the paper's queues of light vertices across iterations", true,
                        table);

@@ -17,8 +17,8 @@ struct TrainingSettings {
     bool borrow = true;
 };
 
-inline OptionTable<TrainingSettings> trainingOptions() {
-    return OptionTable<TrainingSettings>()
+inline OptionTable<TrainingSettings> trainingOptions(const TrainingSettings& defaults = {}) {
+    return OptionTable<TrainingSettings>(defaults)
         .integer("paths", &TrainingSettings::paths, 1, 1e8, "full paths", "to train with")
         .integer("subspaces", &TrainingSettings::subspaces, 1, 4000, "subspaces",
                  "of light and of eye subpaths")

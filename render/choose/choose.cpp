@@ -56,11 +56,12 @@ constexpr Row kRows[] = {
     {"pt", 1.1, "is in plain sight"},
     {"risbpt", 1.4, "comes from many places near and glossy", true},
     {"spcbpt", 1.5, "takes ways that can be learned"},
-    {"spcbpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on"},
+    {"sharebpt", 1.5, "takes ways that can be learned, and pixels see much alike"},
+    {"sharebpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on"},
     {"vcm", 1.4, "comes through glass or mirrors", true},
 };
 /// Where trials find nothing clearly better.
-constexpr const char* kUsual = "spcbpt";
+constexpr const char* kUsual = "sharebpt";
 
 constexpr const char* kPhase = "choosing a method";
 

@@ -1,0 +1,35 @@
+// Our own: spcbpt whose pixels share eye walks [Bekaert02]. (theory.md, "Shared walks")
+//
+//   walks     a pixel's eye walk is one of up to 16, those of a square of pixels: what it was joined to behind
+//             the first vertex that is no mirror and no smooth glass goes to all of them that see it there
+//   picks     of light vertices as in spcbpt
+//   weights   a shared walk counts as `share_samples` of one that is not
+//   training  as short as serves: seconds
+#include "libcore/methods/spcbpt.h"
+#include "libcore/subspace/training_settings.h"
+
+namespace lacuna {
+
+MethodRow sharebptRow() {
+    OptionTable<SubspaceOptions> table =
+        subspaceOptions({.subpaths = 30'000, .sharedPixels = 16, .sharedSamples = 4.0});
+    table.choice<int>("share", &SubspaceOptions::sharedPixels,
+                      {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
+                      "pixels beside each other that go on along each other's walks; 1: none");
+    table.real("share_samples", &SubspaceOptions::sharedSamples, 1, 16, "samples",
+               "that weights believe a shared walk to be worth");
+    table.include("", &SubspaceOptions::merging, mergeOptions());
+    return methodRow(
+        {.name = "sharebpt",
+         .reference = "Bekaert02",
+         .summary = "spcbpt whose pixels share eye walks with those beside them",
+         .techniques = {.hits = true, .connects = true, .splats = true},
+         .emission = Emission::Learned,
+         .needs = {{"subspaces", "train.",
+                    trainingOptions(
+                        {.paths = 64'000, .subspaces = 200, .lightPaths = 260'000, .epochs = 10})
+                        .options()}}},
+        table, subspaceConnections);
+}
+
+}  // namespace lacuna
