@@ -5,23 +5,31 @@
 
 namespace lacuna {
 
+PathVertex vertexOf(const Walker& walker, const ChainVertex& from) {
+    PathVertex v;
+    v.position = from.point.position;
+    v.ng = from.point.ng;
+    v.toPrevious = from.toLight;
+    v.bsdf = from.bsdf;
+    v.event = from.event.event;
+    v.light = from.point.light;
+    v.lightUv = from.point.barycentric;
+    v.material = from.point.material;
+    v.object = from.point.object;
+    v.survival = v.bsdf.survivalAlbedo();
+    if (walker.guide() && v.bsdf.connectable()) {
+        v.region = walker.guide()->regionAt(WalkGuide::placeOf(v));
+    }
+    return v;
+}
+
 float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
     float pdfW = 0.0f;  // of what leaves the vertex before
     for (std::size_t i = chain.size(); i-- > 0;) {
         const ChainVertex& from = chain[i];
-        PathVertex& v = light.emplace_back();
+        PathVertex& v = light.emplace_back(vertexOf(walker, from));
         PathVertex& before = light[light.size() - 2];
         v.index = std::uint8_t(light.size() - 1);
-        v.position = from.point.position;
-        v.ng = from.point.ng;
-        v.toPrevious = from.toLight;
-        v.bsdf = from.bsdf;
-        v.event = from.event.event;
-        v.light = from.point.light;
-        v.lightUv = from.point.barycentric;
-        v.material = from.point.material;
-        v.object = from.point.object;
-        v.survival = v.bsdf.survivalAlbedo();
         if (before.index == 0) {
             const Lights::Emission emission =
                 emissionOf(walker.lights(), before, -v.toPrevious, v.position);
@@ -31,7 +39,7 @@ float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVert
         const Edge edge = edgeBetween(before, v);
         v.pdfA = pdfW * edge.toSecond;
         v.toPreviousFactor = edge.toFirst;
-        const BsdfEvaluation e = v.bsdf.evaluate(from.toEye, from.toLight, v.event);
+        const BsdfEvaluation e = walker.scattering(v, from.toEye, from.toLight, v.event);
         v.scatter = from.scatter;
         before.pdfReverseA = e.pdfWToLight * v.toPreviousFactor;
         pdfW = e.pdfWToEye;

@@ -8,6 +8,9 @@
 
 namespace lacuna {
 
+/// A vertex as a light walk would have left it, but for densities and its index.
+PathVertex vertexOf(const Walker& walker, const ChainVertex& from);
+
 /// Appends y_1 .. behind y_0, the last one where the chain begins, with the densities of both walks;
 /// pdfReverseA of the last one is left as it is. Returns the density per solid angle of what leaves it.
 float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light);

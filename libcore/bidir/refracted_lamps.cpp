@@ -45,7 +45,10 @@ double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
                   double(lights.opacity(y0.light, y0.lightUv));
     for (std::size_t i = 0; i < chain.size(); ++i) {
         const ChainVertex& v = chain[i];
-        walk *= double(v.bsdf.evaluate(v.toEye, v.toLight, v.event.event).pdfWToLight) / v.measure;
+        // Guided walks go on by such an event more seldom, where there are others.
+        const BsdfEvaluation e =
+            walker_.scattering(vertexOf(walker_, v), v.toEye, v.toLight, v.event.event);
+        walk *= double(e.pdfWToLight) / v.measure;
     }
     const double samples = double(lightPointOf(lights, y0).pdf) * walker_.seenSamples(y0, z);
     return walk > 0.0 ? samples / walk : 0.0;

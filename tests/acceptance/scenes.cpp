@@ -276,6 +276,11 @@ NamedScene behindGlass() {
     b.add(quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, b.add(halfMirror)));
     b.add(box({-1.6f, 1, -0.6f}, {1.6f, 1.1f, 0.6f}, b.add(colouredGlass({0.8f, 0.5f, 0.4f}))));
     b.add(sphere({0, 0.5f, 0.3f}, 0.3f, 16, b.add(glass(1.2f)), true));
+    // Walks through it go on by other lobes as well.
+    lacuna::Material milky = glass(1.3f);
+    milky.transmission = 0.6f;
+    milky.baseColor = Rgb(0.7f);
+    b.add(box({-1.2f, 0.2f, -0.2f}, {-0.5f, 0.4f, 0.5f}, b.add(milky)));
     b.add(quad({-0.5f, 1.8f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter({2, 3, 4}))));
     b.environment(sunnySky());
     b.add(lookAt({0.3, 1.2, 3}, {0, 0.4, 0}, 45));
