@@ -75,6 +75,7 @@ class EyePass {
                Worker& worker, TaskResult& result) const;
     void searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                            TaskResult& result) const;
+    /// Returns what the pixel got, or would get if it is not shown.
     Rgb closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
                 const Iteration& iteration, Worker& worker, TaskResult& result,
                 double scale = 1.0) const;

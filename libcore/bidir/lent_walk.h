@@ -21,8 +21,6 @@ class LentWalk {
     LentWalk(const Walker& walker, Subpath walk, std::size_t h)
         : walker_(&walker), walk_(walk), h_(h) {}
 
-    std::size_t h() const { return h_; }
-
     /// z_{t-1} of what it lends lies in [firstEnd(), lastEnd()], as t; what is behind lastEnd() was found by
     /// a delta event, which leads elsewhere from elsewhere.
     std::size_t firstEnd() const { return h_ + 2; }

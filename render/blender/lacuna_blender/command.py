@@ -1,7 +1,7 @@
 """The command line of lacuna-render, from the settings of a scene. Knows nothing of Blender."""
 
 
-_PREPARED = ("skelbpt", "spcbpt")  # read what is made of the scene beforehand
+_PREPARED = ("skelbpt", "spcbpt", "sharebpt")  # read what is made of the scene beforehand
 
 
 def limits(samples, seconds, error_percent):

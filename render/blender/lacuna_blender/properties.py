@@ -12,6 +12,7 @@ _METHODS = (
     ("icbpt", "Importance records", "For dim rooms, without setup"),
     ("skelbpt", "Skeleton", "For halls and corridors; is prepared in seconds"),
     ("spcbpt", "Subspaces", "For light that is hard to find; is prepared in up to a minute"),
+    ("sharebpt", "Shared walks", "As subspaces, for what is not shiny; is prepared in seconds"),
 )
 
 
