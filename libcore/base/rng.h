@@ -23,7 +23,7 @@ enum class StreamKind : std::uint32_t {
     Chain,       ///< searches for specular chains along an eye path, index = pixel
     Mattes,      ///< coverage by objects and materials, index = pixel
     Refraction,  ///< next event through glass along an eye path, index = pixel
-    Sharing,     ///< what other pixels take of an eye path, index = pixel
+    Sharing,     ///< what a pixel takes of the eye walks of others, index = pixel
 };
 
 /// A point of a sequence whose points lie evenly (owen.h).

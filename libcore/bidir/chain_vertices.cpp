@@ -17,9 +17,7 @@ PathVertex vertexOf(const Walker& walker, const ChainVertex& from) {
     v.material = from.point.material;
     v.object = from.point.object;
     v.survival = v.bsdf.survivalAlbedo();
-    if (walker.guide() && v.bsdf.connectable()) {
-        v.region = walker.guide()->regionAt(WalkGuide::placeOf(v));
-    }
+    v.region = walker.regionOf(v);
     return v;
 }
 

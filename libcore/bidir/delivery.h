@@ -56,7 +56,6 @@ class Delivery {
 
     /// Adds an eye path's contribution to its pixel, which no other task adds to. Returns what it added.
     /// Null: what it would add.
-    /// Null: what it would add.
     Rgb toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb* pixel,
                    TaskResult& result) const;
     /// Appends a light subpath's contribution to the task's splats.

@@ -142,22 +142,6 @@ void EyePass::closeAlone(const PixelPaths& paths, const Iteration& iteration, Wo
     searchBehindGlass(paths, iteration, worker, result);
 }
 
-/// In the order of t: what the path gets at its vertices from lamps and over connections.
-void EyePass::findEndings(const PixelPaths& paths, const Joints& joints, Ends ends,
-                          std::vector<Ending>& endings) const {
-    endings.clear();
-    std::size_t next = 0;
-    for (std::size_t t = ends.first; t <= ends.last; ++t) {
-        if (setup_.techniques.hits && paths.eye[t - 1].light != kNone) {
-            endings.push_back({t, nullptr, nullptr});
-        }
-        while (next < joints.open.size() && joints.open[next].eye.size() < t) ++next;
-        for (; next < joints.open.size() && joints.open[next].eye.size() == t; ++next) {
-            endings.push_back({t, &joints.open[next], joints.openedBy[next]});
-        }
-    }
-}
-
 Rgb EyePass::closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
                      const Iteration& iteration, Worker& worker, TaskResult& result,
                      double scale) const {
@@ -182,15 +166,12 @@ Rgb EyePass::closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
 
 void EyePass::close(const PixelPaths& paths, const Joints& joints, Ends ends,
                     const Iteration& iteration, Worker& worker, TaskResult& result) const {
-    std::size_t next = 0;
-    findEndings(paths, joints, ends, worker.endings);
-    for (std::size_t t = ends.first; t <= ends.last; ++t) {
-        const Subpath eye = paths.eye.first(t);
-        for (; next < worker.endings.size() && worker.endings[next].t == t; ++next) {
-            closeAt(worker.endings[next], eye, paths, iteration, worker, result);
-        }
-        merge(paths, eye, iteration, worker, result);
-    }
+    forEachEnding(
+        paths, joints, ends,
+        [&](const Ending& ending) {
+            closeAt(ending, paths.eye.first(ending.t), paths, iteration, worker, result);
+        },
+        [&](std::size_t t) { merge(paths, paths.eye.first(t), iteration, worker, result); });
 }
 
 /// Over mirrors and through glass, to where no edge can be joined.

@@ -69,8 +69,23 @@ class EyePass {
                      TaskResult& result) const;
     void borrow(std::size_t borrower, const PixelPaths& paths, const Iteration& iteration,
                 Worker& worker, TaskResult& result) const;
-    void findEndings(const PixelPaths& paths, const Joints& joints, Ends ends,
-                     std::vector<Ending>& endings) const;
+    /// f(ending) for what the path gets at its vertices from lamps and over connections, in the order of t,
+    /// and behind those of each t after(t).
+    template <class F, class After>
+    void forEachEnding(const PixelPaths& paths, const Joints& joints, Ends ends, const F& f,
+                       const After& after) const {
+        std::size_t next = 0;
+        for (std::size_t t = ends.first; t <= ends.last; ++t) {
+            if (setup_.techniques.hits && paths.eye[t - 1].light != kNone) {
+                f(Ending{t, nullptr, nullptr});
+            }
+            while (next < joints.open.size() && joints.open[next].eye.size() < t) ++next;
+            for (; next < joints.open.size() && joints.open[next].eye.size() == t; ++next) {
+                f(Ending{t, &joints.open[next], joints.openedBy[next]});
+            }
+            after(t);
+        }
+    }
     void close(const PixelPaths& paths, const Joints& joints, Ends ends, const Iteration& iteration,
                Worker& worker, TaskResult& result) const;
     void searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,

@@ -78,10 +78,11 @@ std::size_t EyePass::lend(std::size_t lender, std::size_t h, std::span<const Pix
     Lent lent{.walk = {setup_.walker, paths.eye, h}};
     LentWalk& walk = lent.walk;
     const Ends ends{walk.firstEnd(), walk.lastEnd()};
-    for (std::size_t t = ends.first; paths.value && t <= ends.last; ++t) {
-        merge(paths, paths.eye.first(t), iteration, worker, result);
-    }
-    findEndings(paths, joints, ends, lent.endings);
+    forEachEnding(
+        paths, joints, ends, [&](const Ending& ending) { lent.endings.push_back(ending); },
+        [&](std::size_t t) {
+            if (paths.value) merge(paths, paths.eye.first(t), iteration, worker, result);
+        });
     if (lent.endings.empty()) return ends.last + 1;
     lent.numbers.fill(Lent::kNobody);
     std::uint8_t count = 0;

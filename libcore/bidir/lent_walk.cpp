@@ -12,15 +12,11 @@ namespace {
 /// As edgeBetween, of a walk's edge: in the direction that the walk drew, which two positions in float know
 /// only so well.
 Edge edgeOfWalk(const PathVertex& from, const PathVertex& to) {
-    Edge e = edgeBetween(from, to);
-    e.direction = -to.toPrevious;
-    const double cosine = measureCosine(to, e.direction);
-    if (!to.infinite()) {
-        e.toSecond = float(cosine / lengthSquared(Vec3d(to.position) - Vec3d(from.position)));
-        e.geometry = float(cosine * double(to.toPreviousFactor));
-    }
-    e.toFirst = to.toPreviousFactor;
-    return e;
+    const double cosine = measureCosine(to, to.toPrevious);
+    const double distance2 =
+        to.infinite() ? 1.0 : lengthSquared(Vec3d(to.position) - Vec3d(from.position));
+    return {-to.toPrevious, float(cosine / distance2), to.toPreviousFactor,
+            float(cosine * double(to.toPreviousFactor))};
 }
 
 }  // namespace
@@ -35,10 +31,6 @@ std::size_t LentWalk::begin(Subpath walk) {
     std::size_t h = 1;
     while (h + 1 < walk.size() && isDelta(walk[h].event)) ++h;
     return h + 1 < walk.size() && forks(walk[h]) && mayBeShared(walk[h + 1]) ? h : 0;
-}
-
-double LentWalk::survivalAt(const PathVertex& v) const {
-    return int(v.index) >= walker_->limits().rouletteDepth ? double(v.survival) : 1.0;
 }
 
 void LentWalk::add(Subpath borrower, RayTally& tally) {
@@ -56,7 +48,8 @@ void LentWalk::add(Subpath borrower, RayTally& tally) {
     if (!(from.at.pdfWToLight > 0.0f)) return;
     if (!own && !connected(walker_->scene(), z, next, RayKind::Connection, tally)) return;
 
-    from.pdfA = survivalAt(z) * double(from.at.pdfWToLight) * double(from.edge.toSecond);
+    from.pdfA =
+        double(walker_->survivalAt(z)) * double(from.at.pdfWToLight) * double(from.edge.toSecond);
     sum_ += from.pdfA;
     from.arrives = z.throughput * from.at.f *
                    transmittance(walker_->scene().absorption(), z, from.edge.direction, next) *
@@ -99,7 +92,7 @@ void LentWalk::take(std::size_t i, std::size_t t, std::vector<PathVertex>& out) 
         from.next.pdfWToLight > 0.0f
             ? from.arrives * from.next.f *
                   transmittance(walker_->scene().absorption(), next, direction, behind) *
-                  float(cosine / (sumNext_ * survivalAt(next)))
+                  float(cosine / (sumNext_ * double(walker_->survivalAt(next))))
             : Rgb{};
     behind.pdfA = from.next.pdfWToLight * edgeOfWalk(next, behind).toSecond;
     // What lies farther carries what comes here as before.

@@ -47,7 +47,6 @@ class LentWalk {
         double pdfA;          ///< of z_{h+1}, roulette included; zero: could not have come there
     };
     bool goesOn() const { return walk_.size() > h_ + 2 && !isDelta(walk_[h_ + 1].event); }
-    double survivalAt(const PathVertex& v) const;
 
     const Walker* walker_;
     Subpath walk_;

@@ -102,7 +102,6 @@ struct Worker {
     std::vector<std::uint32_t> photons;  // around an eye vertex: vertices of the pool
     std::vector<PathVertex> chain;       // from a light to an eye vertex
     std::vector<PathVertex> borrowed;    // an eye path along another pixel's walk
-    std::vector<Ending> endings;         // of an eye path
     FullPath fullPath;
 };
 

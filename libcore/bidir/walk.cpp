@@ -132,7 +132,7 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
     v.material = point.material;
     v.object = point.object;
     v.survival = v.bsdf.survivalAlbedo();
-    if (guide() && v.bsdf.connectable()) v.region = guide()->regionAt(WalkGuide::placeOf(v));
+    v.region = regionOf(v);
     v.throughput = throughput * transmittance(scene_.absorption(), previous, direction, v);
 
     const double cosine = measureCosine(v, direction);
@@ -227,12 +227,9 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
 
     PathVertex& v = out.back();
     Rng& rng = *walk.rng;
-    float survival = 1.0f;
-    if (int(v.index) >= limits_.rouletteDepth) {
-        survival = v.survival;
-        rng.toDimension(dimension::ofWalk(v.index));
-        if (survival < 1.0f && rng.evenUniform() >= survival) return false;
-    }
+    const float survival = survivalAt(v);
+    rng.toDimension(dimension::ofWalk(v.index));
+    if (survival < 1.0f && rng.evenUniform() >= survival) return false;
     rng.toDimension(dimension::ofWalk(v.index) + 1);
     const std::optional<BsdfSample> sample = sampleDirection(walk.side, v, rng);
     if (!sample) return false;

@@ -80,6 +80,14 @@ class Walker final : public LightSampler {
         if (v.region != kNone) guide()->mix(v.region, toEye, toLight, event, e);
         return e;
     }
+    /// PathVertex::region of a surface vertex.
+    std::uint32_t regionOf(const PathVertex& v) const {
+        return guide() && v.bsdf.connectable() ? guide()->regionAt(WalkGuide::placeOf(v)) : kNone;
+    }
+    /// Probability of going on from the vertex: one where roulette is not played yet.
+    float survivalAt(const PathVertex& v) const {
+        return int(v.index) >= limits_.rouletteDepth ? v.survival : 1.0f;
+    }
     /// z_0: a point on the lens.
     PathVertex sampleLens(Rng& rng) const;
 

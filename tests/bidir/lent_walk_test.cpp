@@ -16,6 +16,15 @@ constexpr int kDepth = 6;
 struct Walks {
     explicit Walks(const Scene& s) : scene(s), camera(s.makeCamera("", {64, 48}, {})) {}
 
+    /// f(walk, h, n) for 400 walks, those that lend from their z_h on.
+    template <class F>
+    void forEachLent(const F& f) {
+        for (std::uint64_t n = 0; n < 400; ++n) {
+            const std::vector<PathVertex> walk = trace({0.15f * float(n), 20.5f}, n);
+            if (const std::size_t h = LentWalk::begin(walk); h > 0) f(walk, h, n);
+        }
+    }
+
     std::vector<PathVertex> trace(Vec2 raster, std::uint64_t number) {
         Rng rng(1, 0, StreamKind::User, number);
         std::vector<PathVertex> path;
@@ -41,10 +50,7 @@ TEST(LentWalk, aloneIsTheWalkItself) {
     const auto scene = room(4);
     Walks walks(*scene);
     int lent = 0;
-    for (std::uint64_t n = 0; n < 400; ++n) {
-        const std::vector<PathVertex> own = walks.trace({0.15f * float(n), 20.5f}, n);
-        const std::size_t h = LentWalk::begin(own);
-        if (h == 0) continue;
+    walks.forEachLent([&](const std::vector<PathVertex>& own, std::size_t h, std::uint64_t) {
         ++lent;
         LentWalk walk(walks.walker, own, h);
         walk.add(own, walks.tally);
@@ -60,7 +66,7 @@ TEST(LentWalk, aloneIsTheWalkItself) {
                         1e-4 * double(own[i].pdfReverseA) + 1e-7);
             expectAlike(taken[i].scatter, own[i].scatter);
         }
-    }
+    });
     EXPECT_GT(lent, 100);
 }
 
@@ -69,11 +75,9 @@ TEST(LentWalk, isASampleOfAllWhoCouldHaveGoneIt) {
     const auto scene = room(4);
     Walks walks(*scene);
     int shared = 0;
-    for (std::uint64_t n = 0; n < 400; ++n) {
-        const std::vector<PathVertex> a = walks.trace({0.15f * float(n), 20.5f}, n);
+    walks.forEachLent([&](const std::vector<PathVertex>& a, std::size_t h, std::uint64_t n) {
         const std::vector<PathVertex> b = walks.trace({0.15f * float(n) + 3.0f, 22.5f}, n + 1000);
-        const std::size_t h = LentWalk::begin(a);
-        if (h == 0 || !LentWalk::forksAt(b, h)) continue;
+        if (!LentWalk::forksAt(b, h)) return;
         LentWalk walk(walks.walker, a, h), alone(walks.walker, a, h);
         walk.add(a, walks.tally);
         walk.add(b, walks.tally);
@@ -83,7 +87,7 @@ TEST(LentWalk, isASampleOfAllWhoCouldHaveGoneIt) {
         alone.take(0, h + 2, ofAAlone);
         if (!walk.leadsFrom(1)) {
             expectAlike(ofA.back().throughput, ofAAlone.back().throughput);
-            continue;
+            return;
         }
         ++shared;
         walk.take(1, h + 2, ofB);
@@ -100,7 +104,7 @@ TEST(LentWalk, isASampleOfAllWhoCouldHaveGoneIt) {
                             walks.walker.scattering(b[h], b[h].toPrevious, edge.direction).f *
                             edge.geometry;
         expectAlike(ofB.back().throughput, arrives * float(1 / sum));
-    }
+    });
     EXPECT_GT(shared, 50);
 }
 
