@@ -62,7 +62,8 @@ std::string methodHelp(const MethodRow& row) {
         text += "\nconsistent, not unbiased: what merging blurs goes away as iterations go on";
     }
     if (row.biased) text += "\nbiased: an experiment of a paper, not for pictures";
-    text += "\nparameters (--set NAME=VALUE):\n";
+    text += "\nrandom numbers (--sampler): " + std::string(nameOf(row.sampling)) +
+            "\nparameters (--set NAME=VALUE):\n";
     if (row.options.empty()) text += "  none\n";
     std::size_t width = 0;
     for (const Option& o : row.options) width = std::max(width, o.name.size());

@@ -102,7 +102,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option(
            "--sampler", o.samplerText,
            "Random numbers: sobol (even over iterations), or independent (default: by auto, else "
-           "independent)")
+           "the method's)")
         ->type_name("NAME")
         ->take_last()
         ->group(effort);

@@ -71,6 +71,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
     Settings settings;
     const bool checked = ranks.agree([&] {
         row = &namedRow(options);
+        if (options.samplerText.empty()) options.sampling = row->sampling;
         settings = resolve(*row, options.assignments, "--set ");
         if (options.verify && ranks.many()) {
             throw UsageError("--verify: expected one process, found " +

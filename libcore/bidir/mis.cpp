@@ -134,19 +134,12 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
 }
 
 template <class CountOf>
-double weightAlone(const FullPath& path, const TechniqueCounts& counts, Technique made,
-                   const CountOf& countOf) {
+double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique made,
+                const CountOf& countAlone) {
+    const SamplesByShare share(path, counts.sharing);
+    const auto countOf = [&](int t) { return countAlone(t) * share(t); };
     return counts.merges == Merges::Nowhere ? sweep<false>(path, counts, made, countOf)
                                             : sweep<true>(path, counts, made, countOf);
-}
-
-template <class CountOf>
-double weightBy(const FullPath& path, const TechniqueCounts& counts, Technique made,
-                const CountOf& countOf) {
-    if (!counts.sharing.any()) return weightAlone(path, counts, made, countOf);
-    const SamplesByShare share(path, counts.sharing);
-    return weightAlone(path, counts, made,
-                       [&](int strategy) { return countOf(strategy) * share(strategy); });
 }
 
 }  // namespace

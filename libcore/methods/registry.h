@@ -11,6 +11,7 @@
 
 #include "libcore/base/options.h"
 #include "libcore/bidir/method.h"
+#include "libcore/bidir/sampler.h"
 #include "libcore/guide/emission_settings.h"
 #include "libcore/guide/walk_settings.h"
 
@@ -33,6 +34,7 @@ struct MethodRow {
     Techniques techniques = {};
     Emission emission = Emission::Plain;           ///< the default, where there are light subpaths
     Walks walks = Walks::Plain;                    ///< likewise
+    Sampling sampling = Sampling::Independent;     ///< likewise
     std::vector<AssetNeed> needs = {};             ///< in the order in which they are made
     std::vector<std::string> proposalLabels = {};  ///< names of Proposal::label, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness

@@ -4,6 +4,8 @@
 //             the first vertex that is no mirror and no smooth glass goes to all of them that see it there
 //   picks     of light vertices as in spcbpt
 //   weights   a shared walk counts as `share_samples` of one that is not
+//   numbers   even over iterations, unless --sampler says otherwise: what is left of the noise, the pixel's own,
+//             profits from that
 //   training  as short as serves: seconds
 #include "libcore/methods/spcbpt.h"
 #include "libcore/subspace/training_settings.h"
@@ -25,6 +27,7 @@ MethodRow sharebptRow() {
          .summary = "spcbpt whose pixels share eye walks with those beside them",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .emission = Emission::Learned,
+         .sampling = Sampling::Sobol,
          .needs = {{"subspaces", "train.",
                     trainingOptions(
                         {.paths = 64'000, .subspaces = 200, .lightPaths = 260'000, .epochs = 10})

@@ -279,12 +279,11 @@ class Pilot {
         return choice;
     }
 
-    /// Even numbers where groups enough are expected to know the variance by; with a time limit a
-    /// better picture is worth more than that.
+    /// Even numbers where as many groups are expected as it takes to know a variance.
     Sampling sampling(const Tried& t) const {
         if (!options_.samplerText.empty()) return options_.sampling;
         const double expected = byClock() ? 1.0 / t.cost : double(iterations());
-        const std::uint64_t wanted = (byClock() ? 2 : 8) * Sampler::groupOf(Sampling::Sobol);
+        const std::uint64_t wanted = 2 * Sampler::groupOf(Sampling::Sobol);
         return expected >= double(wanted) ? Sampling::Sobol : Sampling::Independent;
     }
 

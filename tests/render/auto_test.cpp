@@ -71,6 +71,14 @@ TEST_F(RenderAuto, IsTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(readExr(path("one.exr")).pixels, readExr(path("three.exr")).pixels);
 }
 
+TEST_F(RenderAuto, NumbersAreEvenWhereThatLeavesAVarianceToBeKnown) {
+    for (const auto& [iterations, sampler] : {std::pair{"15", "independent"}, {"16", "sobol"}}) {
+        ASSERT_EQ(run(automatic("n", std::string("--iterations ") + iterations)).exitCode, 0);
+        EXPECT_EQ(json("n.json")["sampler"], sampler);
+        EXPECT_GT(json("n.json")["mean_rgb_stderr"][0], 0.0) << iterations;
+    }
+}
+
 TEST_F(RenderAuto, ACheckpointKeepsTheChoice) {
     ASSERT_EQ(run(automatic("a", "--checkpoint @ck --time 0.3s")).exitCode, 0);
     const std::string method = json("a.json")["method"];

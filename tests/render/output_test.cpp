@@ -61,6 +61,21 @@ TEST_F(RenderOutput, HeaderSaysHowItWasMade) {
     EXPECT_FALSE(image.attributes.contains("biased"));
 }
 
+TEST_F(RenderOutput, NumbersAreTheMethodsUnlessTheCommandLineSaysOtherwise) {
+    const auto sampler = [&](const std::string& method, const std::string& more = "") {
+        const Outcome o = run(quick(method, more + " --json @o.json"));
+        EXPECT_EQ(o.exitCode, 0) << o.err;
+        return json("o.json")["sampler"].get<std::string>();
+    };
+    for (const MethodRow& row : methods()) {
+        EXPECT_EQ(sampler(row.name), nameOf(row.sampling)) << row.name;
+    }
+    EXPECT_EQ(sampler("bpt"), "independent");
+    EXPECT_EQ(sampler("bpt", " --sampler sobol"), "sobol");
+    EXPECT_EQ(sampler("sharebpt"), "sobol");
+    EXPECT_EQ(sampler("sharebpt", " --sampler independent"), "independent");
+}
+
 TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
     // Variances need two groups of even numbers.
     ASSERT_EQ(run(quick("bpt", "--quiet --iterations 32")).exitCode, 0);
