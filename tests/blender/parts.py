@@ -19,9 +19,10 @@ except ImportError:
     sys.exit(77)
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "render" / "blender"))
-from lacuna_blender import camera, command, exr, passes, process, shapes, textures  # noqa: E402
+from lacuna_blender import brushing, camera, command, exr, passes, process, shapes, textures  # noqa: E402
 from lacuna_blender.glb import Glb  # noqa: E402
 from lacuna_blender.notes import Notes  # noqa: E402
+from lacuna_blender.sockets import Value  # noqa: E402
 
 
 def object_with(**members):
@@ -102,6 +103,32 @@ class Camera(unittest.TestCase):
         render = object_with(resolution_x=200, resolution_y=100, resolution_percentage=50, use_border=True,
                              border_min_x=0.25, border_max_x=0.5, border_min_y=0.0, border_max_y=0.2)
         self.assertEqual(camera.film(render), (100, 50, (25, 50, 40, 50)))
+
+
+class Brushing(unittest.TestCase):
+    def test_widths_are_blenders(self):
+        for along, across in (brushing.principled_widths(0.8), brushing.anisotropic_widths(0.4), brushing.anisotropic_widths(-0.4)):
+            roughness, brushed = brushing.brushed(Value(0.5), along, across, 0.1, None)
+            fine = roughness.factor ** 2
+            coarse = fine + (1 - fine) * brushed.strength ** 2  # KHR_materials_anisotropy
+            turned = abs(brushed.rotation - 0.2 * math.pi) > 1
+            self.assertEqual(turned, across > along)
+            numpy.testing.assert_allclose((coarse, fine)[::-1 if turned else 1], (0.25 * along, 0.25 * across), rtol=1e-6)
+
+    def test_what_is_not_brushed(self):
+        self.assertEqual(brushing.principled_widths(0), (1, 1))
+        self.assertEqual(brushing.brushed(Value(0.0), 3, 0.3, 0, None)[1].strength, 0)
+
+    def test_tangents_go_around_the_axis(self):
+        directions = numpy.random.default_rng(1).normal(size=(50, 3))
+        normals = directions / numpy.linalg.norm(directions, axis=1, keepdims=True)
+        points = numpy.concatenate((normals, -normals))  # of a ball about the origin
+        tangents = brushing.around(2, points, points)
+        numpy.testing.assert_allclose(numpy.linalg.norm(tangents[:, :3], axis=1), 1, atol=1e-5)
+        numpy.testing.assert_allclose((tangents[:, :3] * points).sum(axis=1), 0, atol=1e-5)
+        self.assertTrue((numpy.cross(points, tangents[:, :3])[:, 2] > 0).all(), "counterclockwise")
+        numpy.testing.assert_array_equal(tangents[:, 3], 1)
+        self.assertTrue(numpy.isfinite(brushing.around(2, points, numpy.tile([0, 0, 1.0], (100, 1)))).all())
 
 
 class Passes(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""Ten small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+"""Eleven small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
 
 import math
 
@@ -202,6 +202,46 @@ def shaders():
     camera()
 
 
+def waves(name, height):
+    """A normal map of waves along u."""
+    x = numpy.linspace(0, 8 * math.pi, 64)
+    slope = height * numpy.sin(x)[None, :].repeat(64, axis=0)
+    normal = numpy.dstack([slope, 0 * slope, numpy.sqrt(1 - slope * slope)])
+    return image(name, 0.5 * normal + 0.5, color=False)
+
+
+def bumps(tree, node, shader, input_):
+    """Links an image's colour to that input as a normal map."""
+    bump = tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(node.outputs["Color"], bump.inputs["Color"])
+    tree.links.new(bump.outputs["Normal"], shader.inputs[input_])
+
+
+def brushed_cloth_and_lacquer():
+    stage()
+    steel = dict(Metallic=1.0, Roughness=0.5)
+    ball(principled("around z", (0.9, 0.9, 0.9), Anisotropic=0.9, **steel), 0.5, location=(-1.9, 0, 0.5))
+    cube(principled("turned", (0.9, 0.7, 0.5), Anisotropic=0.9, Anisotropic_Rotation=0.25, **steel), 0.7,
+         location=(-0.8, 0, 0.4), rotation=(0, 0, 0.4))
+    made, tree, shader = material("by a map", "ShaderNodeBsdfAnisotropic", Color=(0.6, 0.8, 0.9, 1), Roughness=0.4,
+                                  Anisotropy=0.7)
+    tangent = tree.nodes.new("ShaderNodeTangent")
+    tangent.direction_type = "UV_MAP"
+    tree.links.new(tangent.outputs[0], shader.inputs["Tangent"])
+    plane(made, 1.2, location=(0.4, 1, 0.8), rotation=(1.2, 0, 0))
+    ball(principled("cloth", (0.1, 0.05, 0.2), Roughness=1.0, Specular=0.0, Sheen=1.0), 0.5, location=(1.0, -0.2, 0.5))
+    made, tree, shader = material("lacquer", "ShaderNodeBsdfPrincipled", Base_Color=(0.1, 0.1, 0.1, 1), Specular=0.0,
+                                  Roughness=1.0, Clearcoat=1.0, Clearcoat_Roughness=0.1)
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = waves("ripples", 0.3)
+    bumps(tree, node, shader, "Clearcoat Normal")
+    plane(made, 1.2, location=(2.2, 0.6, 0.8), rotation=(1.2, 0, -0.3))
+    lamp("AREA", (-1, -2.5, 3), (0, 0, 0.5), 150, size=1)
+    lamp("AREA", (3, -3, 2.5), (1, 0, 0.5), 80, size=0.6)
+    world((0.2, 0.2, 0.25))
+    camera()
+
+
 def images_on_surfaces():
     made, tree, node = textured("quarters", quarters("four", [(.9, .2, .2), (.2, .9, .2), (.2, .2, .9), (.9, .9, .2)]))
     mapping = tree.nodes.new("ShaderNodeMapping")
@@ -213,14 +253,9 @@ def images_on_surfaces():
     tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
     plane(made, 4, location=(-1, 2, 2), rotation=(math.pi / 2, 0, 0))
     plane(textured("plain", quarters("grey", [(.2,) * 3, (.8,) * 3, (.5,) * 3, (.9,) * 3]))[0], 6)
-    x = numpy.linspace(0, 8 * math.pi, 64)
-    slope = 0.6 * numpy.sin(x)[None, :].repeat(64, axis=0)
-    normal = numpy.dstack([slope, 0 * slope, numpy.sqrt(1 - slope * slope)])
-    made, tree, node = textured("waves", image("waves", 0.5 * normal + 0.5, color=False))
-    bump = tree.nodes.new("ShaderNodeNormalMap")
+    made, tree, node = textured("waves", waves("waves", 0.6))
     shader = tree.nodes["Diffuse BSDF"]
-    tree.links.new(node.outputs["Color"], bump.inputs["Color"])
-    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    bumps(tree, node, shader, "Normal")
     tree.links.remove(shader.inputs["Color"].links[0])
     shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
     plane(made, 2, location=(2, 1, 1), rotation=(math.pi / 2, 0, -0.6))
@@ -290,5 +325,6 @@ SCENES = {
     "sun-and-colour": (sun_and_colour, 0.04, ""), "sky-image": (sky_image, 0.05, ""),
     "lens-and-film": (lens_and_film, 0.05, ""),
     "shaders": (shaders, 0.15, "what is diffuse under a glossy layer is darker"),
+    "brushed-cloth-and-lacquer": (brushed_cloth_and_lacquer, 0.06, ""),
     "images-on-surfaces": (images_on_surfaces, 0.08, "normal maps end at the surface's own horizon"),
     "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, "")}

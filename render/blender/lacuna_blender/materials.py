@@ -13,6 +13,7 @@ class Written:
     index: int
     uv_maps: list  # names in the order of TEXCOORD_n
     vertex_colors: str = None
+    tangent: object = None  # brushing.Tangent: TANGENT is wanted
 
 
 class Materials:
@@ -81,7 +82,11 @@ class Materials:
         self._extend(entry, s, info)
         if hidden:
             entry["extras"] = {"lacuna": {"hidden_from_camera": True}}
-        return Written(self._glb.append("materials", entry), uv_maps or [""], s.base.vertex_colors)
+        tangent = s.brushing and s.brushing.tangent
+        if tangent and s.normal:
+            self._notes.add(name, "the surface is brushed along u of the normal map's UV map")
+            tangent = None  # the renderer's own, which the normal map needs
+        return Written(self._glb.append("materials", entry), uv_maps or [""], s.base.vertex_colors, tangent)
 
     def _extend(self, entry, s, info):
         transmits = s.transmission.texture or s.transmission.factor > 0
@@ -100,8 +105,17 @@ class Materials:
             self._glb.extension(entry, "KHR_materials_transmission", values)
             self._glb.extension(entry, "KHR_materials_volume", {"thicknessFactor": 1.0})  # a body, not a sheet
         if s.coat > 0:
-            self._glb.extension(entry, "KHR_materials_clearcoat",
-                                {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)})
+            values = {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)}
+            if s.coat_normal:
+                use, strength = s.coat_normal
+                values["clearcoatNormalTexture"] = {**info(self._textures.normals(use), use), "scale": strength}
+            self._glb.extension(entry, "KHR_materials_clearcoat", values)
+        if max(s.sheen) > 0:
+            self._glb.extension(entry, "KHR_materials_sheen", {"sheenColorFactor": _shares(s.sheen),
+                                                               "sheenRoughnessFactor": _share(s.sheen_roughness)})
+        if s.brushing:
+            self._glb.extension(entry, "KHR_materials_anisotropy", {"anisotropyStrength": _share(s.brushing.strength),
+                                                                    "anisotropyRotation": s.brushing.rotation})
         light = [max(c * s.strength, 0.0) for c in s.emission.factor]
         most = max(light)
         if most > 0:

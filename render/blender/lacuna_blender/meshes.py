@@ -2,6 +2,8 @@
 
 import numpy
 
+from . import brushing
+
 GEOMETRY = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 
 
@@ -38,13 +40,15 @@ class Meshes:
         corners = _read(mesh.loop_triangles, "loops", 3, numpy.int32)
         slot_of = numpy.minimum(_read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
         points = _read(mesh.vertices, "co", 3)[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
-        normals = _corner_normals(mesh)
+        smooth = _is_smooth(mesh)
         primitives = []
         for slot in numpy.unique(slot_of):
             material = self._materials.of(slots[slot], hidden)
             attributes = {"POSITION": points}
-            if normals is not None:
-                attributes["NORMAL"] = normals
+            if smooth or material.tangent:  # flat faces leave normals out, but TANGENT wants them
+                attributes["NORMAL"] = _corner_normals(mesh)
+            if material.tangent:
+                attributes["TANGENT"] = self._tangents(name, mesh, material.tangent, points, attributes["NORMAL"])
             for i, uv_map in enumerate(material.uv_maps):
                 uvs = self._uvs(name, mesh, uv_map)
                 if uvs is not None:
@@ -67,6 +71,16 @@ class Meshes:
         uvs[:, 1] = 1 - uvs[:, 1]
         return uvs
 
+    def _tangents(self, name, mesh, tangent, points, normals):
+        if tangent.uv_map is not None:
+            layer = mesh.uv_layers.get(tangent.uv_map) if tangent.uv_map else mesh.uv_layers.active
+            try:
+                mesh.calc_tangents(uvmap=layer.name if layer else tangent.uv_map)
+                return brushing.across_normals(_read(mesh.loops, "tangent", 3), normals)
+            except (RuntimeError, TypeError):  # no such map, or faces of more than four corners
+                self._notes.add(name, f"tangents by the UV map {tangent.uv_map} cannot be made: brushed around Z")
+        return brushing.around(tangent.axis, points, normals)
+
     def _colors(self, name, mesh, wanted):
         attributes = mesh.color_attributes
         colors = attributes.get(wanted) if wanted else (
@@ -81,10 +95,13 @@ class Meshes:
         return values
 
 
+def _is_smooth(mesh):
+    """Whether a face has other normals than its own; glTF says that none has by leaving them out."""
+    return mesh.has_custom_normals or bool(_read(mesh.polygons, "use_smooth", 1, bool).any())
+
+
 def _corner_normals(mesh):
-    """By corner; None where all faces are flat, which glTF says by leaving normals out."""
-    if not mesh.has_custom_normals and not _read(mesh.polygons, "use_smooth", 1, bool).any():
-        return None
+    """By corner."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
         return _read(mesh.corner_normals, "vector", 3)
     mesh.calc_normals_split()

@@ -2,9 +2,15 @@
 
 from dataclasses import dataclass, replace
 
+from .brushing import Brushing, anisotropic_widths, brushed, principled_widths, tangent_of
 from .sockets import Sockets, Value, source_of
 
 BLACK = Value((0.0, 0.0, 0.0))
+# Disney's coat of 1, Blender 3's, reflects a quarter of what Fresnel has for it.
+DISNEY_COAT = 0.25
+# Disney's sheen, (1 - cos)^5, as the sheen of microfibres that glTF has: the albedos of the two are within a third of
+# each other from 30 to 85 degrees.
+DISNEY_SHEEN, DISNEY_SHEEN_ROUGHNESS = 0.1, 0.3
 
 
 @dataclass
@@ -21,6 +27,10 @@ class Surface:
     emission: Value = BLACK
     strength: float = 0.0
     normal: object = None
+    coat_normal: object = None
+    sheen: tuple = (0.0, 0.0, 0.0)
+    sheen_roughness: float = 0.0
+    brushing: Brushing = None
 
 
 class SurfaceReader:
@@ -61,15 +71,43 @@ class SurfaceReader:
             return 0.5
         return value.factor
 
-    def _normal(self, node, groups):
-        return self._sockets.normal(_input(node, "Normal"), groups)
+    def _normal(self, node, groups, *names):
+        socket = _input(node, *(names or ("Normal",)))
+        return self._sockets.normal(socket, groups) if socket else None
+
+    def _sheen(self, node, groups, base):
+        """Colour and roughness."""
+        weight = self._number(node, groups, "Sheen", "Sheen Weight")
+        if weight <= 0:
+            return (0.0, 0.0, 0.0), 0.0
+        if _input(node, "Sheen Roughness"):  # Blender 4
+            tint = self._color(node, groups, "Sheen Tint").factor
+            return tuple(weight * t for t in tint), self._number(node, groups, "Sheen Roughness")
+        tint = self._number(node, groups, "Sheen Tint")
+        brightness = 0.2126 * base.factor[0] + 0.7152 * base.factor[1] + 0.0722 * base.factor[2]
+        hue = tuple(c / brightness for c in base.factor) if brightness > 0 else (1.0, 1.0, 1.0)
+        return tuple(min(DISNEY_SHEEN * weight * (1 - tint + tint * h), 1.0) for h in hue), DISNEY_SHEEN_ROUGHNESS
+
+    def _brush(self, s, node, groups, widths):
+        """Brushes the surface, where the node does: `widths` of an anisotropy, as factors of alpha."""
+        along, across = widths(self._number(node, groups, "Anisotropic", "Anisotropy"))
+        if along == across:
+            return s
+        if s.roughness.texture:
+            self._note("the brushing of a textured roughness is that of half of it")
+        tangent = tangent_of(_input(node, "Tangent"), groups)
+        if tangent is None:
+            self._note("the node for the tangent is left out: brushed around Z")
+        turn = self._number(node, groups, "Anisotropic Rotation", "Rotation")
+        roughness, brushing = brushed(s.roughness, along, across, turn, tangent)
+        return replace(s, roughness=roughness, brushing=brushing)
 
     def _principled(self, node, groups):
-        for names in (("Subsurface", "Subsurface Weight"), ("Sheen", "Sheen Weight"), ("Anisotropic",),
-                      ("Transmission Roughness",), ("Specular Tint",), ("Thin Film Thickness",)):
+        for names in (("Subsurface", "Subsurface Weight"), ("Transmission Roughness",), ("Specular Tint",),
+                      ("Thin Film Thickness",), ("Clearcoat Tint", "Coat Tint")):
             socket = _input(node, *names)
             value = socket and socket.default_value
-            plain = 1.0 if names[0] == "Specular Tint" and hasattr(value, "__len__") else 0.0
+            plain = 1.0 if "Tint" in names[0] and hasattr(value, "__len__") else 0.0
             if socket and (socket.is_linked or _differs(value, plain)):
                 self._note(f"{socket.name} is left out")
         s = Surface(base=self._color(node, groups, "Base Color"), metallic=self._scalar(node, groups, "Metallic"),
@@ -82,10 +120,15 @@ class SurfaceReader:
         else:
             s.reflectance = 0.08 * self._number(node, groups, "Specular")
         s.coat = self._number(node, groups, "Clearcoat", "Coat Weight")
+        if _input(node, "Clearcoat"):
+            s.coat *= DISNEY_COAT
         s.coat_roughness = self._number(node, groups, "Clearcoat Roughness", "Coat Roughness")
+        if s.coat > 0:
+            s.coat_normal = self._normal(node, groups, "Clearcoat Normal", "Coat Normal")
+        s.sheen, s.sheen_roughness = self._sheen(node, groups, s.base)
         s.emission = self._color(node, groups, "Emission", "Emission Color")
         s.strength = self._number(node, groups, "Emission Strength")
-        return s
+        return self._brush(s, node, groups, principled_widths)
 
     def _emission(self, node, groups):
         return Surface(emission=self._color(node, groups, "Color"), strength=self._number(node, groups, "Strength"))
@@ -97,8 +140,10 @@ class SurfaceReader:
 
     def _glossy(self, node, groups):
         sharp = getattr(node, "distribution", "") == "SHARP"
-        return Surface(base=self._color(node, groups, "Color"), metallic=Value(1.0), normal=self._normal(node, groups),
-                       roughness=Value(0.0) if sharp else self._scalar(node, groups, "Roughness"))
+        s = Surface(base=self._color(node, groups, "Color"), metallic=Value(1.0), normal=self._normal(node, groups),
+                    roughness=Value(0.0) if sharp else self._scalar(node, groups, "Roughness"))
+        # Blender 4 has one node for both, and the plain one of 3 has no such input.
+        return self._brush(s, node, groups, anisotropic_widths) if _input(node, "Anisotropy") and not sharp else s
 
     def _glass(self, node, groups):
         s = self._glossy(node, groups)
@@ -170,7 +215,8 @@ class SurfaceReader:
                        mean(a.reflectance, b.reflectance), b.ior if b.transmission.factor > 0 else a.ior,
                        mean(a.transmission, b.transmission), mean(a.coat, b.coat), mean(a.coat_roughness, b.coat_roughness),
                        mean(a.alpha, b.alpha), Value(emission, a.emission.texture or b.emission.texture), 1.0,
-                       a.normal or b.normal)
+                       a.normal or b.normal, a.coat_normal or b.coat_normal, mean(a.sheen, b.sheen),
+                       max(a.sheen_roughness, b.sheen_roughness), a.brushing or b.brushing)
 
     def _add(self, node, groups):
         a, b = self.read(node.inputs[0], groups), self.read(node.inputs[1], groups)
