@@ -1,7 +1,6 @@
 #include "libcore/base/parallel.h"
 
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <sched.h>
 
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "libcore/base/tbb_loop.h"
 
 namespace lacuna {
 
@@ -81,8 +81,7 @@ void ThreadPool::forEach(std::size_t n, const std::function<void(std::size_t)>& 
         tbb::task_group_context::bound,
         tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     context.capture_fp_settings();
-    impl_->arena.execute(
-        [&] { tbb::parallel_for(std::size_t(0), n, body, tbb::simple_partitioner{}, context); });
+    impl_->arena.execute([&] { tbbLoop(n, body, tbb::simple_partitioner{}, context); });
 }
 
 void ThreadPool::run(const std::function<void()>& body) const {

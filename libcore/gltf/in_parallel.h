@@ -1,20 +1,20 @@
 // Work on many parts of a file at once.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <cstddef>
 #include <exception>
 #include <vector>
 
+#include "libcore/base/tbb_loop.h"
+
 namespace lacuna::gltf {
 
-/// Calls work(item) for each of `items`, with tbb::parallel_for in the caller's arena. Then throws the
+/// Calls work(item) for each of `items`, in the caller's arena of oneTBB. Then throws the
 /// error of the first item that has one: which thread met one first must not decide which the user sees.
 template <class Item, class Work>
 void inParallel(std::vector<Item>& items, const Work& work) {
     std::vector<std::exception_ptr> errors(items.size());
-    tbb::parallel_for(std::size_t(0), items.size(), [&](std::size_t i) {
+    tbbLoop(items.size(), [&](std::size_t i) {
         try {
             work(items[i]);
         } catch (...) {

@@ -1,6 +1,5 @@
 #include "libcore/material/albedo_tables.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "libcore/base/tbb_loop.h"
 #include "libcore/material/bsdf.h"
 #include "libcore/material/fresnel.h"
 #include "libcore/material/microfacet.h"
@@ -125,7 +125,7 @@ AlbedoTable::AlbedoTable(float ior)
       values_(std::size_t(kAlphaNodes) * kMuNodes),
       averages_(std::size_t(kAlphaNodes)) {
     const DiskRule rule = makeDiskRule();
-    tbb::parallel_for(0, kAlphaNodes, [&](int a) {
+    tbbLoop(kAlphaNodes, [&](int a) {
         float* rowValues = values_.data() + std::ptrdiff_t(a) * kMuNodes;
         for (int m = 0; m < kMuNodes; ++m) {
             rowValues[m] = float(

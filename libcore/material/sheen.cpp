@@ -1,11 +1,12 @@
 #include "libcore/material/sheen.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <array>
 #include <cstddef>
 #include <numbers>
+
+#include "libcore/base/tbb_loop.h"
 
 namespace lacuna {
 namespace {
@@ -42,7 +43,7 @@ double directionalAlbedo(double roughness, double mu) {
 }  // namespace
 
 SheenTable::SheenTable() : values_(std::size_t(kRoughnesses) * kCosines) {
-    tbb::parallel_for(0, kRoughnesses * kCosines, [&](int i) {
+    tbbLoop(kRoughnesses * kCosines, [&](int i) {
         const double roughness = double(i / kCosines) / (kRoughnesses - 1);
         const double root = std::max(1e-3, double(i % kCosines) / (kCosines - 1));
         values_[std::size_t(i)] = float(directionalAlbedo(roughness, root * root));

@@ -10,6 +10,9 @@ ROOT = Path(__file__).resolve().parents[2]
 JOBS = str(os.cpu_count())
 DICTIONARIES = ROOT / "tests" / "fuzz" / "dictionaries"
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
+SUPPRESSIONS = Path(__file__).with_name("threads.supp")
+# Suites in which threads meet, as ctest -R takes them.
+THREADED = "^(ThreadPool|Library|Render|Live|Study|Train)"
 
 
 class Failed(Exception):
@@ -42,17 +45,29 @@ def tests_of(output):
     return int(ran[1]) if ran else 0, float(seconds[1]) if seconds else 0.0, failed
 
 
-def sanitizers(options):
-    """The suite under AddressSanitizer and UndefinedBehaviorSanitizer."""
-    folder = build("debug", options.out / "sanitizers-build.log")
-    log = options.out / "sanitizers.log"
-    output, code = run(["ctest", "--test-dir", folder, "--parallel", JOBS, "--output-on-failure", "--timeout", 7200,
-                        *(["-LE", "slow"] if options.quick else [])], log)
+def suite(preset, log, *chosen, environment=()):
+    """Runs a preset's tests. How many, seconds, those that failed."""
+    output, code = run(["ctest", "--test-dir", build(preset, log.with_suffix(".build.log")), "--parallel", JOBS,
+                        "--output-on-failure", "--timeout", 7200, *chosen], log, env=os.environ | dict(environment))
     count, seconds, failed = tests_of(output)
     if code != 0 and not failed:
         failed = [f"ctest ended with {code}: {log}"]
+    return count, seconds, failed
+
+
+def sanitizers(options):
+    """The suite under AddressSanitizer and UndefinedBehaviorSanitizer."""
+    count, seconds, failed = suite("debug", options.out / "sanitizers.log", *(["-LE", "slow"] if options.quick else []))
     which = "without the slow tests" if options.quick else "the whole suite"
     return {"summary": f"AddressSanitizer and UndefinedBehaviorSanitizer, {which}: {count} tests in {seconds:.0f} s",
+            "rows": [], "findings": failed}
+
+
+def threads(options):
+    """What has threads, under ThreadSanitizer."""
+    count, seconds, failed = suite("threads", options.out / "threads.log", "-LE", "slow", "-R", THREADED,
+                                   environment={"TSAN_OPTIONS": f"suppressions={SUPPRESSIONS}"})
+    return {"summary": f"ThreadSanitizer, what has threads, without the slow tests: {count} tests in {seconds:.0f} s",
             "rows": [], "findings": failed}
 
 
@@ -149,4 +164,4 @@ def studies(options):
     return {"summary": f"{1 if options.quick else len(files)} quick studies", "rows": [], "findings": findings}
 
 
-PARTS = {part.__name__: part for part in (sanitizers, fuzz, hostile, differential, studies)}
+PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, studies)}
