@@ -77,8 +77,7 @@ class Materials:
         if rough or metal:
             pbr["metallicRoughnessTexture"] = info(self._textures.scalars(G=rough, B=metal), rough or metal)
         if s.normal:
-            use, strength = s.normal
-            entry["normalTexture"] = {**info(self._textures.normals(use), use), "scale": strength}
+            entry["normalTexture"] = self._normals(s.normal, info)
         self._extend(entry, s, info)
         if hidden:
             entry["extras"] = {"lacuna": {"hidden_from_camera": True}}
@@ -87,6 +86,11 @@ class Materials:
             self._notes.add(name, "the surface is brushed along u of the normal map's UV map")
             tangent = None  # the renderer's own, which the normal map needs
         return Written(self._glb.append("materials", entry), uv_maps or [""], s.base.vertex_colors, tangent)
+
+    def _normals(self, normal, info):
+        """A normal map and its strength."""
+        use, strength = normal
+        return {**info(self._textures.normals(use), use), "scale": strength}
 
     def _extend(self, entry, s, info):
         transmits = s.transmission.texture or s.transmission.factor > 0
@@ -107,8 +111,7 @@ class Materials:
         if s.coat > 0:
             values = {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)}
             if s.coat_normal:
-                use, strength = s.coat_normal
-                values["clearcoatNormalTexture"] = {**info(self._textures.normals(use), use), "scale": strength}
+                values["clearcoatNormalTexture"] = self._normals(s.coat_normal, info)
             self._glb.extension(entry, "KHR_materials_clearcoat", values)
         if max(s.sheen) > 0:
             self._glb.extension(entry, "KHR_materials_sheen", {"sheenColorFactor": _shares(s.sheen),

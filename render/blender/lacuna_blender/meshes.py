@@ -40,15 +40,16 @@ class Meshes:
         corners = _read(mesh.loop_triangles, "loops", 3, numpy.int32)
         slot_of = numpy.minimum(_read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
         points = _read(mesh.vertices, "co", 3)[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
+        materials = {slot: self._materials.of(slots[slot], hidden) for slot in numpy.unique(slot_of)}
         smooth = _is_smooth(mesh)
+        normals = _corner_normals(mesh) if smooth or any(m.tangent for m in materials.values()) else None
         primitives = []
-        for slot in numpy.unique(slot_of):
-            material = self._materials.of(slots[slot], hidden)
+        for slot, material in materials.items():
             attributes = {"POSITION": points}
             if smooth or material.tangent:  # flat faces leave normals out, but TANGENT wants them
-                attributes["NORMAL"] = _corner_normals(mesh)
+                attributes["NORMAL"] = normals
             if material.tangent:
-                attributes["TANGENT"] = self._tangents(name, mesh, material.tangent, points, attributes["NORMAL"])
+                attributes["TANGENT"] = self._tangents(name, mesh, material.tangent, points, normals)
             for i, uv_map in enumerate(material.uv_maps):
                 uvs = self._uvs(name, mesh, uv_map)
                 if uvs is not None:
@@ -61,8 +62,7 @@ class Meshes:
         return self._glb.mesh(name, primitives)
 
     def _uvs(self, name, mesh, uv_map):
-        layers = mesh.uv_layers
-        layer = layers.get(uv_map) if uv_map else next((l for l in layers if l.active_render), None)
+        layer = _uv_layer(mesh, uv_map)
         if layer is None:
             if uv_map:
                 self._notes.add(name, f"there is no UV map {uv_map}: its texture has one colour")
@@ -73,9 +73,9 @@ class Meshes:
 
     def _tangents(self, name, mesh, tangent, points, normals):
         if tangent.uv_map is not None:
-            layer = mesh.uv_layers.get(tangent.uv_map) if tangent.uv_map else mesh.uv_layers.active
+            layer = _uv_layer(mesh, tangent.uv_map)
             try:
-                mesh.calc_tangents(uvmap=layer.name if layer else tangent.uv_map)
+                mesh.calc_tangents(uvmap=layer.name if layer else "")
                 return brushing.across_normals(_read(mesh.loops, "tangent", 3), normals)
             except (RuntimeError, TypeError):  # no such map, or faces of more than four corners
                 self._notes.add(name, f"tangents by the UV map {tangent.uv_map} cannot be made: brushed around Z")
@@ -93,6 +93,12 @@ class Meshes:
         if colors.domain == "POINT":
             values = values[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
         return values
+
+
+def _uv_layer(mesh, wanted):
+    """The UV map of that name, the one for renders where there is none; or None."""
+    layers = mesh.uv_layers
+    return layers.get(wanted) if wanted else next((l for l in layers if l.active_render), None)
 
 
 def _is_smooth(mesh):

@@ -85,7 +85,7 @@ class Sockets:
     def scalar(self, socket, groups=()):
         found = source_of(socket, groups)
         if found is None or found.node is None:
-            return Value(_one(constant(found.output if found else socket)))
+            return Value(luminance(constant(found.output if found else socket)))
         node = found.node
         if node.type == "TEX_IMAGE" and self._usable(node):
             channel = "A" if found.output.name == "Alpha" else ""
@@ -100,7 +100,7 @@ class Sockets:
             a, b = self.scalar(node.inputs[0], found.groups), self.scalar(node.inputs[1], found.groups)
             if not (a.texture and b.texture):
                 return Value(a.factor * b.factor, a.texture or b.texture)
-        return Value(_one(self._unknown(found, socket)))
+        return Value(luminance(self._unknown(found, socket)))
 
     def normal(self, socket, groups=()):
         """A normal map and its strength, or None."""
@@ -183,5 +183,6 @@ def _three(value):
     return (value,) * 3 if isinstance(value, float) else tuple(value)
 
 
-def _one(value):
+def luminance(value):
+    """Of a colour; a number is its own."""
     return value if isinstance(value, float) else 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]

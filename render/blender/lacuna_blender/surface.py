@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from .brushing import Brushing, anisotropic_widths, brushed, principled_widths, tangent_of
-from .sockets import Sockets, Value, source_of
+from .sockets import Sockets, Value, luminance, source_of
 
 BLACK = Value((0.0, 0.0, 0.0))
 # Disney's coat of 1, Blender 3's, reflects a quarter of what Fresnel has for it.
@@ -84,7 +84,7 @@ class SurfaceReader:
             tint = self._color(node, groups, "Sheen Tint").factor
             return tuple(weight * t for t in tint), self._number(node, groups, "Sheen Roughness")
         tint = self._number(node, groups, "Sheen Tint")
-        brightness = 0.2126 * base.factor[0] + 0.7152 * base.factor[1] + 0.0722 * base.factor[2]
+        brightness = luminance(base.factor)
         hue = tuple(c / brightness for c in base.factor) if brightness > 0 else (1.0, 1.0, 1.0)
         return tuple(min(DISNEY_SHEEN * weight * (1 - tint + tint * h), 1.0) for h in hue), DISNEY_SHEEN_ROUGHNESS
 
