@@ -45,6 +45,7 @@ bool acceptsVoxels(Bytes bytes);    ///< the metadata of KEY.voxels.vdb
 bool acceptsPart(Bytes bytes);      ///< the attributes of a part; its hash is right
 bool acceptsStudy(Bytes bytes);     ///< a study's .json
 bool acceptsCurve(Bytes bytes);     ///< what --log wrote
-bool acceptsArguments(Bytes bytes);  ///< lacuna-render's, one per line, and the method's settings
+bool acceptsArguments(Bytes bytes);    ///< lacuna-render's, one per line, and the method's settings
+bool acceptsExpressions(Bytes bytes);  ///< of light paths, one per line, and the automata of them
 
 }  // namespace lacuna::test

@@ -192,6 +192,8 @@ void texts(const fs::path& folder) {
     write(folder / "arguments" / "replay", "--method\nbpt\n--replay\n1,2,3");
     write(folder / "arguments" / "part",
           "--method\npt\n--iterations\n8\n--block-iterations\n2\n--blocks\n0,2");
+    write(folder / "expressions" / "most",
+          "C.*\nC<RD>.+L\nC(<TS>|<RS>)*[^S]?B\nC<..['a''b']>{2,3}<[^C].[^'a']>O\nCs?D{1}G{0,}L");
 }
 
 }  // namespace

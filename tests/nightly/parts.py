@@ -4,6 +4,7 @@
 import os
 import re
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -80,30 +81,37 @@ def fuzzed(output):
             re.findall(r"Test unit written to (\S+)", output))
 
 
+def fuzz_parser(name, program, options):
+    """One row of the table, and findings. An input may take 20 seconds, and the memory that fuzz_main.cpp says."""
+    findings_folder = options.out / "findings"
+    log = options.out / f"fuzz-{name}.log"
+    dictionary = DICTIONARIES / f"{name}.dict"
+    output, code = run(
+        [program, options.out / "fuzz" / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
+         f"-runs={options.executions}", "-print_final_stats=1", "-timeout=20", "-rss_limit_mb=4096",
+         f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
+        log, env={**os.environ, "LACUNA_FUZZ_PARSER": name})
+    executions, edges, features, kept = fuzzed(output)
+    findings = [f"{name}: {path}" for path in kept]
+    if code != 0 and not kept:
+        findings.append(f"{name}: ended with {code}: {log}")
+    return [f"`{name}`", executions, edges, features], findings
+
+
 def fuzz(options):
-    """Every parser of tests/fuzz/parsers.h."""
+    """Every parser of tests/fuzz/parsers.h, as many at a time as there are processors."""
     folder = build("fuzz", options.out / "fuzz-build.log") / "tests"
-    inputs, findings_folder = options.out / "fuzz", options.out / "findings"
+    inputs = options.out / "fuzz"
     if run([folder / "fuzz_seeds", inputs], options.out / "fuzz-seeds.log")[1] != 0:
         raise Failed(f"no seeds: {options.out / 'fuzz-seeds.log'}")
-    known = sorted(folder.name for folder in inputs.iterdir())  # one for each parser
-    findings_folder.mkdir(exist_ok=True)
-    rows, findings, total = [["parser", "executions", "edges", "features"]], [], 0
-    for name in options.parser or known:
-        log = options.out / f"fuzz-{name}.log"
-        dictionary = DICTIONARIES / f"{name}.dict"
-        output, code = run(
-            [folder / "fuzz", inputs / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
-             f"-runs={options.executions}", "-print_final_stats=1", "-timeout=60", "-rss_limit_mb=4096",
-             f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
-            log, env={**os.environ, "LACUNA_FUZZ_PARSER": name})
-        executions, edges, features, kept = fuzzed(output)
-        total += executions
-        rows.append([f"`{name}`", executions, edges, features])
-        findings += [f"{name}: {path}" for path in kept]
-        if code != 0 and not kept:
-            findings.append(f"{name}: ended with {code}: {log}")
-    return {"summary": f"libFuzzer, {total} executions", "rows": rows, "findings": findings}
+    (options.out / "findings").mkdir(exist_ok=True)
+    names = options.parser or sorted(folder.name for folder in inputs.iterdir())
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        done = list(pool.map(lambda name: fuzz_parser(name, folder / "fuzz", options), names))
+    rows = [row for row, _ in done]
+    return {"summary": f"libFuzzer, {sum(row[1] for row in rows)} executions",
+            "rows": [["parser", "executions", "edges", "features"], *rows],
+            "findings": [finding for _, found in done for finding in found]}
 
 
 def counted(output):
