@@ -215,6 +215,49 @@ TEST(Film, holdsThePowersThatAFloatHolds) {
     }
 }
 
+// A day's render: sums of floats would stand still long before. Red is one and noise, green is rare, blue never changes.
+TEST(Film, aMillionIterationsAreSummedAsTheFirstOnes) {
+    const ThreadPool threads(1);
+    constexpr int kIterations = 1'000'000;
+    Film film(1, 1, {64, false});
+    Rng rng(33, 0, StreamKind::User, 0);
+    double sum[2] = {0, 0}, squares[2] = {0, 0};
+    for (int i = 0; i < kIterations; ++i) {
+        const float value[2] = {1.0f + rng.uniform(), rng.below(10'000) ? 0.0f : 1000.0f};
+        for (int c = 0; c < 2; ++c) {
+            sum[c] += double(value[c]);
+            squares[c] += double(value[c]) * double(value[c]);
+        }
+        film.add(std::vector<Rgb>{{value[0], value[1], 0.1f}}, threads);
+    }
+    const Rgb mean = film.image().at(0, 0), variance = film.variance().at(0, 0);
+    const float means[] = {mean.r, mean.g}, variances[] = {variance.r, variance.g};
+    for (int c = 0; c < 2; ++c) {
+        const double n = kIterations, exact = sum[c] / n;
+        EXPECT_NEAR(double(means[c]) / exact, 1.0, 1e-6);
+        const double ofMean = (squares[c] / n - exact * exact) / (n - 1.0);
+        EXPECT_NEAR(double(variances[c]) / ofMean, 1.0, 1e-5);
+        EXPECT_NEAR(film.meanColour().standardError[c] / std::sqrt(ofMean), 1.0, 1e-6);
+    }
+    EXPECT_FLOAT_EQ(mean.b, 0.1f);
+    EXPECT_LT(std::sqrt(variance.b), 1e-7f);
+}
+
+TEST(FilmSum, countsIterationsBeyond32Bits) {
+    const ThreadPool threads(1);
+    FilmSum sum = FilmSum::ofIteration(std::vector<Rgb>{Rgb(1.0f)}, 1, threads);
+    sum.spread = {Rgb(0.0f)};
+    for (int doubled = 0; doubled < 35; ++doubled) join(sum, FilmSum(sum), false, nullptr);
+    FilmSum other = sum;
+    other.mean[0] = Rgb(3.0f);
+    join(sum, other, false, nullptr);
+    EXPECT_EQ(sum.iterations, 1ull << 36);
+    EXPECT_EQ(sum.samples, 1ull << 36);
+    EXPECT_EQ(sum.image(1, 1).at(0, 0), Rgb(2.0f));
+    // Half of the samples are 1, half 3.
+    EXPECT_NEAR(double(sum.variance(1, 1).at(0, 0).r) * std::pow(2.0, 36), 1.0, 1e-6);
+}
+
 // Connections of the first eye vertex are half of the first pixel and nothing of the other.
 TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     TechniqueFilm film(2, 1, 3);
