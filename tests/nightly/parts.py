@@ -7,6 +7,8 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import long_render
+
 ROOT = Path(__file__).resolve().parents[2]
 JOBS = str(os.cpu_count())
 DICTIONARIES = ROOT / "tests" / "fuzz" / "dictionaries"
@@ -172,4 +174,13 @@ def studies(options):
     return {"summary": f"{1 if options.quick else len(files)} quick studies", "rows": [], "findings": findings}
 
 
-PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, studies)}
+def endurance(options):
+    """One long render."""
+    folder = build("release", options.out / "endurance-build.log", "lacuna_tools")
+    rows, findings = long_render.measure(folder / "render", options.long_scene, 60 * options.minutes,
+                                         options.out / "endurance")
+    return {"summary": f"{options.long_scene.name} by `auto` for {options.minutes} minutes at 1920 x 1080", "rows": rows,
+            "findings": findings}
+
+
+PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, studies, endurance)}

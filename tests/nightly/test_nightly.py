@@ -7,6 +7,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).parent))
 
+import long_render  # noqa: E402
 import page  # noqa: E402
 import parts  # noqa: E402
 
@@ -34,6 +35,26 @@ class Outputs(unittest.TestCase):
     def test_random_scenes(self):
         output = "scene 5, pt: mean: off by 3 errors\n8 scenes, 32 comparisons\nscene 5: 1 finds\n"
         self.assertEqual(parts.compared(output), ("8 scenes, 32 comparisons", ["scene 5, pt: mean: off by 3 errors"]))
+
+
+class LongRender(unittest.TestCase):
+    def test_memory(self):
+        self.assertAlmostEqual(long_render.growth([9, 9, *[100] * 4, *[103] * 4]), 1.03)
+        self.assertTrue(long_render.resident("self") > 1e6)
+        self.assertIsNone(long_render.resident("none"))
+
+    def test_iterations_of_an_exr(self):
+        head = b"v/1\0channels\0chlist\0" + b"iterations\0int\0\x04\0\0\0\x02\x01\0\0name\0"
+        self.assertEqual(long_render.iterations_of(head), 258)
+        self.assertEqual(long_render.iterations_of(b"\0iterations\0string\0\x0b\0\0\0" + b"123456789017"), 12345678901)
+        self.assertEqual(long_render.iterations_of(b"no such"), 0)
+
+    def test_slope_of_parts_of_one_picture(self):
+        last = 1000
+        for falls in (0.5, 0.3):
+            errors = [(n, 0.1 * n ** -falls * (1 - n / last) ** 0.5) for n in (10, 20, 40, 80, 500)]
+            self.assertAlmostEqual(long_render.slope(errors, last), -falls)
+        self.assertTrue(long_render.slope([(10, 0.1)], 100) != long_render.slope([(10, 0.1)], 100), "not a number")
 
 
 class Page(unittest.TestCase):

@@ -1,0 +1,102 @@
+"""A render that runs for long: whether it takes more and more memory, and whether its error goes on falling."""
+
+import math
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import time
+
+SAMPLE_SECONDS = 2
+MOST_GROWTH = 1.01  # of memory, from the second fifth of the time to the last one
+LEAST_SLOPE = -0.45  # of log mape over log iterations; independent iterations have -0.5
+
+
+def resident(process):
+    """Bytes of memory; None once the process has ended."""
+    try:
+        with open(f"/proc/{process}/statm") as pages:
+            return int(pages.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError):
+        return None
+
+
+def iterations_of(head):
+    """Of the first bytes of an .exr, its attribute `iterations`."""
+    found = re.search(rb"iterations\0int\0\x04\0\0\0(.{4})|iterations\0string\0(.{4})(\d+)", head, re.S)
+    if not found:
+        return 0
+    return int.from_bytes(found[1], "little") if found[1] else int(found[3][:int.from_bytes(found[2], "little")])
+
+
+def growth(memory):
+    """Memory late in the run over memory early in it."""
+    fifth = len(memory) // 5
+    if fifth == 0:
+        return math.nan
+    return statistics.median(memory[-fifth:]) / statistics.median(memory[fifth:2 * fifth])
+
+
+def slope(errors, last):
+    """Of log mape over log iterations, by least squares. `errors`: (iterations, mape against the picture of `last`
+    iterations, of which it is a part), so that sigma sqrt(1/n - 1/N) is what is measured."""
+    points = [(math.log(n), math.log(mape / math.sqrt(1 - n / last))) for n, mape in errors if n < last and mape > 0]
+    if len(points) < 2:
+        return math.nan
+    x, y = (statistics.mean(values) for values in zip(*points))
+    return sum((a - x) * (b - y) for a, b in points) / sum((a - x) ** 2 for a, _ in points)
+
+
+def mape(compare, picture, reference):
+    output = subprocess.run([compare, picture, reference], capture_output=True, text=True, check=True).stdout
+    return float(re.search(r"^mape (\S+)$", output, re.M)[1])
+
+
+def watch(process, picture, folder, seconds):
+    """Samples of memory, and copies of `picture` at times that double."""
+    memory, copies, begin, at = [], [], time.monotonic(), seconds / 64
+    while process.poll() is None:
+        time.sleep(SAMPLE_SECONDS)
+        memory.append(resident(process.pid))
+        if time.monotonic() - begin > at and picture.exists():
+            copies.append(folder / f"{len(copies)}.exr")
+            shutil.copyfile(picture, copies[-1])  # it is replaced as a whole, never written into
+            at *= 2
+    return [bytes_ for bytes_ in memory if bytes_], copies
+
+
+def measure(programs, scene, seconds, folder):
+    """What a render by `auto` of `scene` for so many seconds did, at 1920 x 1080: rows of a table, and findings."""
+    folder.mkdir(parents=True, exist_ok=True)
+    picture = folder / "picture.exr"
+    for old in folder.glob("*.exr"):
+        old.unlink()
+    (folder / "checkpoint").unlink(missing_ok=True)
+    with open(folder / "render.log", "w") as log:
+        process = subprocess.Popen(
+            [programs / "lacuna-render", scene, "-o", picture, "--width", "1920", "--height", "1080", "--time", f"{seconds}s",
+             "--write-every", f"{max(1, seconds // 128)}s", "--checkpoint", folder / "checkpoint", "--cache",
+             folder / "cache"], stdout=log, stderr=subprocess.STDOUT)
+        memory, copies = watch(process, picture, folder, seconds)
+    if process.returncode != 0:
+        return [], [f"ended with {process.returncode}: {folder / 'render.log'}"]
+
+    def iterations(file):
+        with open(file, "rb") as content:
+            return iterations_of(content.read(1 << 16))
+
+    last, errors = iterations(picture), {}
+    for copy in copies:
+        if 0 < iterations(copy) < 0.9 * last:
+            errors[iterations(copy)] = mape(programs / "lacuna-compare", copy, picture)
+    rows = [["iterations", "mape against the last picture"], *([n, f"{error:.4f}"] for n, error in errors.items()),
+            [last, "0"], ["memory, most", f"{max(memory) / 2**20:.0f} MB"],
+            ["memory, last fifth over second", f"{growth(memory):.4f}"],
+            ["slope of log mape", f"{slope(errors.items(), last):.3f}"]]
+    findings = []
+    if not growth(memory) <= MOST_GROWTH:
+        findings.append(f"memory grows: {growth(memory):.4f}")
+    if not slope(errors.items(), last) <= LEAST_SLOPE:
+        findings.append(f"the error does not fall as it should: slope {slope(errors.items(), last):.3f}")
+    return rows, findings
