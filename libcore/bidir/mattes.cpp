@@ -20,8 +20,8 @@ struct Named {
         };
         for (const ObjectNames& object : objects) names.push_back(nameOf(object));
         std::ranges::sort(names);
-        const auto same = std::ranges::unique(names);
-        names.erase(same.begin(), same.end());
+        // Of ranges:: clang 14 makes nothing with this library.
+        names.erase(std::unique(names.begin(), names.end()), names.end());
         for (const ObjectNames& object : objects) {
             const auto at = std::ranges::lower_bound(names, nameOf(object));
             ofObject.push_back(std::uint32_t(at - names.begin()));

@@ -35,14 +35,14 @@ Moving meet(const MovingRay& ray, const SurfaceShape& shape) {
 Moving normalAt(const SurfaceShape& shape, const Moving& point) {
     const auto& [c0, c1, c2] = shape.corners;
     const auto& [n0, n1, n2] = shape.normals;
-    const Vec3d u = c1 - c0, v = c2 - c0;
+    const Vec3d u = c1 - c0, v = c2 - c0, turnU = n1 - n0, turnV = n2 - n0;
     const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
     const double inverse = 1.0 / (uu * vv - uv * uv);
     // Barycentric coordinates are linear in the point.
     const auto across = [&](const Vec3d& way) {
         const double alongU = dot(way, u), alongV = dot(way, v);
-        return (n1 - n0) * ((vv * alongU - uv * alongV) * inverse) +
-               (n2 - n0) * ((uu * alongV - uv * alongU) * inverse);
+        return turnU * ((vv * alongU - uv * alongV) * inverse) +
+               turnV * ((uu * alongV - uv * alongU) * inverse);
     };
     const Vec3d sum = n0 + across(point.at - c0);
     const double scale = 1.0 / length(sum);
