@@ -75,6 +75,10 @@ COMMANDS = [
 ]
 
 
+def named(name: str) -> Command:
+    return next(command for command in COMMANDS if command.name == name)
+
+
 @dataclass
 class Outcome:
     exit: int

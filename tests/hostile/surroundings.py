@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from commands import COMMANDS, OLD, Attack, Command, Outcome
+from commands import COMMANDS, OLD, Attack, Command, Outcome, named
 
-RENDER, CACHED = COMMANDS[0], COMMANDS[1]
+RENDER, CACHED = named("render"), named("render cached")
 Finding = tuple[str, list[str]]  # what was tried, what was wrong
 
 
@@ -148,7 +148,7 @@ def changes(attack: Attack) -> Iterator[Finding]:
 
     acts = {"the folder vanishes": vanish, "the scene is replaced": replace_scene, "the scene is cut off": cut_scene,
             "caches are deleted": delete_caches, "caches are changed": change_caches}
-    for command in (RENDER, CACHED, COMMANDS[2], COMMANDS[7]):
+    for command in (RENDER, CACHED, named("render checkpoints"), named("compare")):
         for what, act in acts.items():
             for after in (0.01, 0.05, 0.1, 0.2, 0.3):
                 yield meanwhile(attack, what, command, act, after)
