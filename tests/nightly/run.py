@@ -51,6 +51,7 @@ def main():
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "nightly", help="folder (out/nightly)")
     parser.add_argument("--page", type=Path, help="the page (hostile.md of the folder)")
     parser.add_argument("--executions", type=int, default=1_000_000, help="of the fuzzer, for each parser")
+    parser.add_argument("--seconds-each", type=int, default=0, help="end the fuzzer of a parser after so long")
     parser.add_argument("--parser", nargs="+", help="fuzz these alone")
     parser.add_argument("--scenes", type=int, default=100, help="random ones")
     parser.add_argument("--seed", type=int, default=1000 * datetime.date.today().toordinal(),
