@@ -90,8 +90,8 @@ def fuzz_parser(name, program, options):
     dictionary = DICTIONARIES / f"{name}.dict"
     output, code = run(
         [program, options.out / "fuzz" / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
-         f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20", "-rss_limit_mb=4096",
-         f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
+         f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20",
+         "-rss_limit_mb=4096", f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
         log, env={**os.environ, "LACUNA_FUZZ_PARSER": name})
     executions, edges, features, kept = fuzzed(output)
     findings = [f"{name}: {path}" for path in kept]
