@@ -13,6 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 JOBS = str(os.cpu_count())
 DICTIONARIES = ROOT / "tests" / "fuzz" / "dictionaries"
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
+# Parsers read files. Where memory can hold them, the disk need not.
+MEMORY = {"TMPDIR": "/dev/shm"} if Path("/dev/shm").is_dir() else {}
 SUPPRESSIONS = Path(__file__).with_name("threads.supp")
 # Suites in which threads meet, as ctest -R takes them.
 THREADED = "^(ThreadPool|Library|Render|Live|Study|Train)"
@@ -92,7 +94,7 @@ def fuzz_parser(name, program, options):
         [program, options.out / "fuzz" / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
          f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20",
          "-rss_limit_mb=4096", f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
-        log, env={**os.environ, "LACUNA_FUZZ_PARSER": name})
+        log, env={**os.environ, **MEMORY, "LACUNA_FUZZ_PARSER": name})
     executions, edges, features, kept = fuzzed(output)
     findings = [f"{name}: {path}" for path in kept]
     if code != 0 and not kept:
