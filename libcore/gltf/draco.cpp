@@ -260,6 +260,10 @@ void writeAttribute(const Document& document, PackedPrimitive& packed, const dra
                std::to_string(target.components) + " components, as its accessor says",
                std::to_string(attribute->num_components()), kWithoutDraco);
     }
+    // Whose bytes may be neither true nor false, which Draco does not ask.
+    if (attribute->data_type() == draco::DT_BOOL) {
+        refuse(document.file, place, "numbers", "booleans", kWithoutDraco);
+    }
     withComponentType(target.componentType, [&](auto zero) {
         using T = decltype(zero);
         auto* to = reinterpret_cast<T*>(packed.plain.data.get() + target.offset);

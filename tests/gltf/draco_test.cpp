@@ -178,6 +178,19 @@ TEST(Draco, OtherStreamsAreRefused) {
     expectRefused(b, {"bufferViews[" + std::to_string(view) + "]", "a range within"});
 }
 
+TEST(Draco, BooleansAreRefused) {
+    GridBuilder b(2, true);
+    const int view = packByDraco(b, 0, {false});
+    constexpr std::uint8_t kFloats = 9, kBooleans = 11;
+    constexpr std::uint8_t kLast[] = {3, kFloats, 2, 0, 103};  // the last attribute's head
+    const std::size_t begin = b.root["bufferViews"][std::size_t(view)]["byteOffset"];
+    const auto at = std::search(b.binary.begin() + std::ptrdiff_t(begin), b.binary.end(),
+                                std::begin(kLast), std::end(kLast));
+    ASSERT_NE(at, b.binary.end());
+    at[1] = kBooleans;
+    expectRefused(b, {"attributes.TEXCOORD_0", "numbers", "booleans"});
+}
+
 /// A stream that claims `faces` triangles and as many vertices, and has nothing of them.
 ByteVector claims(std::uint8_t method, std::uint32_t faces) {
     ByteVector bytes = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, method, 0, 0};
