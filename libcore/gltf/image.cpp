@@ -11,6 +11,7 @@
 
 #include "libcore/gltf/in_parallel.h"
 #include "libcore/gltf/limits.h"
+#include "libcore/image/file_bytes.h"
 
 namespace lacuna::gltf {
 namespace {
@@ -63,14 +64,10 @@ bool isWebp(std::span<const std::uint8_t> bytes) {
            startsWith(bytes.subspan(kForm), kWebp);
 }
 
-/// The fewest bytes that hold so many texels: deflate makes 1032 of one at most, and a JPEG has a bit
-/// for each block of 64 at least. A header that claims more would have them all allocated.
+/// The fewest bytes that hold so many texels; a JPEG has a bit for each block of 64 at least. A header that
+/// claims more would have them all allocated.
 std::uint64_t fewestBytes(std::span<const std::uint8_t> coded, std::uint64_t texels) {
-    constexpr std::size_t kDepth = 24, kColourType = 25;  // in a PNG's header
-    constexpr std::uint64_t kSamples[] = {1, 1, 3, 1, 2, 1, 4};
-    if (!startsWith(coded, kPng)) return texels / (64 * 8);
-    const std::uint64_t samples = kSamples[std::min<std::size_t>(coded[kColourType], 6)];
-    return texels * coded[kDepth] * samples / (8 * 1032);
+    return startsWith(coded, kPng) ? fewestBytesOfPng(coded, texels) : texels / (64 * 8);
 }
 
 /// Width and height as a header says; false for one that is damaged or of a moving picture.

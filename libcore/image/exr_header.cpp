@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "libcore/base/error.h"
 #include "libcore/image/file_bytes.h"
@@ -84,6 +85,50 @@ void requireTiles(const std::string& path, const Tile& tile, const Box& window, 
     }
 }
 
+/// Bytes of an attribute's value; nothing where they depend on the value.
+std::optional<std::size_t> sizeOf(std::string_view type) {
+    struct Fixed {
+        std::string_view type;
+        std::size_t size;
+    };
+    static constexpr Fixed kFixed[] = {
+        {"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+        {"compression", 1}, {"double", 8},   {"envmap", 1},
+        {"float", 4},       {"int", 4},      {"keycode", 28},
+        {"m33d", 72},       {"m33f", 36},    {"m44d", 128},
+        {"m44f", 64},       {"v2d", 16},     {"v2f", 8},
+        {"v2i", 8},         {"v3d", 24},     {"v3f", 12},
+        {"v3i", 12},        {"rational", 8}, {"lineOrder", 1},
+        {"timecode", 8},    {"tiledesc", 9}, {"deepImageState", 1},
+    };
+    const auto* const found = std::ranges::find(kFixed, type, &Fixed::type);
+    return found == std::end(kFixed) ? std::nullopt : std::optional(found->size);
+}
+
+/// Passes over the value as OpenEXR does, by what it holds and not by the size that is given: behind a value
+/// of another size everything would be taken for something else.
+void passOver(Cursor& content, std::string_view type, std::size_t size) {
+    if (const auto fixed = sizeOf(type)) {
+        content.take(*fixed);
+    } else if (type == "chlist") {
+        while (!content.text().empty()) content.take(16);
+    } else if (type == "stringvector") {
+        for (const std::size_t end = content.left() - size; content.left() > end;) {
+            content.take(content.value<std::uint32_t>());
+        }
+    } else if (type == "preview") {
+        const std::uint64_t width = content.value<std::uint32_t>();
+        const std::uint64_t height = content.value<std::uint32_t>();
+        // Beyond the largest side any number is too large.
+        const auto most = std::uint64_t(kMaxImageSide) + 1;
+        content.take(std::min(width, most) * std::min(height, most) * 4);
+    } else if (type == "floatvector") {
+        content.take(size / 4 * 4);
+    } else {
+        content.take(size);
+    }
+}
+
 /// What a part says of itself.
 struct PartHeader {
     Box window{};
@@ -102,8 +147,14 @@ PartHeader readHeader(const std::string& path, Cursor& cursor) {
         const std::string type = cursor.text();
         const auto size = cursor.value<std::int32_t>();
         // A negative size becomes a huge one and is refused by take().
-        Cursor content = cursor;
+        Cursor content = cursor, read = cursor;
         cursor.take(size < 0 ? std::numeric_limits<std::size_t>::max() : std::size_t(size));
+        passOver(read, type, std::size_t(size));
+        if (read.left() != cursor.left()) {
+            throw InputError(path + ": expected attributes as long as their values, found one of " +
+                             std::to_string(size) + " bytes that is not; the file is damaged, " +
+                             "write it again");
+        }
         if (name == "dataWindow" && type == "box2i" && size == 16) {
             window = content.value<Box>();
             requireSaneSize(path, window->width(), window->height());

@@ -45,6 +45,9 @@ class ByteStream final : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
+/// What a file's channels may take as floats: so much, and so much for each of its bytes. Flat ones pack well.
+constexpr std::uint64_t kFreeBytes = std::uint64_t(1) << 28, kBytesPerByte = 1 << 12;
+
 /// An open file whose claims have been checked.
 class ExrReader {
   public:
@@ -58,6 +61,7 @@ class ExrReader {
                              ": expected all scan lines, found a file that was not "
                              "finished; write it again");
         }
+        requireModestSize();
     }
 
     int parts() const { return file_->parts(); }
@@ -107,6 +111,18 @@ class ExrReader {
     }
 
   private:
+    void requireModestSize() const {
+        std::uint64_t size = 0;
+        for (int part = 0; part < parts(); ++part) {
+            size += std::uint64_t(width(part)) * std::uint64_t(height(part)) * sizeof(float) *
+                    channelNames(part).size();
+        }
+        const std::uint64_t most = kFreeBytes + kBytesPerByte * bytes_.size();
+        if (size <= most) return;
+        throw InputError(path_ + ": expected channels of at most " + std::to_string(most >> 20) +
+                         " MB in a file of " + std::to_string(bytes_.size()) + " bytes, found " +
+                         std::to_string(size >> 20) + " MB; is the file damaged?");
+    }
     std::string sizeText(int part) const {
         return std::to_string(width(part)) + " x " + std::to_string(height(part));
     }

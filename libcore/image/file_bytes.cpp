@@ -1,5 +1,6 @@
 #include "libcore/image/file_bytes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -52,6 +53,14 @@ void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t h
                          " pixels a side and at most 2^28 in all, found " + std::to_string(width) +
                          " x " + std::to_string(height) + "; is the file damaged?");
     }
+}
+
+std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t pixels) {
+    constexpr std::size_t kDepth = 24, kColourType = 25;
+    constexpr std::uint64_t kSamples[] = {1, 1, 3, 1, 2, 1, 4};
+    if (file.size() <= kColourType) return kColourType + 1;
+    const std::uint64_t samples = kSamples[std::min<std::size_t>(file[kColourType], 6)];
+    return pixels * file[kDepth] * samples / (8 * 1032);
 }
 
 }  // namespace lacuna

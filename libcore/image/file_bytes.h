@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,5 +15,9 @@ std::vector<std::uint8_t> readFileBytes(const std::string& path);
 
 /// Throws InputError if a picture of that size, as a header claims it, is not to be allocated.
 void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t height);
+
+/// The fewest bytes that a PNG of so many pixels can have: deflate makes 1032 of one at most. `file`: its
+/// header at least. Decoders allocate what the header claims.
+std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t pixels);
 
 }  // namespace lacuna

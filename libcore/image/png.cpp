@@ -58,6 +58,12 @@ Image readPng(const std::string& path) {
         fail(path, reason());
     }
     requireSaneSize(path, width, height);
+    const std::uint64_t fewest =
+        fewestBytesOfPng(bytes, std::uint64_t(width) * std::uint64_t(height));
+    if (bytes.size() < fewest) {
+        fail(path, std::to_string(bytes.size()) + " bytes, where so large a picture has " +
+                       std::to_string(fewest) + " at least");
+    }
 
     Image image(width, height);
     const auto read = [&](auto* loaded) {

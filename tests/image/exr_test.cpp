@@ -321,6 +321,12 @@ TEST_F(Exr, AbsurdClaimsInTheHeader) {
     const std::string size("channels\0chlist\0", 16);
     EXPECT_NE(patched(size, 0, 0x7fffffff).find("bytes of EXR header"), std::string::npos);
     EXPECT_NE(patched(size, 0, -1).find("bytes of EXR header"), std::string::npos);
+    // OpenEXR reads on behind the channels and not behind their size.
+    EXPECT_NE(patched({"B\0\2", 3}, 13, 0).find("as long as their values"), std::string::npos);
+    writeExr(path("a.exr"), test::layered(Image(16, 4096)));
+    whole = test::slurp(path("a.exr"));
+    text.assign(whole.begin(), whole.end());
+    EXPECT_NE(patched(window, 8, 65535).find("found 3072 MB"), std::string::npos);
     writeExr(path("a.exr"), manyLayers(16, 8), kParts);
     whole = test::slurp(path("a.exr"));
     text.assign(whole.begin(), whole.end());

@@ -225,6 +225,17 @@ TEST_F(ImageIo, DamagedFiles) {
     damage("a.png", false);  // what lacks is the checksum only
 }
 
+// stb_image makes room for all pixels that a header claims, before it looks for them.
+TEST_F(ImageIo, PngThatClaimsMoreThanItHolds) {
+    writeImage(path("a.png"), test::layered(test::randomImage(40, 11, 2)));
+    test::Bytes bytes = test::slurp(path("a.png"));
+    for (const std::size_t side : {16, 20})
+        bytes[side] = 0, bytes[side + 1] = 0, bytes[side + 2] = 32;
+    test::spill(path("b.png"), bytes);
+    EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.png")); }).find("so large a picture"),
+              std::string::npos);
+}
+
 TEST_F(ImageIo, EndingsDecide) {
     const Image image = test::randomImage(3, 2, 2);
     writeImage(path("a.EXR"), test::layered(image));
