@@ -143,11 +143,11 @@ bool Allowance::take(std::uint64_t bytes) {
     return true;
 }
 
-void refuseUnpacking(const Document& document, const std::string& place) {
+void refuseUnpacking(const Document& document, const std::string& place, const char* advice) {
     refuse(document.file, place,
            "content that unpacks to at most " + std::to_string(Limits::kUnpackedPerByte) +
                " times the file's bytes",
-           "more", "export again without compression");
+           "more", advice);
 }
 
 void refuseRange(const std::string& file, const std::string& place, std::uint64_t length,

@@ -74,7 +74,8 @@ std::span<const std::uint8_t> rangeOf(const Document& document, const nlohmann::
 std::size_t addBuffer(Document& document, Bytes bytes);
 
 /// Throws InputError: more was asked for than Document::allowance has.
-[[noreturn]] void refuseUnpacking(const Document& document, const std::string& place);
+[[noreturn]] void refuseUnpacking(const Document& document, const std::string& place,
+                                  const char* advice = "export again without compression");
 
 /// Parses `bytes`, the content of `file`, into `document`, and reads its external buffers (not its
 /// images). Throws InputError.

@@ -86,6 +86,13 @@ bool readHeader(Picture& picture) {
                                  &channels);
 }
 
+/// A flat picture takes a few bytes, whatever its size.
+void takeMemory(Document& document, const Picture& picture, std::uint64_t bytes) {
+    if (!document.allowance.take(bytes)) {
+        refuseUnpacking(document, picture.place, "scale the image down");
+    }
+}
+
 /// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
 void readSize(Document& document, Picture& picture) {
     const auto coded = picture.coded;
@@ -105,18 +112,15 @@ void readSize(Document& document, Picture& picture) {
                std::to_string(picture.width) + " x " + std::to_string(picture.height),
                "scale the image down");
     }
-    // A flat WebP takes 30 bytes, whatever its size. libwebp holds the texels twice.
-    if (isWebp(coded)) {
-        if (!document.allowance.take(texels * 8)) refuseUnpacking(document, picture.place);
-        return;
-    }
-    if (coded.size() < fewestBytes(coded, texels)) {
+    if (!isWebp(coded) && coded.size() < fewestBytes(coded, texels)) {
         refuse(document.file, picture.place,
                "at least " + std::to_string(fewestBytes(coded, texels)) + " bytes for " +
                    std::to_string(picture.width) + " x " + std::to_string(picture.height) +
                    " texels",
                std::to_string(coded.size()), "save the image again");
     }
+    // libwebp holds the texels twice; stb_image with 16 bits a sample, and as deflate left them.
+    takeMemory(document, picture, texels * (isWebp(coded) ? 4 : 12));
 }
 
 void decodeWebp(const Document& document, Picture& picture) {
@@ -218,7 +222,9 @@ std::vector<Texture> TextureTable::decode(Document& document) const {
     for (const Key& key : keys_) {
         Picture& picture = pictureOf(key);
         ++picture.uses;
-        total += std::uint64_t(picture.width) * std::uint64_t(picture.height);
+        const std::uint64_t texels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+        takeMemory(document, picture, texels * 4);
+        total += texels;
     }
     if (total > Limits::kTotalTexels) {
         refuse(document.file, "textures",

@@ -119,6 +119,10 @@ Image readHdr(const std::string& path) {
     if (!isRgbe) fail(path, "FORMAT=32-bit_rle_rgbe");
     int width = 0, height = 0;
     parseSize(path, in.line(), width, height);
+    // A run is of two bytes and 127 pixels at most, for each of four components.
+    if (bytes.size() < std::size_t(width) * std::size_t(height) * 8 / 127) {
+        fail(path, "more pixels");
+    }
 
     Image image(width, height);
     std::vector<Rgbe> row(static_cast<std::size_t>(width));

@@ -225,14 +225,17 @@ TEST_F(ImageIo, DamagedFiles) {
     damage("a.png", false);  // what lacks is the checksum only
 }
 
-// stb_image makes room for all pixels that a header claims, before it looks for them.
-TEST_F(ImageIo, PngThatClaimsMoreThanItHolds) {
+// Room is made for all pixels that a header claims, before anyone looks for them.
+TEST_F(ImageIo, HeadersThatClaimMoreThanThereIs) {
     writeImage(path("a.png"), test::layered(test::randomImage(40, 11, 2)));
     test::Bytes bytes = test::slurp(path("a.png"));
-    for (const std::size_t side : {16, 20})
-        bytes[side] = 0, bytes[side + 1] = 0, bytes[side + 2] = 32;
+    for (const std::size_t side : {16u, 20u}) bytes[side + 2] = 32;  // 8232 x 8203
     test::spill(path("b.png"), bytes);
     EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.png")); }).find("so large a picture"),
+              std::string::npos);
+    const std::string claim = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n\2\2";
+    test::spill(path("b.hdr"), claim);
+    EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.hdr")); }).find("more pixels"),
               std::string::npos);
 }
 
