@@ -30,6 +30,12 @@ double numberOf(const json& text) {
     return std::strtod(text.get<std::string>().c_str(), nullptr);
 }
 
+/// json would cast what is no such number without a word.
+std::uint64_t countOf(const json& number) {
+    if (!number.is_number_unsigned()) throw std::invalid_argument("no count");
+    return number.get<std::uint64_t>();
+}
+
 json numbersText(const std::array<double, 3>& values) {
     return {exactText(values[0]), exactText(values[1]), exactText(values[2])};
 }
@@ -67,8 +73,8 @@ json halvesText(const std::vector<HalfDifference>& differences) {
 std::vector<HalfDifference> halvesOf(const json& list) {
     std::vector<HalfDifference> differences;
     for (const json& d : list) {
-        differences.push_back(
-            {d.at(0), d.at(1), numberOf(d.at(2)), numberOf(d.at(3)), numberOf(d.at(4))});
+        differences.push_back({countOf(d.at(0)), countOf(d.at(1)), numberOf(d.at(2)),
+                               numberOf(d.at(3)), numberOf(d.at(4))});
     }
     return differences;
 }
@@ -96,15 +102,15 @@ json addNode(LayeredImage& image, const std::string& layer, const SumTree::Node&
 
 SumTree::Node takeNode(LayeredImage& image, const std::string& layer, const json& text) {
     auto sum = std::make_shared<FilmSum>();
-    sum->iterations = text.at("iterations");
-    sum->samples = text.at("samples");
+    sum->iterations = countOf(text.at("iterations"));
+    sum->samples = countOf(text.at("samples"));
     sum->mean = takePlanes(image, layer + "mean");
     if (text.at("spreads").get<bool>()) sum->spread = takePlanes(image, layer + "spread");
     sum->wholeMean = numbersOf(text.at("whole_mean"));
     sum->wholeSquares = numbersOf(text.at("whole_squares"));
     sum->differences = halvesOf(text.at("differences"));
     for (const std::string name : text.at("layers")) sum->layers[name] = image.take(layer + name);
-    const SumTree::Node node{text.at("begin"), text.at("size"), std::move(sum)};
+    const SumTree::Node node{countOf(text.at("begin")), countOf(text.at("size")), std::move(sum)};
     if (!std::has_single_bit(node.size) || node.begin % node.size != 0) {
         throw std::invalid_argument("a node that is in no tree");
     }
@@ -125,12 +131,14 @@ json totalsText(const Part& part) {
 void readTotals(const json& text, Part& part) {
     part.seconds = text.at("seconds");
     IterationStatistics& s = part.statistics;
-    s.rays = text.at("rays").get<RayCounts>();
-    s.invalidSamples = text.at("invalid_samples");
+    for (std::size_t kind = 0; kind < s.rays.size(); ++kind) {
+        s.rays[kind] = countOf(text.at("rays").at(kind));
+    }
+    s.invalidSamples = countOf(text.at("invalid_samples"));
     s.invalidReplays = text.at("invalid_replays").get<std::vector<std::string>>();
     s.phaseSeconds = text.at("phases").get<std::map<std::string, double>>();
     s.techniqueSeconds = text.at("technique_seconds").get<TechniqueSeconds>();
-    s.held = text.at("held").get<std::map<std::string, std::uint64_t>>();
+    for (const auto& [what, bytes] : text.at("held").items()) s.held[what] = countOf(bytes);
 }
 
 Part readPart(LayeredImage& image) {
@@ -144,10 +152,10 @@ Part readPart(LayeredImage& image) {
     part.height = image.height();
     const json sums = json::parse(text("partSums"));
     if (sums.at("format") != kFormat) throw std::invalid_argument("another format");
-    part.plan = {sums.at("block_iterations"), sums.at("blocks_are_samples"),
-                 sums.at("group_iterations")};
-    part.firstBlock = sums.at("first_block");
-    part.sums.openBlock = sums.at("open_block");
+    part.plan = {countOf(sums.at("block_iterations")), sums.at("blocks_are_samples"),
+                 countOf(sums.at("group_iterations"))};
+    part.firstBlock = countOf(sums.at("first_block"));
+    part.sums.openBlock = countOf(sums.at("open_block"));
     std::size_t number = 0;
     const auto read = [&](const char* list, std::vector<SumTree::Node>& nodes) {
         for (const json& node : sums.at(list)) {
