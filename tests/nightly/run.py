@@ -65,6 +65,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "results.json"
     results = json.loads(kept.read_text()) if kept.exists() else {}
+    options.last = results
     for name in options.only:
         results[name] = run(name, options)
         kept.write_text(json.dumps(results, indent=2))
