@@ -82,6 +82,7 @@ bool readHeader(Picture& picture) {
     }
     int channels = 0;
     return coded.size() <= std::size_t(std::numeric_limits<int>::max()) &&
+           (!startsWith(coded, kPng) || pngChunksFit(coded)) &&
            stbi_info_from_memory(coded.data(), int(coded.size()), &picture.width, &picture.height,
                                  &channels);
 }

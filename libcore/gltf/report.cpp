@@ -6,15 +6,6 @@
 
 namespace lacuna::gltf {
 
-std::string printable(const std::string& text, std::size_t longest) {
-    std::string line = text.substr(0, longest);
-    for (char& c : line) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    }
-    if (text.size() > longest) line += "...";
-    return line;
-}
-
 void refuse(const std::string& file, const std::string& place, const std::string& expected,
             const std::string& found, const std::string& todo) {
     constexpr std::size_t kLongest = 600;

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace lacuna::gltf {
+#include "libcore/base/printable.h"
 
-/// Text of a file's own (names, URIs) made safe for one line of a terminal: control characters
-/// become blanks, long text is cut.
-std::string printable(const std::string& text, std::size_t longest = 120);
+namespace lacuna::gltf {
 
 /// Throws InputError `file: expected E, found F; todo`. `place` (may be empty) is a JSON path such
 /// as `accessors[3].count`.

@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "libcore/base/error.h"
+#include "libcore/base/printable.h"
 #include "libcore/base/text_list.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/exr_header.h"
@@ -81,14 +82,15 @@ class ExrReader {
         const Imf::Channel* channel = header(part).channels().findChannel(name.c_str());
         if (!channel) {
             throw InputError(path_ + ": expected a channel " + name + ", found the channels '" +
-                             joined(channelNames(part), " ") + "'; name an image with R, G and B");
+                             printable(joined(channelNames(part), " ")) +
+                             "'; name an image with R, G and B");
         }
         if (channel->type != Imf::HALF && channel->type != Imf::FLOAT) {
-            throw InputError(path_ + ": expected half or float in channel " + name +
+            throw InputError(path_ + ": expected half or float in channel " + printable(name) +
                              ", found integers; convert the file");
         }
         if (channel->xSampling != 1 || channel->ySampling != 1) {
-            throw InputError(path_ + ": expected channel " + name +
+            throw InputError(path_ + ": expected channel " + printable(name) +
                              " at full resolution, found it subsampled; convert the file");
         }
     }
@@ -145,8 +147,8 @@ auto asInputError(const std::string& path, Body body) {
                          ": expected an image that fits into memory, found too large a "
                          "one; is the file damaged?");
     } catch (const std::exception& e) {
-        throw InputError(path + ": expected an intact OpenEXR file, found: " + e.what() +
-                         "; write it again");
+        throw InputError(path + ": expected an intact OpenEXR file, found: " +
+                         printable(e.what(), 200) + "; write it again");
     }
 }
 

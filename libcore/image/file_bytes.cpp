@@ -63,4 +63,18 @@ std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t
     return pixels * file[kDepth] * samples / (8 * 1032);
 }
 
+bool pngChunksFit(std::span<const std::uint8_t> file) {
+    constexpr std::size_t kSignature = 8, kLength = 4, kAround = 12;  // length, name, checksum
+    constexpr std::uint8_t kLast[] = {'I', 'E', 'N', 'D'};
+    std::size_t at = kSignature;
+    while (at + kLength + sizeof kLast <= file.size()) {
+        if (std::ranges::equal(file.subspan(at + kLength, sizeof kLast), kLast)) return true;
+        std::size_t size = kAround;
+        for (std::size_t i = 0; i < kLength; ++i) size += std::size_t(file[at + i]) << (24 - 8 * i);
+        if (size > file.size() - at) return false;
+        at += size;
+    }
+    return true;
+}
+
 }  // namespace lacuna

@@ -20,4 +20,8 @@ void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t h
 /// header at least. Decoders allocate what the header claims.
 std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t pixels);
 
+/// Whether all chunks of a PNG up to its last one lie within the file. Decoders make room for what is claimed
+/// here, too.
+bool pngChunksFit(std::span<const std::uint8_t> file);
+
 }  // namespace lacuna

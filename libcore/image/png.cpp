@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "libcore/base/error.h"
+#include "libcore/base/printable.h"
 #include "libcore/image/file_bytes.h"
 #include "libcore/image/image_io.h"
 #include "libcore/image/tone.h"
@@ -36,10 +37,7 @@ struct StbFree {
 /// What stb_image says of its last failure, which may be nothing, or hold bytes of the file.
 std::string reason() {
     const char* said = stbi_failure_reason();
-    std::string text = said && *said ? said : "a damaged one";
-    std::ranges::replace_if(
-        text, [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
+    return said && *said ? printable(said) : "a damaged one";
 }
 
 }  // namespace
@@ -52,6 +50,7 @@ Image readPng(const std::string& path) {
         fail(path, "no PNG signature");
     }
     if (bytes.size() > std::size_t(std::numeric_limits<int>::max())) fail(path, "more than 2 GB");
+    if (!pngChunksFit(bytes)) fail(path, "a part that ends beyond the file");
     const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels)) {

@@ -233,6 +233,14 @@ TEST_F(ImageIo, HeadersThatClaimMoreThanThereIs) {
     test::spill(path("b.png"), bytes);
     EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.png")); }).find("so large a picture"),
               std::string::npos);
+    bytes = test::slurp(path("a.png"));
+    const std::string all(bytes.begin(), bytes.end());
+    bytes[all.find("IDAT") - 4] = 32;  // a chunk of half a gigabyte
+    test::spill(path("b.png"), bytes);
+    EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.png")); }).find("beyond the file"),
+              std::string::npos);
+    test::spill(path("b.png"), all + "what others put behind the last chunk");
+    EXPECT_EQ(readImage(path("b.png")).pixels, readImage(path("a.png")).pixels);
     const std::string claim = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n\2\2";
     test::spill(path("b.hdr"), claim);
     EXPECT_NE(messageOf<InputError>([&] { readImage(path("b.hdr")); }).find("more pixels"),
