@@ -268,6 +268,7 @@ TEST_F(RenderPieces, aFullDiskCostsTheNewCheckpointAndNothingElse) {
 /// A save takes long then: the render goes on beside it, and a kill in its middle leaves the
 /// last file.
 TEST_F(RenderPieces, aSlowDiskCostsNeitherPictureNorCheckpoint) {
+    if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer must be loaded first";
     const auto command = [&](const std::string& more) {
         return quick("bpt", "--quiet --width 64 --height 48 --block-iterations 8 " + more);
     };

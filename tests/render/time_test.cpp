@@ -86,6 +86,7 @@ TEST_F(RenderInterrupt, SavesWhatThereIs) {
 }
 
 TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
+    if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer is too slow for it";
     // One iteration of a second or so, interrupted in its middle.
     const Outcome o = runAndSignal(
         "@room.gltf -o @out.exr --method bpt --width 600 --height 400 --time 1h --json @o.json",
@@ -155,6 +156,7 @@ TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
 
 /// The picture is finished then, whatever comes. Here it goes into a pipe, which is not read at first.
 TEST_F(RenderInterrupt, WhileSavingChangesNothing) {
+    if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer is too slow for it";
     ASSERT_EQ(mkfifo(path("out.png").c_str(), 0600), 0);
     const int reader = open(path("out.png").c_str(), O_RDONLY | O_NONBLOCK);
     ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit

@@ -59,6 +59,7 @@ TEST_F(StudyRun, WritesTablesAndGoesOnWhereItStopped) {
 }
 
 TEST_F(StudyRun, SaysWhatAutoChoseAndWhatThatCost) {
+    if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer is too slow for it";
     writeStudy(R"({"iterations": null, "time": "1s", "equal_iterations": null, "seeds": [1],
                    "measures": ["mape", "relmse"],
                    "methods": [{"method": "auto"}, {"method": "pt"}, {"method": "lvcbpt"}],
