@@ -211,10 +211,11 @@ class Products {
         return isThere && isOfTheEye ? counts_.sharing.samples : 1.0;
     }
 
-    /// log(n_t r_t p_t).
+    /// log(n_t r_t p_t). Densities may be infinite where a chain's vertices meet, which no strategy makes.
     double logTerm(int t) const {
         const int s = k_ + 1 - t;
-        return logOf(count(t)) + logOf(share(t)) + logDensities(s, s);
+        const double samples = count(t) * share(t);
+        return samples == 0.0 ? kNever : logOf(samples) + logDensities(s, s);
     }
     /// Of the light's walk over its first `byLight` vertices, and of the eye's from x_first on.
     double logDensities(int byLight, int first) const {
@@ -232,8 +233,9 @@ class Products {
     double logRefraction() const {
         if (!counts_.refractedLamps) return kNever;
         RayTally ignored;
-        double sum =
-            logOf(counts_.refractedLamps->ratioOf(path_, ignored, true)) + logDensities(0, 0);
+        const double ratio = counts_.refractedLamps->ratioOf(path_, ignored, true);
+        if (ratio == 0.0) return kNever;
+        double sum = logOf(ratio) + logDensities(0, 0);
         for (int i = 0; i == 0 || !smooth(i); ++i) sum -= logOf(eyeRoulette(i));
         return sum;
     }

@@ -225,20 +225,33 @@ TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
     const auto scene = specularStage(LightChoice::Point).build();
     Shot shot = quickShot(150);
     shot.maxDepth = 8;
-    std::atomic<int> chains{0};
+    std::atomic<int> chains{0}, meeting{0};
     std::optional<Render> run;
     shot.observer = [&](const PathEvent& event) {
         if (!event.technique.chains()) return;
         ++chains;
         EXPECT_EQ(event.weight, 1.0);
-        EXPECT_EQ(misWeightByProducts(run->integrator().walker(), event.path, event.counts,
-                                      event.technique),
-                  1.0);
+        const auto weightOf = [&](const FullPath& path) {
+            return misWeightByProducts(run->integrator().walker(), path, event.counts,
+                                       event.technique);
+        };
+        EXPECT_EQ(weightOf(event.path), 1.0);
         EXPECT_FALSE(event.path.hittable);
+        // At the edge of a body rays go in and out in one place.
+        for (int i = 1; i + 1 < event.path.edges; ++i) {
+            if (!event.path.delta[i] || !event.path.delta[i + 1]) continue;
+            ++meeting;
+            FullPath path = event.path;
+            PathVertex moved = *path.vertex[i + 1];
+            moved.position = path.vertex[i]->position;
+            path.vertex[i + 1] = &moved;
+            EXPECT_EQ(weightOf(path), 1.0);
+        }
     };
     run.emplace(*scene, row(), shot);
     run->run();
     EXPECT_GT(chains, 50);
+    EXPECT_GT(meeting, 10);
 }
 
 }  // namespace
