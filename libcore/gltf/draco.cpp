@@ -262,7 +262,8 @@ void writeAttribute(const Document& document, PackedPrimitive& packed, const dra
     }
     // Whose bytes may be neither true nor false, which Draco does not ask.
     if (attribute->data_type() == draco::DT_BOOL) {
-        refuse(document.file, place, "numbers", "booleans", kWithoutDraco);
+        refuse(document.file, place, "values that are numbers", "values that are booleans",
+               kWithoutDraco);
     }
     withComponentType(target.componentType, [&](auto zero) {
         using T = decltype(zero);
