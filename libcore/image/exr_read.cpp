@@ -47,7 +47,7 @@ class ByteStream final : public Imf::IStream {
 };
 
 /// What a file's channels may take as floats: so much, and so much for each of its bytes. Flat ones pack well.
-constexpr std::uint64_t kFreeBytes = std::uint64_t(1) << 28, kBytesPerByte = 1 << 12;
+constexpr std::uint64_t kFreeBytes = std::uint64_t(1) << 29, kBytesPerByte = 1 << 12;
 
 /// An open file whose claims have been checked.
 class ExrReader {

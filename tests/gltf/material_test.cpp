@@ -567,6 +567,11 @@ TEST(Texture, SizesAreCappedBeforeAnythingIsAllocated) {
     // 16,384 x 16,384, which would take a gigabyte, in a hundred bytes.
     for (const std::size_t at : {16ul, 20ul}) large[at + 2] = 0x40, large[at + 3] = 0;
     expectRefused(withImage(large), {"images[0]", "at least 260111 bytes", "16384 x 16384"});
+    // Texels of one bit fit into 40 kB, and would take four gigabytes.
+    large[24] = 1;
+    large.resize(40'000);
+    expectRefused(withImage(large),
+                  {"images[0]", "unpacks to at most 4096 times", "scale the image"});
 }
 
 TEST(Texture, SamplersAndSourcesAreChecked) {

@@ -28,7 +28,7 @@ const Parser& chosen() {
 
 /// What an input may have allocated at one time: so much, and so much for each of its bytes. glTF's decoders
 /// are given half of it (Limits::kUnpackedFree, kUnpackedPerByte).
-constexpr std::int64_t kFreeBytes = std::int64_t(1) << 29, kBytesPerByte = 1 << 13;
+constexpr std::int64_t kFreeBytes = std::int64_t(1) << 30, kBytesPerByte = 1 << 13;
 
 std::atomic<std::int64_t> heldBytes = 0, mostBytes = 0;
 
