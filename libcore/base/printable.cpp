@@ -29,17 +29,12 @@ std::size_t sequenceLength(std::string_view text) {
 std::string printable(const std::string& text, std::size_t longest) {
     std::string line;
     for (std::string_view left = text; !left.empty();) {
-        const std::size_t length = sequenceLength(left);
-        if (line.size() + std::max<std::size_t>(length, 1) > longest) return line + "...";
+        const std::size_t length = sequenceLength(left), taken = std::max<std::size_t>(length, 1);
+        if (line.size() + taken > longest) return line + "...";
         const auto first = static_cast<unsigned char>(left.front());
-        if (length == 0) {
-            line += '?';
-        } else if (first < 0x20 || first == 0x7f) {
-            line += ' ';
-        } else {
-            line += left.substr(0, length);
-        }
-        left.remove_prefix(length == 0 ? 1 : length);
+        const bool isControl = first < 0x20 || first == 0x7f;
+        line += length == 0 ? "?" : isControl ? " " : left.substr(0, length);
+        left.remove_prefix(taken);
     }
     return line;
 }

@@ -86,7 +86,10 @@ class Products {
             geometry_[e] = cosine(b);
             return;
         }
-        const double inverse2 = 1.0 / lengthSquared(Vec3d(b.position) - Vec3d(a.position));
+        const double squared = lengthSquared(Vec3d(b.position) - Vec3d(a.position));
+        // A chain's vertices may meet, at the edge of a body. No strategy joins them, so that any distance
+        // does: it is a factor of all densities there are.
+        const double inverse2 = squared > 0.0 ? 1.0 / squared : 1.0;
         toLens_[e] = cosine(b) * inverse2;
         toLight_[e] = cosine(a) * inverse2;
         geometry_[e] = cosine(a) * cosine(b) * inverse2;
@@ -211,11 +214,10 @@ class Products {
         return isThere && isOfTheEye ? counts_.sharing.samples : 1.0;
     }
 
-    /// log(n_t r_t p_t). Densities may be infinite where a chain's vertices meet, which no strategy makes.
+    /// log(n_t r_t p_t).
     double logTerm(int t) const {
         const int s = k_ + 1 - t;
-        const double samples = count(t) * share(t);
-        return samples == 0.0 ? kNever : logOf(samples) + logDensities(s, s);
+        return logOf(count(t)) + logOf(share(t)) + logDensities(s, s);
     }
     /// Of the light's walk over its first `byLight` vertices, and of the eye's from x_first on.
     double logDensities(int byLight, int first) const {
@@ -233,9 +235,8 @@ class Products {
     double logRefraction() const {
         if (!counts_.refractedLamps) return kNever;
         RayTally ignored;
-        const double ratio = counts_.refractedLamps->ratioOf(path_, ignored, true);
-        if (ratio == 0.0) return kNever;
-        double sum = logOf(ratio) + logDensities(0, 0);
+        double sum =
+            logOf(counts_.refractedLamps->ratioOf(path_, ignored, true)) + logDensities(0, 0);
         for (int i = 0; i == 0 || !smooth(i); ++i) sum -= logOf(eyeRoulette(i));
         return sum;
     }

@@ -132,7 +132,7 @@ void checkBufferViews(const Document& document) {
 }  // namespace
 
 void Allowance::addFile(std::uint64_t bytes) {
-    left_ += bytes * Limits::kUnpackedPerByte;
+    left_ += bytes * kUnpackedPerByte;
 }
 
 bool Allowance::take(std::uint64_t bytes) {
@@ -145,7 +145,7 @@ bool Allowance::take(std::uint64_t bytes) {
 
 void refuseUnpacking(const Document& document, const std::string& place, const char* advice) {
     refuse(document.file, place,
-           "content that unpacks to at most " + std::to_string(Limits::kUnpackedPerByte) +
+           "content that unpacks to at most " + std::to_string(kUnpackedPerByte) +
                " times the file's bytes",
            "more", advice);
 }

@@ -15,6 +15,7 @@
 #include "libcore/gltf/files.h"
 #include "libcore/gltf/limits.h"
 #include "libcore/gltf/report.h"
+#include "libcore/image/file_bytes.h"
 
 namespace lacuna::gltf {
 
@@ -22,13 +23,13 @@ namespace lacuna::gltf {
 /// vertices. What was taken is not given back.
 class Allowance {
   public:
-    /// Adds what a file of `bytes` bytes may ask for (limits.h).
+    /// Adds what a file of `bytes` bytes may ask for (file_bytes.h).
     void addFile(std::uint64_t bytes);
     /// Whether `bytes` are left, which are then taken. From any thread.
     bool take(std::uint64_t bytes);
 
   private:
-    std::atomic<std::uint64_t> left_ = Limits::kUnpackedFree;
+    std::atomic<std::uint64_t> left_ = kUnpackedFree;
 };
 
 /// What loadDocument leaves to the rest of the reader: every index in `model` and `json` that

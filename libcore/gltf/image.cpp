@@ -25,6 +25,8 @@ struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
     int uses = 0;  ///< textures still to be made of it
+
+    std::uint64_t texels() const { return std::uint64_t(width) * std::uint64_t(height); }
 };
 
 /// The coded bytes of image `index`: a checked buffer view, a data URI or an external file.
@@ -64,9 +66,10 @@ bool isWebp(std::span<const std::uint8_t> bytes) {
            startsWith(bytes.subspan(kForm), kWebp);
 }
 
-/// The fewest bytes that hold so many texels; a JPEG has a bit for each block of 64 at least. A header that
-/// claims more would have them all allocated.
+/// The fewest bytes that hold so many texels; a JPEG has a bit for each block of 64 at least, and a flat WebP
+/// any number in 30 bytes. A header that claims more would have them all allocated.
 std::uint64_t fewestBytes(std::span<const std::uint8_t> coded, std::uint64_t texels) {
+    if (isWebp(coded)) return 0;
     return startsWith(coded, kPng) ? fewestBytesOfPng(coded, texels) : texels / (64 * 8);
 }
 
@@ -105,7 +108,7 @@ void readSize(Document& document, Picture& picture) {
                isWebp(coded) ? "a damaged header or a moving picture" : "a damaged header",
                "save the image again");
     }
-    const std::uint64_t texels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    const std::uint64_t texels = picture.texels();
     if (picture.width < 1 || picture.height < 1 || picture.width > Limits::kImageSide ||
         picture.height > Limits::kImageSide || texels > Limits::kImageTexels) {
         refuse(document.file, picture.place,
@@ -113,7 +116,7 @@ void readSize(Document& document, Picture& picture) {
                std::to_string(picture.width) + " x " + std::to_string(picture.height),
                "scale the image down");
     }
-    if (!isWebp(coded) && coded.size() < fewestBytes(coded, texels)) {
+    if (coded.size() < fewestBytes(coded, texels)) {
         refuse(document.file, picture.place,
                "at least " + std::to_string(fewestBytes(coded, texels)) + " bytes for " +
                    std::to_string(picture.width) + " x " + std::to_string(picture.height) +
@@ -223,9 +226,8 @@ std::vector<Texture> TextureTable::decode(Document& document) const {
     for (const Key& key : keys_) {
         Picture& picture = pictureOf(key);
         ++picture.uses;
-        const std::uint64_t texels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
-        takeMemory(document, picture, texels * 4);
-        total += texels;
+        takeMemory(document, picture, picture.texels() * 4);
+        total += picture.texels();
     }
     if (total > Limits::kTotalTexels) {
         refuse(document.file, "textures",

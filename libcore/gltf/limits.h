@@ -20,10 +20,6 @@ struct Limits {
     static constexpr int kImageSide = 1 << 16;
     static constexpr std::uint64_t kImageTexels = 1ull << 28;
     static constexpr std::uint64_t kTotalTexels = 1ull << 30;
-    /// What decoders of meshes and images may take in all: so much, and so much for each byte of the
-    /// files. A flat grid of a million triangles takes 2000 for each.
-    static constexpr std::uint64_t kUnpackedFree = 1ull << 29;
-    static constexpr std::uint64_t kUnpackedPerByte = 1ull << 12;
     static constexpr std::size_t kDracoAttributes = 16;  ///< of one stream
 };
 

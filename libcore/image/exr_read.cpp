@@ -46,9 +46,6 @@ class ByteStream final : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
-/// What a file's channels may take as floats: so much, and so much for each of its bytes. Flat ones pack well.
-constexpr std::uint64_t kFreeBytes = std::uint64_t(1) << 29, kBytesPerByte = 1 << 12;
-
 /// An open file whose claims have been checked.
 class ExrReader {
   public:
@@ -119,7 +116,7 @@ class ExrReader {
             size += std::uint64_t(width(part)) * std::uint64_t(height(part)) * sizeof(float) *
                     channelNames(part).size();
         }
-        const std::uint64_t most = kFreeBytes + kBytesPerByte * bytes_.size();
+        const std::uint64_t most = kUnpackedFree + kUnpackedPerByte * bytes_.size();
         if (size <= most) return;
         throw InputError(path_ + ": expected channels of at most " + std::to_string(most >> 20) +
                          " MB in a file of " + std::to_string(bytes_.size()) + " bytes, found " +

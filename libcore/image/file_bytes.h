@@ -10,6 +10,10 @@
 
 namespace lacuna {
 
+/// What a file may unpack to, by its content alone: so many bytes, and so many for each of its own. A flat
+/// grid of a million triangles takes 2000 for each.
+inline constexpr std::uint64_t kUnpackedFree = std::uint64_t(1) << 29, kUnpackedPerByte = 1 << 12;
+
 /// All bytes of a regular file. Throws InputError if there is none, it cannot be read or is empty.
 std::vector<std::uint8_t> readFileBytes(const std::string& path);
 

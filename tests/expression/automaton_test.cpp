@@ -8,29 +8,13 @@
 #include "libcore/base/error.h"
 #include "libcore/expression/automaton.h"
 #include "libcore/expression/joint_automaton.h"
+#include "tests/expression/two_objects.h"
 
 namespace lacuna::test {
 namespace {
 
 using Type = EventType;
 using Scatter = Scattering;
-
-/// Two objects, one of which is called `a`; a lamp, a lamp `a`, a mesh `b` and the environment.
-Alphabet twoObjects() {
-    Alphabet alphabet;
-    for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"a"}}) {
-        for (const Scatter s : {Scatter::Diffuse, Scatter::Glossy, Scatter::Singular}) {
-            alphabet.scattering.push_back({Type::Reflection, s, names});
-            if (s == Scatter::Diffuse) continue;
-            alphabet.scattering.push_back({Type::Transmission, s, names});
-        }
-    }
-    alphabet.lights = {{Type::Lamp, Scatter::None, {}},
-                       {Type::Lamp, Scatter::None, {"a"}},
-                       {Type::Mesh, Scatter::None, {"b"}},
-                       {Type::Environment, Scatter::None, {}}};
-    return alphabet;
-}
 
 Automaton compiled(const std::string& text, const Alphabet& alphabet = twoObjects()) {
     return Automaton(parseExpression(text, text).root, alphabet, text);

@@ -1,33 +1,13 @@
 #include <sstream>
 
 #include "libcore/expression/joint_automaton.h"
+#include "tests/expression/two_objects.h"
 #include "tests/fuzz/attempt.h"
 
 namespace lacuna::test {
-namespace {
-
-/// Whatever a vertex can do, at an object without a name and at one called `a`, and lights of each kind.
-Alphabet everyEvent() {
-    using enum EventType;
-    Alphabet alphabet;
-    for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"a"}}) {
-        for (const EventType type : {Reflection, Transmission}) {
-            for (const Scattering s :
-                 {Scattering::Diffuse, Scattering::Glossy, Scattering::Singular}) {
-                alphabet.scattering.push_back({type, s, names});
-            }
-        }
-        for (const EventType type : {Lamp, Mesh, Environment}) {
-            alphabet.lights.push_back({type, Scattering::None, names});
-        }
-    }
-    return alphabet;
-}
-
-}  // namespace
 
 bool acceptsExpressions(Bytes bytes) {
-    static const Alphabet alphabet = everyEvent();
+    static const Alphabet alphabet = twoObjects();
     return attempt([&] {
         std::istringstream text(std::string(bytes.begin(), bytes.end()));
         std::vector<Automaton> automata;

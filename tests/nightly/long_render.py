@@ -88,15 +88,16 @@ def measure(programs, scene, seconds, folder):
 
     last, errors = iterations(picture), {}
     for copy in copies:
-        if 0 < iterations(copy) < 0.9 * last:
-            errors[iterations(copy)] = mape(programs / "lacuna-compare", copy, picture)
+        n = iterations(copy)
+        if 0 < n < 0.9 * last:
+            errors[n] = mape(programs / "lacuna-compare", copy, picture)
+    grown, falls = growth(memory), slope(errors.items(), last)
     rows = [["iterations", "mape against the last picture"], *([n, f"{error:.4f}"] for n, error in errors.items()),
             [last, "0"], ["memory, most", f"{max(memory) / 2**20:.0f} MB"],
-            ["memory, last fifth over second", f"{growth(memory):.4f}"],
-            ["slope of log mape", f"{slope(errors.items(), last):.3f}"]]
+            ["memory, last fifth over second", f"{grown:.4f}"], ["slope of log mape", f"{falls:.3f}"]]
     findings = []
-    if not growth(memory) <= MOST_GROWTH:
-        findings.append(f"memory grows: {growth(memory):.4f}")
-    if not slope(errors.items(), last) <= LEAST_SLOPE:
-        findings.append(f"the error does not fall as it should: slope {slope(errors.items(), last):.3f}")
+    if not grown <= MOST_GROWTH:
+        findings.append(f"memory grows: {grown:.4f}")
+    if not falls <= LEAST_SLOPE:
+        findings.append(f"the error does not fall as it should: slope {falls:.3f}")
     return rows, findings

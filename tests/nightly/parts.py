@@ -87,13 +87,13 @@ def fuzzed(output):
 
 def fuzz_parser(name, program, options):
     """One row of the table, and findings. An input may take 20 seconds, and the memory that fuzz_main.cpp says."""
-    findings_folder = options.out / "findings"
     log = options.out / f"fuzz-{name}.log"
-    dictionary = DICTIONARIES / f"{name}.dict"
+    dictionary, known = DICTIONARIES / f"{name}.dict", CORPUS / name
     output, code = run(
-        [program, options.out / "fuzz" / name, *([CORPUS / name] if (CORPUS / name).exists() else []),
+        [program, options.out / "fuzz" / name, *([known] if known.exists() else []),
          f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20",
-         "-rss_limit_mb=4096", f"-artifact_prefix={findings_folder}/{name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])],
+         "-rss_limit_mb=4096", f"-artifact_prefix={options.out}/findings/{name}-",
+         *([f"-dict={dictionary}"] if dictionary.exists() else [])],
         log, env={**os.environ, **MEMORY, "LACUNA_FUZZ_PARSER": name})
     executions, edges, features, kept = fuzzed(output)
     findings = [f"{name}: {path}" for path in kept]

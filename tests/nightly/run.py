@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Sanitizers, fuzzers, faults, random scenes, quick studies and a long render, one after the other, and one page of what came out.
+"""Sanitizers, fuzzers, faults, random scenes, quick studies and a long render, one after the other, and one page of
+what came out.
 
     bash tests/nightly.sh                                       all of it: hours
     bash tests/nightly.sh --only fuzz --executions 20000        a part of it

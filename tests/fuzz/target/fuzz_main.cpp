@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "libcore/image/file_bytes.h"
 #include "tests/fuzz/parsers.h"
 
+using namespace lacuna;
 using namespace lacuna::test;
 
 namespace {
@@ -26,9 +28,9 @@ const Parser& chosen() {
     std::exit(2);
 }
 
-/// What an input may have allocated at one time: so much, and so much for each of its bytes. glTF's decoders
-/// are given half of it (Limits::kUnpackedFree, kUnpackedPerByte).
-constexpr std::int64_t kFreeBytes = std::int64_t(1) << 30, kBytesPerByte = 1 << 13;
+/// What an input may have allocated at one time: so much, and so much for each of its bytes. Half of it is for
+/// what is unpacked.
+constexpr std::int64_t kFreeBytes = 2 * kUnpackedFree, kBytesPerByte = 2 * kUnpackedPerByte;
 
 std::atomic<std::int64_t> heldBytes = 0, mostBytes = 0;
 
