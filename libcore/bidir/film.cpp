@@ -38,7 +38,11 @@ Image meanOfSum(std::span<const Rgb> sum, std::uint64_t iterations, int width, i
 }
 
 Film::Film(int width, int height, BlockPlan plan, std::uint64_t first)
-    : width_(width), height_(height), plan_(plan), open_(plan.sampleIterations()), block_(first) {}
+    : width_(width),
+      height_(height),
+      plan_(plan),
+      open_(plan.sampleIterations(), plan.partsOfSample()),
+      block_(first) {}
 
 FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
                    const ThreadPool* threads) {
@@ -86,7 +90,7 @@ FilmSum Film::openSum(const ThreadPool* threads, Layered layered) const {
 FilmSum Film::sum(const ThreadPool* threads, Layered layered) const {
     FilmSum sum;
     blocks_.addTo(sum, threads, layered);
-    if (!open_.empty()) join(sum, openSum(threads, layered), false, threads, layered);
+    if (!open_.empty()) join(sum, openSum(threads, layered), Parts::Samples, threads, layered);
     return sum;
 }
 

@@ -58,6 +58,8 @@ struct BlockPlan {
 
     /// Of an independent sample.
     std::uint64_t sampleIterations() const { return areSamples ? iterations : groupIterations; }
+    /// The iterations of a sample.
+    Parts partsOfSample() const { return areSamples ? Parts::OfAlikeSample : Parts::OfEvenSample; }
 };
 
 /// The open block's iterations as one sum, with what its layers hold. `threads` may be null.

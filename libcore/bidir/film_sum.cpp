@@ -31,10 +31,10 @@ void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) 
 
 /// Means and spreads of two sums, one number at a time; in double between two roundings.
 struct Joint {
-    Joint(const FilmSum& left, const FilmSum& right, bool oneSample)
+    Joint(const FilmSum& left, const FilmSum& right, Parts parts)
         : nLeft(double(left.iterations)),
           nRight(double(right.iterations)),
-          between(oneSample ? 0.0 : nLeft * nRight / (nLeft + nRight)) {}
+          between(parts == Parts::OfAlikeSample ? 0.0 : nLeft * nRight / (nLeft + nRight)) {}
 
     double mean(double left, double right) const {
         return (nLeft * left + nRight * right) / (nLeft + nRight);
@@ -89,8 +89,9 @@ void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
 /// Variance of the mean of weighted samples: their spread squared, over the sum of the weights and
 /// the degrees of freedom.
 double varianceOfMean(double squares, const FilmSum& sum) {
-    if (sum.samples < 2) return 0.0;
-    const double variance = squares / (double(sum.iterations) * double(sum.samples - 1));
+    const std::uint64_t samples = sum.spreadSamples();
+    if (samples < 2) return 0.0;
+    const double variance = squares / (double(sum.iterations) * double(samples - 1));
     return std::max(0.0, variance);  // and where it is no number
 }
 
@@ -135,33 +136,43 @@ FilmSum::MeanColour FilmSum::meanColour() const {
     return m;
 }
 
-void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads,
+void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* threads,
           Layered layered) {
     if (right.iterations == 0) return;
     if (left.iterations == 0) {
         left = copyOf(right, layered);
         return;
     }
-    const Joint joint(left, right, oneSample);
-    const bool spreads = !oneSample || !left.spread.empty() || !right.spread.empty();
+    const Joint joint(left, right, parts);
+    const auto isForgotten = [&](const FilmSum& sum) {
+        return parts == Parts::Samples && sum.samples == 1;
+    };
+    if (isForgotten(left)) {
+        left.spread.clear();
+        left.wholeSquares = {};
+    }
+    const bool hasRight = !right.spread.empty() && !isForgotten(right);
+    const std::array<double, 3> wholeRight =
+        isForgotten(right) ? std::array<double, 3>{} : right.wholeSquares;
+    const bool spreads = parts != Parts::OfAlikeSample || !left.spread.empty() || hasRight;
     if (spreads) left.spread.resize(left.mean.size());
     forPixels(left.mean.size(), threads, [&](std::size_t i) {
         Rgb unused, none;
         Rgb &m = left.mean[i], &s = spreads ? left.spread[i] : unused;
-        const Rgb &m2 = right.mean[i], &s2 = right.spread.empty() ? none : right.spread[i];
+        const Rgb &m2 = right.mean[i], &s2 = hasRight ? right.spread[i] : none;
         joint.join(m.r, s.r, m2.r, s2.r);
         joint.join(m.g, s.g, m2.g, s2.g);
         joint.join(m.b, s.b, m2.b, s2.b);
     });
     for (std::size_t c = 0; c < 3; ++c) {
-        left.wholeSquares[c] = joint.squares(left.wholeSquares[c], right.wholeSquares[c],
+        left.wholeSquares[c] = joint.squares(left.wholeSquares[c], wholeRight[c],
                                              right.wholeMean[c] - left.wholeMean[c]);
         left.wholeMean[c] = joint.mean(left.wholeMean[c], right.wholeMean[c]);
     }
     if (layered == Layered::Yes) joinLayers(left, right, joint);
     for (const HalfDifference& d : right.differences) addDifference(left.differences, d);
     left.iterations += right.iterations;
-    left.samples = oneSample ? 1 : left.samples + right.samples;
+    left.samples = parts == Parts::Samples ? left.samples + right.samples : 1;
 }
 
 void SumTree::measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations) {
@@ -189,13 +200,13 @@ void SumTree::joinLast(const ThreadPool* threads) {
     // What a node says depends on its range alone, whoever makes it. The last block may have fewer
     // iterations than others.
     const bool even = left.sum->iterations == right.sum->iterations;
-    const bool oneSample = 2 * left.size <= sampleItems_;
+    const Parts parts = 2 * left.size <= sampleItems_ ? within_ : Parts::Samples;
     const std::uint64_t end = first_ + (right.begin + right.size) * itemIterations_;
     std::optional<HalfDifference> difference;
     if (meter_ && even && ErrorMeter::wants(2 * left.sum->iterations, end)) {
         difference = meter_->difference(*left.sum, *right.sum, threads);
     }
-    join(*left.sum, *right.sum, oneSample, threads);
+    join(*left.sum, *right.sum, parts, threads);
     if (difference) addDifference(left.sum->differences, *difference);
     left.size *= 2;
     nodes_.pop_back();
@@ -206,9 +217,9 @@ void SumTree::addTo(FilmSum& sum, const ThreadPool* threads, Layered layered) co
     FilmSum last;
     for (const Node& node : nodes_) {
         const bool whole = node.size >= sampleItems_;
-        join(whole ? sum : last, *node.sum, !whole, threads, layered);
+        join(whole ? sum : last, *node.sum, whole ? Parts::Samples : within_, threads, layered);
     }
-    join(sum, last, false, threads, layered);
+    join(sum, last, Parts::Samples, threads, layered);
 }
 
 }  // namespace lacuna

@@ -36,9 +36,15 @@ struct FilmSum {
     std::uint64_t iterations = 0;
     /// Independent samples of the picture among them (BlockPlan::sampleIterations).
     std::uint64_t samples = 0;
+    /// What variances are told by: samples, or what the only one is made of, if that has a spread.
+    /// Below two nothing is known.
+    std::uint64_t spreadSamples() const {
+        return samples == 1 && !spread.empty() ? iterations : samples;
+    }
     std::vector<Rgb> mean;  ///< by pixel
     /// By pixel and channel: root of the sum over the samples of (a sample's iterations) x (its
-    /// distance from the mean)^2. Empty: zero everywhere.
+    /// distance from the mean)^2; of a single sample likewise over its iterations, as if they were
+    /// independent. Empty: zero everywhere.
     std::vector<Rgb> spread;
     /// The same of the picture's mean colour; squared.
     std::array<double, 3> wholeMean{}, wholeSquares{};
@@ -49,11 +55,11 @@ struct FilmSum {
     static FilmSum ofIteration(std::span<const Rgb> pixels, int width, const ThreadPool& threads);
 
     Image image(int width, int height) const;
-    /// Variance of the mean per pixel and channel; zero below two samples.
+    /// Variance of the mean per pixel and channel; zero where none is known.
     Image variance(int width, int height) const;
     struct MeanColour {
         double mean[3] = {0, 0, 0};
-        double standardError[3] = {0, 0, 0};  ///< zero below two samples
+        double standardError[3] = {0, 0, 0};  ///< zero where none is known
     };
     /// Of the whole picture, its standard error from the spread of the samples' means.
     MeanColour meanColour() const;
@@ -62,9 +68,16 @@ struct FilmSum {
 /// Whether sums hold their layers or the picture alone, which is quicker.
 enum class Layered { Yes, No };
 
-/// Adds `right` to `left` [Chan83]. `oneSample`: they are parts of one sample,
-/// so that nothing is known of its spread. `threads` may be null.
-void join(FilmSum& left, const FilmSum& right, bool oneSample, const ThreadPool* threads,
+/// What two sums are to each other.
+enum class Parts {
+    Samples,       ///< independent of each other
+    OfEvenSample,  ///< parts of one, further apart than independent ones would be
+    OfAlikeSample  ///< parts of one, alike: their distance says nothing of its spread
+};
+
+/// Adds `right` to `left` [Chan83]. What a sample's own iterations spread by is forgotten where it
+/// meets another. `threads` may be null.
+void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* threads,
           Layered layered = Layered::Yes);
 
 /// Sums of items that come one after the other: item i is a leaf of the binary tree whose nodes
@@ -77,8 +90,10 @@ class SumTree {
         std::shared_ptr<FilmSum> sum;       ///< not changed while anyone else holds it
     };
 
-    /// `sampleItems`: so many items are one sample, those behind a multiple of it.
-    explicit SumTree(std::uint64_t sampleItems) : sampleItems_(sampleItems) {}
+    /// `sampleItems`: so many items are one sample, those behind a multiple of it; `within`: what
+    /// they are to each other.
+    explicit SumTree(std::uint64_t sampleItems, Parts within = Parts::OfEvenSample)
+        : sampleItems_(sampleItems), within_(within) {}
 
     /// Compares the halves of nodes from now on. Item i is `iterations` iterations from `first` + i
     /// times that many on. Halves of a sample must not be alike; unlike ones say too much (theory.md).
@@ -96,6 +111,7 @@ class SumTree {
     void joinLast(const ThreadPool* threads);
 
     std::uint64_t sampleItems_;
+    Parts within_;
     const ErrorMeter* meter_ = nullptr;
     std::uint64_t first_ = 0, itemIterations_ = 1;
     std::vector<Node> nodes_;

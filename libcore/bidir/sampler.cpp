@@ -6,8 +6,11 @@ namespace lacuna {
 
 namespace {
 
-/// Errors fall faster the more there are, but variances are told by whole groups: a render of 64
-/// iterations has eight.
+/// Iterations that a sequence lasts, unless its block ends before: errors fall the faster, the longer
+/// it is, up to about here.
+constexpr std::uint64_t kSequence = 64;
+/// Variances are told by whole groups: a render of 64 iterations has eight. Those of one sequence are
+/// further apart than independent ones.
 constexpr std::uint64_t kGroup = 8;
 
 std::uint32_t dimensionsOf(StreamKind kind) {
@@ -33,10 +36,9 @@ Rng Sampler::stream(std::uint32_t iteration, StreamKind kind, std::uint64_t inde
     Rng rng(seed_, iteration, kind, index);
     const std::uint32_t dimensions = dimensionsOf(kind);
     if (sampling_ == Sampling::Independent || dimensions == 0) return rng;
-    const std::uint64_t inGroup = iteration % blockIterations_ % kGroup,
-                        first = iteration - inGroup;
-    const std::uint64_t ofGroup = mixBits(mixBits(seed_) ^ first);
-    rng.follow({mixBits(ofGroup ^ (std::uint64_t(kind) << 56 | index)), std::uint32_t(inGroup),
+    const std::uint64_t place = iteration % blockIterations_ % kSequence, first = iteration - place;
+    const std::uint64_t ofSequence = mixBits(mixBits(seed_) ^ first);
+    rng.follow({mixBits(ofSequence ^ (std::uint64_t(kind) << 56 | index)), std::uint32_t(place),
                 dimensions});
     return rng;
 }

@@ -8,7 +8,7 @@
 namespace lacuna {
 
 enum class Sampling {
-    Sobol,        ///< even over the iterations of a group
+    Sobol,        ///< even over the iterations of a sequence
     Independent,  ///< all of them independent
 };
 /// As --sampler names it.
@@ -37,12 +37,12 @@ constexpr std::uint32_t ofPicks(std::uint32_t t) {
 
 class Sampler {
   public:
-    /// `blockIterations`: of a block; groups begin anew with each.
+    /// `blockIterations`: of a block; sequences begin anew with each.
     Sampler(Sampling sampling, std::uint64_t seed, std::uint64_t blockIterations)
         : sampling_(sampling), seed_(seed), blockIterations_(blockIterations) {}
 
-    /// Iterations of a group, a power of two: streams of one kind and index are even over them, and
-    /// independent of all others.
+    /// Iterations of a group, a power of two: streams of one kind and index are even over them. Their
+    /// sums spread by no less than the picture's error says (theory.md, "Even numbers").
     static std::uint64_t groupOf(Sampling sampling);
 
     /// A stream of an iteration, even where its kind has dimensions.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "libcore/base/error.h"
@@ -55,6 +56,15 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     }
     integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
     cells_ = DiscreteDistribution(weights);
+    const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(whole > 0.0)) return;
+    double above = 0.0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const double evenly =
+            whole * rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
+        above += std::max(0.0, weights[i] - evenly);
+    }
+    contrast_ = above / whole;
 }
 
 Environment::Place Environment::placeOf(Vec3 d) const {

@@ -45,6 +45,9 @@ class Environment {
     bool black() const { return cells_.empty(); }
     /// Integral of the radiance over all directions, as the density has it.
     Rgb integral() const { return integral_; }
+    /// Share of it above its mean [Karlik19]: 0 of a sky that is the same everywhere, near 1 where a
+    /// small sun has all the light.
+    double contrast() const { return contrast_; }
 
   private:
     // A cell lies between four centres of texels, those above it being of row y - 1 and those below
@@ -74,6 +77,7 @@ class Environment {
     std::vector<Row> rows_;  // of cells
     DiscreteDistribution cells_;
     Rgb integral_;
+    double contrast_ = 0.0;
     float turn_;  ///< rotation as a fraction of a whole turn
 };
 

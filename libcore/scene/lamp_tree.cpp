@@ -13,6 +13,9 @@ namespace {
 /// What is not behind a surface counts as so far in front of it at least: rounding again.
 constexpr float kLeastCosine = 1e-4f;
 
+/// What leaves a surface is at least so much of the most that may: the mean is no bound.
+constexpr float kLeastUsual = 0.1f;
+
 double below1(double u) {
     return std::min(u, 0x1.fffffffffffffp-1);
 }
@@ -53,7 +56,14 @@ void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
         const float offSine = inCone ? 0.0f : b * cosine[i] - a * sine[i];
         const bool mayBeIn = offCosine >= boxCosine;
         const float faded = std::max(0.0f, offCosine * boxCosine + offSine * boxSine) * fades[i];
-        const float leaving = mayBeIn ? 1.0f : faded;
+        const float most = mayBeIn ? 1.0f : faded;
+        // Of surfaces whose normals fill the cone: the mean of the cosine, and about that of what is
+        // positive of it.
+        const float mean = 0.5f * a * (1.0f + cosine[i]);
+        const float scatter = cosine[i] > 0.0f ? 0.5f * sine[i] : 0.5f;
+        const float usual = 0.5f * (mean + std::sqrt(mean * mean + scatter * scatter));
+        const float leaving =
+            fades[i] > 0.0f ? std::max(kLeastUsual * most, std::min(usual, most)) : most;
 
         const float cosines = d2 <= r2 ? above : arriving * leaving;
         importance[i] = intensity[i] * cosines / std::max(d2, r2);

@@ -204,6 +204,9 @@ std::vector<double> Lights::powers() const {
     return power;
 }
 
+/// Of the choice of a sky that is the same everywhere, what next event keeps: walks see no windows.
+constexpr double kEvenSky = 0.1;
+
 /// Over the lights that can be picked.
 LampTree Lights::makeTree(std::span<const double> powers) const {
     std::vector<PlacedLight> placed;
@@ -223,8 +226,10 @@ LampTree Lights::makeTree(std::span<const double> powers) const {
             continue;
         }
         if (kinds_[i] == LightKind::Environment) {
-            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter.
-            distant.push_back({i, {}, 0.25 * powers[i] / disk});
+            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter. Of
+            // that, what stands out: walks find an even sky as well.
+            const double share = std::max(environment_->contrast(), kEvenSky);
+            distant.push_back({i, {}, 0.25 * share * powers[i] / disk});
             continue;
         }
         const std::size_t p = i - triangles_.size();

@@ -39,7 +39,7 @@ constexpr double kSplatsPerCropPixel = 4.0;
 constexpr double kFewestSplats = 10'000.0;
 
 /// What is tried, and what a ray costs with it beside one of bpt: look-ups and waiting included. It
-/// differs by scene (spcbpt: 0.9 to 2.1), so with a time limit the trial's own seconds count.
+/// differs by scene, so with a time limit the trial's own seconds count.
 struct Row {
     const char* method;
     double rayCost;
@@ -54,8 +54,6 @@ struct Row {
 constexpr Row kRows[] = {
     {"bpt", 1.0, "is found from both ends"},
     {"pt", 1.1, "is in plain sight"},
-    {"risbpt", 1.4, "comes from many places near and glossy", true},
-    {"spcbpt", 1.5, "takes ways that can be learned"},
     {"sharebpt", 1.5, "takes ways that can be learned, and pixels see much alike"},
     {"sharebpt", 1.6, "comes through glass or mirrors on both sides", false, "merge=on"},
     {"vcm", 1.4, "comes through glass or mirrors", true},
@@ -224,8 +222,8 @@ class Pilot {
         const double poolScale = candidate.wholeFilm
                                      ? filmPixels() / smallFilmPixels()
                                      : double(poolSubpaths()) / double(trialSubpaths());
-        if (!runTrial(stage_, *small_, row, settings, caches, poolScale, seed, rays, pool_, cancel_,
-                      trial)) {
+        if (!runTrial(stage_, *small_, row, settings, caches, poolScale, sampling(), seed, rays,
+                      pool_, cancel_, trial)) {
             throw InterruptedError("interrupted: nothing was written");
         }
     }
@@ -262,7 +260,7 @@ class Pilot {
         }
         const Tried& chosen = tried_[rowToTake(verdicts, usual)];
         Choice choice{
-            chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(chosen), "", {}};
+            chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(), "", {}};
         // Where nothing was seen all are alike.
         const auto speed = [&](const Tried& t) {
             return t.verdict.loss > 0.0 ? bpt.verdict.loss / t.verdict.loss : 1.0;
@@ -279,12 +277,8 @@ class Pilot {
         return choice;
     }
 
-    /// Even numbers where as many groups are expected as it takes to know a variance.
-    Sampling sampling(const Tried& t) const {
-        if (!options_.samplerText.empty()) return options_.sampling;
-        const double expected = byClock() ? 1.0 / t.cost : double(iterations());
-        const std::uint64_t wanted = 2 * Sampler::groupOf(Sampling::Sobol);
-        return expected >= double(wanted) ? Sampling::Sobol : Sampling::Independent;
+    Sampling sampling() const {
+        return options_.samplerText.empty() ? Sampling::Sobol : options_.sampling;
     }
 
     const RenderOptions& options_;

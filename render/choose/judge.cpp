@@ -10,8 +10,7 @@ namespace {
 constexpr double kEpsilon = 0.01;  // of the error measures: e = 0.01 of the mean
 /// A row takes the place of the usual one where it is better by so much: what trials see has noise.
 constexpr double kWorthAChange = 0.85;
-/// The errors above which a trial of the usual row tells nothing, and below which another's does.
-constexpr double kBlind = 1.0, kSees = 0.25;
+constexpr int kReach = 2;   // of smoothing: 5 x 5 pixels
 constexpr int kRounds = 3;  // of weights by errors, and errors by weights
 
 using Picture = std::vector<Vec3d>;
@@ -28,7 +27,7 @@ Picture meanOf(const HalfPictures& halves) {
     return mean;
 }
 
-/// Over 3 x 3 pixels, as many as there are.
+/// Over a square of pixels, as many as there are.
 Picture smoothed(const Picture& picture, int width) {
     const int height = int(picture.size()) / width;
     Picture result(picture.size());
@@ -36,8 +35,9 @@ Picture smoothed(const Picture& picture, int width) {
         for (int x = 0; x < width; ++x) {
             Vec3d sum;
             int count = 0;
-            for (int ny = std::max(0, y - 1); ny <= std::min(height - 1, y + 1); ++ny) {
-                for (int nx = std::max(0, x - 1); nx <= std::min(width - 1, x + 1); ++nx) {
+            for (int ny = std::max(0, y - kReach); ny <= std::min(height - 1, y + kReach); ++ny) {
+                for (int nx = std::max(0, x - kReach); nx <= std::min(width - 1, x + kReach);
+                     ++nx) {
                     sum += picture[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
                     ++count;
                 }
@@ -127,12 +127,14 @@ double errorWithout(std::span<const Rgb> part, const HalfPictures& picture, int 
 }
 
 std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual) {
-    const bool blind = verdicts[usual].error > kBlind;
+    // What the usual row has not seen, rows that have seen less do not know either: the less of the
+    // picture is there, the less does a difference say.
+    const double seen = std::max(0.0, 1.0 - verdicts[usual].error);
     std::size_t best = usual;
-    double least = verdicts[usual].loss * kWorthAChange;
+    double least = verdicts[usual].loss * kWorthAChange * seen;
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
         const Verdict& v = verdicts[i];
-        if (i == usual || !(v.loss < least) || (blind && v.error > kSees)) continue;
+        if (i == usual || !(v.loss < least)) continue;
         least = v.loss;
         best = i;
     }

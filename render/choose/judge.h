@@ -30,8 +30,9 @@ struct Verdict {
     double loss = 0.0;   ///< time to a given error, in units that only compare
 };
 
-/// The row to take: the usual one where none is clearly better. Where it met hardly any light, rows
-/// that met none look the best; then only one that saw enough takes its place.
+/// The row to take: the usual one where none is clearly better. Where trials met hardly any light,
+/// rows that met the least look the best, so that what counts as clear grows with the usual row's
+/// error; from 1 on nothing takes its place.
 std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual);
 
 }  // namespace lacuna

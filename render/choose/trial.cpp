@@ -78,19 +78,19 @@ Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRe
 }
 
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
-              const Settings& settings, const Caches& caches, double poolScale, std::uint64_t seed,
-              double rays, const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result) {
+              const Settings& settings, const Caches& caches, double poolScale, Sampling sampling,
+              std::uint64_t seed, double rays, const ThreadPool& pool,
+              const std::atomic<bool>& cancel, Trial& result) {
     const std::unique_ptr<Method> method = row.create(settings);
     const AssetSet assets = caches.all();
     method->use(assets);
     RenderSettings render = stage.settings;
     render.guides = guidesOf(*stage.scene, assets);
-    render.seed = seed;
     render.crop = small.crop;
     const double filmPixels = pixelsOf(stage.camera->film()), smallPixels = pixelsOf(small.film);
     const auto splats = double(lightPathsOf(settings));  // 0: as many as pixels
     render.lightPaths = std::uint64_t(std::ceil(splats * smallPixels / filmPixels));
-    render.sampling = Sampling::Independent;  // errors are told by halves of independent iterations
+    render.sampling = sampling;
     const Camera camera = stage.camera->withFilm(small.film);
     // A technique that is forced off is off for all.
     Techniques techniques = row.techniques;
@@ -99,10 +99,16 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     techniques.splats &= stage.techniques.splats;
     techniques.chains &= stage.techniques.chains;
     techniques.refractions &= stage.techniques.refractions;
-    BidirIntegrator integrator(*stage.scene, camera, techniques, *method, render, pool);
+    // Halves are independent where their iterations are even as well.
+    std::vector<std::unique_ptr<BidirIntegrator>> integrators;
+    for (const std::uint64_t ofHalf : {seed, ~seed}) {
+        render.seed = ofHalf;
+        integrators.push_back(std::make_unique<BidirIntegrator>(*stage.scene, camera, techniques,
+                                                                *method, render, pool));
+    }
 
     IterationStatistics warmUp, statistics;
-    if (!integrator.beginBlock(0, *method, cancel, warmUp)) return false;
+    if (!integrators.front()->beginBlock(0, *method, cancel, warmUp)) return false;
     const auto pixels = std::size_t(small.crop.width()) * std::size_t(small.crop.height());
     std::vector<Rgb> picture(pixels);
     std::vector<Rgb>* const halves[] = {&result.halves.first, &result.halves.second};
@@ -110,17 +116,19 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     if (method->merging().where != Merges::Nowhere) {
         result.onlyMerged.assign(pixels, Rgb{});
         // Merges are of their own pixel's task.
-        integrator.delivery().setObserver([&](const PathEvent& event) {
-            if (isOnlyMerged(event) && isFinite(event.contribution)) {
-                result.onlyMerged[event.pixel] += event.contribution;
-            }
-        });
+        for (const auto& integrator : integrators) {
+            integrator->delivery().setObserver([&](const PathEvent& event) {
+                if (isOnlyMerged(event) && isFinite(event.contribution)) {
+                    result.onlyMerged[event.pixel] += event.contribution;
+                }
+            });
+        }
     }
     LeastSeconds light("light paths"), prepare("prepare"), eye("eye paths"), observe("observe");
     std::uint64_t& n = result.iterations;
     for (n = 0; n < 2 || n % 2 == 1 || double(statistics.totalRays()) < rays; ++n) {
         IterationStatistics one;
-        if (!integrator.render(std::uint32_t(n), picture, cancel, one)) return false;
+        if (!integrators[n % 2]->render(std::uint32_t(n / 2), picture, cancel, one)) return false;
         for (LeastSeconds* least : {&light, &prepare, &eye, &observe}) least->see(one);
         statistics.add(one);
         for (std::size_t i = 0; i < pixels; ++i) (*halves[n % 2])[i] += picture[i];

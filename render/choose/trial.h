@@ -41,7 +41,8 @@ Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRe
 /// Pairs of iterations until `rays` rays are traced, at least one. What a row prepares from its pool
 /// takes `poolScale` times as long for the whole picture. False if cancelled.
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
-              const Settings& settings, const Caches& caches, double poolScale, std::uint64_t seed,
-              double rays, const ThreadPool& pool, const std::atomic<bool>& cancel, Trial& result);
+              const Settings& settings, const Caches& caches, double poolScale, Sampling sampling,
+              std::uint64_t seed, double rays, const ThreadPool& pool,
+              const std::atomic<bool>& cancel, Trial& result);
 
 }  // namespace lacuna

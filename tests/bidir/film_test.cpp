@@ -177,6 +177,28 @@ TEST(Film, whereNumbersAreEvenGroupsAreTheSamples) {
     EXPECT_EQ(blocks.sum().samples, 5u);
 }
 
+// One group alone: 1, 2, 4 spread about 7/3 as if they were independent. Beside another one that is
+// forgotten. Iterations that share light paths may be closer than that, so that nothing is said.
+TEST(Film, aSingleGroupTellsByItsIterations) {
+    const ThreadPool threads(1);
+    const auto filmOf = [&](BlockPlan plan, std::initializer_list<float> values) {
+        Film film(1, 1, plan);
+        for (const float v : values) film.add(std::vector<Rgb>{Rgb(v)}, threads);
+        return film;
+    };
+    const BlockPlan even{64, false, 4};
+    const Film one = filmOf(even, {1.0f, 2.0f, 4.0f});
+    EXPECT_EQ(one.sum().samples, 1u);
+    EXPECT_NEAR(one.variance().at(0, 0).r, 7.0 / 3.0 / 3.0, 1e-6);
+    EXPECT_NEAR(one.meanColour().standardError[0], std::sqrt(7.0) / 3.0, 1e-6);
+    EXPECT_EQ(filmOf(even, {1.0f}).variance().at(0, 0).r, 0.0f);
+    // 2.5 four times and 5: weights 4 and 1 about 3.
+    const Film two = filmOf(even, {1.0f, 2.0f, 4.0f, 3.0f, 5.0f});
+    EXPECT_EQ(two.sum().samples, 2u);
+    EXPECT_NEAR(two.variance().at(0, 0).r, (4 * 0.25 + 4.0) / 5.0, 1e-6);
+    EXPECT_EQ(filmOf({64, true}, {1.0f, 2.0f, 4.0f}).variance().at(0, 0).r, 0.0f);
+}
+
 class OneLayer final : public BlockLayers {
   public:
     Layers means() const override { return value != 0.0f ? Layers{{"a.R", {value}}} : Layers{}; }
@@ -247,10 +269,10 @@ TEST(FilmSum, countsIterationsBeyond32Bits) {
     const ThreadPool threads(1);
     FilmSum sum = FilmSum::ofIteration(std::vector<Rgb>{Rgb(1.0f)}, 1, threads);
     sum.spread = {Rgb(0.0f)};
-    for (int doubled = 0; doubled < 35; ++doubled) join(sum, FilmSum(sum), false, nullptr);
+    for (int doubled = 0; doubled < 35; ++doubled) join(sum, FilmSum(sum), Parts::Samples, nullptr);
     FilmSum other = sum;
     other.mean[0] = Rgb(3.0f);
-    join(sum, other, false, nullptr);
+    join(sum, other, Parts::Samples, nullptr);
     EXPECT_EQ(sum.iterations, 1ull << 36);
     EXPECT_EQ(sum.samples, 1ull << 36);
     EXPECT_EQ(sum.image(1, 1).at(0, 0), Rgb(2.0f));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kAlarm = 1e-3;
 constexpr double kComparisons = 7;
-constexpr std::uint32_t kGroup = 8;
+constexpr std::uint32_t kGroup = 8, kSequence = 64;
 constexpr std::uint64_t kBlock = 64;
 
 const Sampler kSobol(Sampling::Sobol, 3, kBlock), kIndependent(Sampling::Independent, 3, kBlock);
@@ -73,7 +73,21 @@ TEST(Sampler, iterationsOfAGroupAreEven) {
     }
 }
 
-TEST(Sampler, aGroupEndsWithItsBlock) {
+TEST(Sampler, iterationsOfASequenceAreEven) {
+    const Sampler endless(Sampling::Sobol, 3, 1 << 20);
+    for (const std::uint32_t first : {0u, kSequence, 100 * kSequence}) {
+        std::set<int> squares, columns;
+        for (std::uint32_t i = first; i < first + kSequence; ++i) {
+            const auto [u1, u2] = endless.stream(i, StreamKind::EyePath, 9).evenPair();
+            squares.insert(int(u1 * 8) * 8 + int(u2 * 8));
+            columns.insert(int(u1 * 64));
+        }
+        EXPECT_EQ(squares.size(), 64u) << first;
+        EXPECT_EQ(columns.size(), 64u) << first;
+    }
+}
+
+TEST(Sampler, aSequenceEndsWithItsBlock) {
     const Sampler twenty(Sampling::Sobol, 3, 20);
     const auto columns = [&](std::uint32_t first, std::uint32_t end) {
         std::set<int> seen;
@@ -107,8 +121,9 @@ TEST(Sampler, allElseIsIndependent) {
         return kSobol.stream(iteration, kind, index);
     };
     const StreamKind eye = StreamKind::EyePath;
-    expectIndependent("groups", [&](std::uint32_t i) {
-        return std::pair(at(3, eye, i), at(3 + kGroup, eye, i));
+    expectIndependent("sequences", [&](std::uint32_t i) {
+        return std::pair(Sampler(Sampling::Sobol, 3, 1024).stream(3, eye, i),
+                         Sampler(Sampling::Sobol, 3, 1024).stream(3 + kSequence, eye, i));
     });
     expectIndependent("blocks", [&](std::uint32_t i) {
         return std::pair(at(i % 8 + i / 8 * 128, eye, 1), at(i % 8 + i / 8 * 128 + 64, eye, 1));

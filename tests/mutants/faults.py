@@ -282,11 +282,11 @@ FAULTS = [
           {"bidir": "Labels.areThoseOfAWalkThatCameThisWay"}),
     Fault("film-variance-by-squares", "the film's variance of the mean by n^2",
           "libcore/bidir/film_sum.cpp",
-          "double(sum.samples - 1)", "double(sum.samples)",
+          "double(samples - 1)", "double(samples)",
           {"bidir": "Film.*"}),
     Fault("film-variance-of-a-sample", "the film's variance is that of one iteration",
           "libcore/bidir/film_sum.cpp",
-          "squares / (double(sum.iterations) * double(sum.samples - 1))", "squares / double(sum.samples - 1)",
+          "squares / (double(sum.iterations) * double(samples - 1))", "squares / double(samples - 1)",
           {"bidir": "Film.*"}),
 
     # Merging
@@ -323,7 +323,7 @@ FAULTS = [
     # Blocks, checkpoints, parts
     Fault("film-blocks-as-iterations", "where iterations share light paths the film's variance is still that of iterations",
           "libcore/bidir/film_sum.cpp",
-          "between(oneSample ? 0.0 : nLeft * nRight / (nLeft + nRight))", "between(oneSample && false ? 0.0 : nLeft * nRight / (nLeft + nRight))",
+          "between(parts == Parts::OfAlikeSample ? 0.0 : nLeft * nRight / (nLeft + nRight))", "between(parts == Parts::OfAlikeSample && false ? 0.0 : nLeft * nRight / (nLeft + nRight))",
           {"bidir": "Film.whereIterationsShareLightPathsBlocksAreTheSamples"}),
     Fault("sum-tree-joins-any-neighbours", "sums depend on where a piece of a picture began",
           "libcore/bidir/film_sum.cpp",

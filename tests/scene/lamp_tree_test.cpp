@@ -182,6 +182,74 @@ TEST(LampTree, nearLampsComeFirst) {
     EXPECT_GT(near, 0.7) << "by power 0.011";
 }
 
+/// A ball of triangles about the origin.
+std::vector<EmissiveTriangle> ballLamp(SomeLights& made, float radius) {
+    made.addTriangles(1, false);
+    constexpr int kAround = 24, kDown = 12;
+    const auto corner = [&](int i, int j) {
+        const float turn = 2.0f * kPi * float(i) / kAround, down = kPi * float(j) / kDown;
+        return Vec3{std::sin(down) * std::cos(turn), std::cos(down),
+                    -std::sin(down) * std::sin(turn)} *
+               radius;
+    };
+    std::vector<EmissiveTriangle> triangles;
+    for (int j = 0; j < kDown; ++j) {
+        for (int i = 0; i < kAround; ++i) {
+            for (const auto& corners :
+                 {std::array{corner(i, j), corner(i, j + 1), corner(i + 1, j + 1)},
+                  std::array{corner(i, j), corner(i + 1, j + 1), corner(i + 1, j)}}) {
+                EmissiveTriangle t = made.triangles.front();
+                t.corners = corners;
+                t.radiance = Rgb(1.0f);
+                if (length(cross(corners[1] - corners[0], corners[2] - corners[0])) > 1e-6f) {
+                    triangles.push_back(t);
+                }
+            }
+        }
+    }
+    return triangles;
+}
+
+// What a triangle sends over its probability would be the same for all, were picks perfect. Bounds in
+// place of means give .48.
+TEST(LampTree, trianglesOfABallArePickedByWhatTheySend) {
+    SomeLights made(23);
+    const std::vector<EmissiveTriangle> ball = ballLamp(made, 0.1f);
+    const Lights lights(ball, {}, {}, nullptr, 2.0f);
+    const Viewpoint from{{0.7f, -1.2f, 0.4f}, normalize(Vec3{-0.3f, 1.0f, 0.1f})};
+    double sum = 0.0, squares = 0.0;
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+        const auto& [a, b, c] = lights.corners(l);
+        const Vec3 middle = (a + b + c) * (1.0f / 3.0f), to = middle - from.position;
+        const Vec3 normal = cross(b - a, c - a), direction = normalize(to);
+        const double sent = std::max(0.0, double(-dot(normal, direction))) *
+                            std::max(0.0, double(dot(from.side, direction))) / double(dot(to, to));
+        const double pmf = lights.tree().pmf(from, l);
+        if (sent == 0.0) continue;
+        ASSERT_GT(pmf, 0.0);
+        sum += sent;
+        squares += sent * sent / pmf;
+    }
+    EXPECT_LT(squares / (sum * sum) - 1.0, 0.2);
+}
+
+// Walks that go on by a BSDF find a sky that is the same everywhere as well as next event does.
+TEST(LampTree, anEvenSkyLeavesTheChoiceToTheSun) {
+    const auto shareOfSky = [](float sunOfSky) {
+        Image image(64, 32);
+        for (Rgb& c : image.pixels) c = Rgb(1.0f / kPi);
+        image.at(32, 8) = Rgb(sunOfSky);
+        const Environment sky(image, 1.0, 0.0, "sky");
+        const PunctualLight sun = directionalLight({0, -1, 0}, Rgb(1.0f));
+        const Lights lights({}, {&sun, 1}, {}, &sky, 1.0f);
+        const Viewpoint from{{}, {0, 1, 0}};
+        return lights.seenSamples(lights.environmentIndex(), from) *
+               lights.pmf(lights.environmentIndex());
+    };
+    EXPECT_LT(shareOfSky(1.0f / kPi), 0.2);
+    EXPECT_GT(shareOfSky(1000.0f), 0.4) << "of which hits find next to nothing";
+}
+
 TEST(LampTree, oneLightOrNoneIsNoChoice) {
     SomeLights none(18);
     EXPECT_TRUE(none.lights().empty());
