@@ -147,9 +147,10 @@ HalfDifference ErrorMeter::difference(const FilmSum& left, const FilmSum& right,
 }
 
 ErrorMeter::Squares ErrorMeter::squares(const FilmSum& sum, const ThreadPool* threads) const {
-    if (sum.spreadSamples() < 2 || sum.spread.empty()) return {};
+    const double divisor = sum.varianceDivisor();
+    if (divisor == 0.0 || sum.spread.empty()) return {};
     const double e = epsilonOf(sum, sum);
-    const double scale = 1.0 / (double(sum.iterations) * double(sum.spreadSamples() - 1));
+    const double scale = 1.0 / divisor;
     const auto term = [&](bool relative) {
         return [this, &sum, e, scale, relative](const Place& place) {
             const auto s = channels(sum.spread[place.pixel]);
@@ -294,7 +295,7 @@ ErrorEstimate estimateError(const FilmSum& sum, const ErrorMeter& meter,
         const double value = root ? std::sqrt(m.value) : m.value;
         Measured result =
             measured(value, (root ? 0.5 : 1.0) * m.unevenness, m.unevenness, meter.places());
-        if (sum.spreadSamples() < 2) result.error = kUnknown;
+        if (sum.varianceDivisor() == 0.0) result.error = kUnknown;
         if (sum.samples < kFewestSamples) result.doubt = kTooFew;
         if (result.doubt.empty() && seesLittle(sum)) result.doubt = kUnseen;
         return result;

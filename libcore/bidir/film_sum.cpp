@@ -86,13 +86,9 @@ void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
     place->unevenness += d.unevenness;
 }
 
-/// Variance of the mean of weighted samples: their spread squared, over the sum of the weights and
-/// the degrees of freedom.
-double varianceOfMean(double squares, const FilmSum& sum) {
-    const std::uint64_t samples = sum.spreadSamples();
-    if (samples < 2) return 0.0;
-    const double variance = squares / (double(sum.iterations) * double(samples - 1));
-    return std::max(0.0, variance);  // and where it is no number
+double varianceOfMean(double squares, double divisor) {
+    if (divisor == 0.0) return 0.0;
+    return std::max(0.0, squares / divisor);  // and where it is no number
 }
 
 }  // namespace
@@ -118,9 +114,15 @@ Image FilmSum::image(int width, int height) const {
     return image;
 }
 
+double FilmSum::varianceDivisor() const {
+    const std::uint64_t known = samples == 1 && !spread.empty() ? iterations : samples;
+    return known < 2 ? 0.0 : double(iterations) * double(known - 1);
+}
+
 Image FilmSum::variance(int width, int height) const {
     Image image(width, height);
-    const auto of = [&](float s) { return float(varianceOfMean(double(s) * double(s), *this)); };
+    const double divisor = varianceDivisor();
+    const auto of = [&](float s) { return float(varianceOfMean(double(s) * double(s), divisor)); };
     for (std::size_t i = 0; i < spread.size(); ++i) {
         image.pixels[i] = {of(spread[i].r), of(spread[i].g), of(spread[i].b)};
     }
@@ -131,7 +133,7 @@ FilmSum::MeanColour FilmSum::meanColour() const {
     MeanColour m;
     for (std::size_t c = 0; c < 3; ++c) {
         m.mean[c] = wholeMean[c];
-        m.standardError[c] = std::sqrt(varianceOfMean(wholeSquares[c], *this));
+        m.standardError[c] = std::sqrt(varianceOfMean(wholeSquares[c], varianceDivisor()));
     }
     return m;
 }
@@ -151,9 +153,7 @@ void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* th
         left.spread.clear();
         left.wholeSquares = {};
     }
-    const bool hasRight = !right.spread.empty() && !isForgotten(right);
-    const std::array<double, 3> wholeRight =
-        isForgotten(right) ? std::array<double, 3>{} : right.wholeSquares;
+    const bool isKept = !isForgotten(right), hasRight = isKept && !right.spread.empty();
     const bool spreads = parts != Parts::OfAlikeSample || !left.spread.empty() || hasRight;
     if (spreads) left.spread.resize(left.mean.size());
     forPixels(left.mean.size(), threads, [&](std::size_t i) {
@@ -165,8 +165,9 @@ void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* th
         joint.join(m.b, s.b, m2.b, s2.b);
     });
     for (std::size_t c = 0; c < 3; ++c) {
-        left.wholeSquares[c] = joint.squares(left.wholeSquares[c], wholeRight[c],
-                                             right.wholeMean[c] - left.wholeMean[c]);
+        left.wholeSquares[c] =
+            joint.squares(left.wholeSquares[c], isKept ? right.wholeSquares[c] : 0.0,
+                          right.wholeMean[c] - left.wholeMean[c]);
         left.wholeMean[c] = joint.mean(left.wholeMean[c], right.wholeMean[c]);
     }
     if (layered == Layered::Yes) joinLayers(left, right, joint);

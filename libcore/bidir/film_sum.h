@@ -36,11 +36,6 @@ struct FilmSum {
     std::uint64_t iterations = 0;
     /// Independent samples of the picture among them (BlockPlan::sampleIterations).
     std::uint64_t samples = 0;
-    /// What variances are told by: samples, or what the only one is made of, if that has a spread.
-    /// Below two nothing is known.
-    std::uint64_t spreadSamples() const {
-        return samples == 1 && !spread.empty() ? iterations : samples;
-    }
     std::vector<Rgb> mean;  ///< by pixel
     /// By pixel and channel: root of the sum over the samples of (a sample's iterations) x (its
     /// distance from the mean)^2; of a single sample likewise over its iterations, as if they were
@@ -55,6 +50,9 @@ struct FilmSum {
     static FilmSum ofIteration(std::span<const Rgb> pixels, int width, const ThreadPool& threads);
 
     Image image(int width, int height) const;
+    /// A squared spread over this is the variance of the mean: iterations times the degrees of freedom
+    /// of the samples, or of what the only one is made of, if that has a spread. 0: none is known.
+    double varianceDivisor() const;
     /// Variance of the mean per pixel and channel; zero where none is known.
     Image variance(int width, int height) const;
     struct MeanColour {

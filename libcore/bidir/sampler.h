@@ -41,8 +41,8 @@ class Sampler {
     Sampler(Sampling sampling, std::uint64_t seed, std::uint64_t blockIterations)
         : sampling_(sampling), seed_(seed), blockIterations_(blockIterations) {}
 
-    /// Iterations of a group, a power of two: streams of one kind and index are even over them. Their
-    /// sums spread by no less than the picture's error says (theory.md, "Even numbers").
+    /// Iterations of a group, a power of two: streams of one kind and index are even over them. What
+    /// they spread by is what variances are told by (theory.md, "Even numbers").
     static std::uint64_t groupOf(Sampling sampling);
 
     /// A stream of an iteration, even where its kind has dimensions.

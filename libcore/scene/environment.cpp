@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include "libcore/base/error.h"
@@ -56,15 +55,11 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     }
     integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
     cells_ = DiscreteDistribution(weights);
-    const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (!(whole > 0.0)) return;
-    double above = 0.0;
+    if (black()) return;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double evenly =
-            whole * rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
-        above += std::max(0.0, weights[i] - evenly);
+        const double evenly = rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
+        contrast_ += std::max(0.0, cells_.pmf(i) - evenly);
     }
-    contrast_ = above / whole;
 }
 
 Environment::Place Environment::placeOf(Vec3 d) const {

@@ -22,8 +22,8 @@ double below1(double u) {
 
 }  // namespace
 
-/// From above: intensity over squared distance with the cosines at both ends, wherever in the box
-/// and in the cone the light may be. Distances are no less than the box's own size, so that nodes
+/// Intensity over squared distance with the cosines at both ends: the most, wherever in the box and in
+/// the cone the light may be, or of surfaces about the mean. Zero only where that is. Distances are no less than the box's own size, so that nodes
 /// around the point stay comparable. Without branches: for all children at once.
 void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
     const Vec3 p = from.position, side = from.side;

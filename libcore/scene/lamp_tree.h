@@ -1,5 +1,6 @@
 // Which light to ask for light at a point, by what the point can see of each: a tree with boxes and
-// cones [Conty18], whose nodes are weighed by the bound of [Pharr23 12.6.3]. A node has eight
+// cones [Conty18], whose nodes are weighed by the bound of [Pharr23 12.6.3], of surfaces by what is
+// usual below it. A node has eight
 // children, which are weighed at once. (theory.md, "Lamps that are seen")
 //
 // Lights with a place are the tree's leaves; lights at infinity stand beside its root, weighed by
@@ -44,8 +45,9 @@ struct PlacedLight {
 /// A light at infinity.
 struct DistantLight {
     std::uint32_t light;
-    Vec3 direction;     ///< unit, towards it; zero: from all sides
-    double irradiance;  ///< positive, in units of intensity over squared distance
+    Vec3 direction;  ///< unit, towards it; zero: from all sides
+    double
+        irradiance;  ///< positive, in units of intensity over squared distance; what counts of it
 };
 
 class LampTree {
@@ -70,7 +72,8 @@ class LampTree {
     Pick pick(const Viewpoint& from, double u) const;
     /// Probability of that pick; zero for lights that are not in the tree.
     double pmf(const Viewpoint& from, std::uint32_t light) const;
-    /// The bound on what arrives from a light, up to a factor that all have in common.
+    /// What it is picked in proportion to: about what arrives from it, up to a factor that all have in
+    /// common, and zero only where nothing can.
     double importance(const Viewpoint& from, std::uint32_t light) const;
 
     std::uint64_t bytes() const;

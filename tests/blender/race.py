@@ -27,20 +27,6 @@ WIDTH, HEIGHT, EDGES, SEEDS, SECONDS = 320, 180, 8, (1, 2), (1, 5)
 SHOWN = ("area-lamps", "spots", "sky-image", "shaders", "copies-and-modifiers")
 
 
-def settings(scene):
-    render, cycles = scene.render, scene.cycles
-    render.resolution_x, render.resolution_y = WIDTH, HEIGHT
-    render.threads_mode, render.threads = "FIXED", os.cpu_count()
-    render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
-    render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
-    render.use_file_extension = False
-    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 1 << 20, False, False
-    cycles.pixel_filter_type, cycles.blur_glossy, cycles.sample_clamp_indirect = "BOX", 0, 0
-    # Cycles does not count the edge at the lens and that at the light.
-    for kind in ("max", "diffuse", "glossy", "transmission"):
-        setattr(cycles, kind + "_bounces", EDGES - 2)
-
-
 class Exporter(bpy.types.RenderEngine):
     """Blender gives what is to be rendered (and not what the viewport shows) to engines alone."""
     bl_idname, bl_label = "LACUNA_EXPORTER", "Exporter"
@@ -92,7 +78,8 @@ def race(name, program, out):
     """By seconds the noise of both, Lacuna's first, and a picture of each."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    settings(scene)
+    scenes.for_cycles(scene, WIDTH, HEIGHT, EDGES, samples=1 << 20)  # the time limit comes first
+    scene.render.threads_mode, scene.render.threads = "FIXED", os.cpu_count()
     scenes.SCENES[name][0]()
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT  # some scenes have their own
     scene.render.use_border = False
@@ -125,7 +112,7 @@ def save_sheet(path, found):
         path.write_bytes(textures.png((numpy.clip(numpy.concatenate(rows), 0, 1) * 255 + 0.5).astype(numpy.uint8)))
 
 
-def write_page(path, found, program):
+def write_page(path, found):
     day = datetime.date.today().isoformat()
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=Path(__file__).parent)
     lines = ["# Lacuna and Cycles after the same seconds", "",
@@ -157,7 +144,7 @@ def main():
             print(name, {s: tuple(round(v, 4) for v in of[:2]) for s, of in found[name].items()}, flush=True)
     save_sheet(out / "SHEET.png", found)
     if "--page" in options:
-        write_page(Path(options["--page"]), found, program)
+        write_page(Path(options["--page"]), found)
 
 
 main()

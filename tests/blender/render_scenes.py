@@ -32,28 +32,15 @@ def arguments():
     return archive, program, out, options.get("--only"), options.get("--page")
 
 
-def settings(scene):
-    render, cycles = scene.render, scene.cycles
-    render.resolution_x, render.resolution_y = 96, 72
-    render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
-    render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
-    scene.view_settings.view_transform = "Standard"
-    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 256, False, False
-    cycles.pixel_filter_type, cycles.blur_glossy, cycles.sample_clamp_indirect = "BOX", 0, 0
-    cycles.light_sampling_threshold = 0
-    # Cycles does not count the edge at the lens and that at the light.
-    for kind in ("max", "diffuse", "glossy", "transmission"):
-        setattr(cycles, kind + "_bounces", EDGES - 2)
-
-
 def make(name, out):
     """The .blend, and Cycles' picture of it."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    settings(scene)
+    scenes.for_cycles(scene, 96, 72, EDGES, samples=256)
+    scene.view_settings.view_transform = "Standard"
+    scene.cycles.light_sampling_threshold = 0
     scenes.SCENES[name][0]()
-    scene.render.filepath, scene.render.use_file_extension = str(out / f"{name}-cycles.exr"), False
+    scene.render.filepath = str(out / f"{name}-cycles.exr")
     bpy.ops.render.render(write_still=True)
     scene.render.filepath = str(out / f"{name}-lacuna.exr")
     bpy.ops.wm.save_as_mainfile(filepath=str(out / f"{name}.blend"))

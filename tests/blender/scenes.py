@@ -77,6 +77,21 @@ def ball(made, radius=0.5, **place):
     return add(bpy.ops.mesh.primitive_uv_sphere_add, made, smooth=True, radius=radius, segments=48, ring_count=24, **place)
 
 
+def for_cycles(scene, width, height, edges, samples):
+    """An .exr of that size by Cycles, of paths of up to so many edges, without what it does for looks or speed."""
+    render, cycles = scene.render, scene.cycles
+    render.engine = "CYCLES"
+    render.resolution_x, render.resolution_y = width, height
+    render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
+    render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
+    render.use_file_extension = False
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = samples, False, False
+    cycles.pixel_filter_type, cycles.blur_glossy, cycles.sample_clamp_indirect = "BOX", 0, 0
+    # Cycles does not count the edge at the lens and that at the light.
+    for kind in ("max", "diffuse", "glossy", "transmission"):
+        setattr(cycles, kind + "_bounces", edges - 2)
+
+
 def lamp(kind, location, to, energy, **settings):
     data = bpy.data.lights.new(kind.title(), kind)
     data.energy = energy

@@ -282,11 +282,11 @@ FAULTS = [
           {"bidir": "Labels.areThoseOfAWalkThatCameThisWay"}),
     Fault("film-variance-by-squares", "the film's variance of the mean by n^2",
           "libcore/bidir/film_sum.cpp",
-          "double(samples - 1)", "double(samples)",
+          "double(known - 1)", "double(known)",
           {"bidir": "Film.*"}),
     Fault("film-variance-of-a-sample", "the film's variance is that of one iteration",
           "libcore/bidir/film_sum.cpp",
-          "squares / (double(sum.iterations) * double(samples - 1))", "squares / double(samples - 1)",
+          "double(iterations) * double(known - 1)", "double(known - 1)",
           {"bidir": "Film.*"}),
 
     # Merging
