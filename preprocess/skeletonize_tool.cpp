@@ -61,7 +61,7 @@ int skeletonizeTool(int argc, char** argv) {
     Skeletonized result;
     std::string path;
     total.run("all", [&] {
-        phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
+        phases.run("load", [&] { stage = loadScene(options, LooksAt::Scene, pool, progress); });
         // Voxels of any resolution may be named, but of this scene.
         const Settings inputs = sceneInputs(stage);
         CacheStamp expected{inputs};

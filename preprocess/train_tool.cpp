@@ -148,7 +148,7 @@ int trainTool(int argc, char** argv) {
     WalkTraining walkTraining;
     std::string path, emissionPath, walkPath;
     total.run("all", [&] {
-        phases.run("load", [&] { stage = loadScene(options, Look::Camera, pool, progress); });
+        phases.run("load", [&] { stage = loadScene(options, LooksAt::Camera, pool, progress); });
         TrainingView view = trainingView(*stage.camera, stage.aspect, stage.limits, settings.paths);
         std::string emissionHash = kPlainEmission;
         EmissionFile learned;

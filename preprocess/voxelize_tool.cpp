@@ -39,7 +39,7 @@ int voxelizeTool(int argc, char** argv) {
     Voxelized result;
     std::string path;
     total.run("all", [&] {
-        phases.run("load", [&] { stage = loadScene(options, Look::Scene, pool, progress); });
+        phases.run("load", [&] { stage = loadScene(options, LooksAt::Scene, pool, progress); });
         const CacheStamp stamp = voxelStamp(sceneInputs(stage), settings);
         path = resultFile(options, stamp, "voxels.vdb");
         result = voxelizeScene(*stage.scene, settings, stamp, pool, interrupt.requested(), phases);

@@ -24,7 +24,7 @@ namespace lacuna {
 struct RenderReport {
     std::string commandLine;
     const MethodRow* method = nullptr;
-    std::optional<Choice> choice;  ///< where `auto` chose the method
+    std::optional<RowChoice> choice;  ///< where `auto` chose the method
     Settings settings;
     std::uint64_t seed = 1;
     Sampling sampling = Sampling::Independent;

@@ -45,19 +45,19 @@ void showFirst(const RenderOptions& options, const Image& small) {
 }
 
 /// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
-Choice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
-              const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress) {
-    if (!ranks.leads()) return Choice::ofText(textOf(ranks.wait()));
-    const auto found = [&]() -> Choice {
+RowChoice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
+                 const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress) {
+    if (!ranks.leads()) return RowChoice::ofText(textOf(ranks.wait()));
+    const auto found = [&]() -> RowChoice {
         if (!options.checkpoint.empty()) {
             const auto inputs = checkpointInputs(options.checkpoint);
-            if (inputs) return Choice::ofInputs(*inputs);
+            if (inputs) return RowChoice::ofInputs(*inputs);
         }
         const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["choose"]);
         return chooseMethod(options, stage, pool, interrupted, progress,
                             [&](const Image& small) { showFirst(options, small); });
     };
-    const Choice choice = found();
+    const RowChoice choice = found();
     progress.remark("auto: " + choice.method + ", " + choice.why +
                     "; the same by name: " + choice.byName());
     return choice;
@@ -92,7 +92,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
         look.emplace(*stage, pool);
     });
     if (!loaded) return std::nullopt;
-    std::optional<Choice> choice;
+    std::optional<RowChoice> choice;
     if (options.method == kAuto) {
         for (const bool leaders : {true, false}) {
             const bool chosen = ranks.agree([&] {

@@ -68,7 +68,7 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
 }  // namespace
 
 Session::Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-                 const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
+                 const std::optional<RowChoice>& choice, const Stage& stage, const Caches& caches,
                  const FirstLook& look, BlockMaker& maker, const Ranks& ranks,
                  const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress)
     : options_(options),

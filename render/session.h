@@ -28,7 +28,7 @@ class Session {
     /// All references must outlive the session. With more than one rank: on rank 0, while the others
     /// serve().
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
-            const std::optional<Choice>& choice, const Stage& stage, const Caches& caches,
+            const std::optional<RowChoice>& choice, const Stage& stage, const Caches& caches,
             const FirstLook& look, BlockMaker& maker, const Ranks& ranks, const ThreadPool& pool,
             const std::atomic<bool>& interrupted, Progress& progress);
     ~Session();

@@ -35,7 +35,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     const PixelRect crop = chooseCrop(options, filmOf(options, description));
 
     const MethodRow row = asSet(method, settings);
-    Stage stage{buildStage(std::move(description), options, Look::Camera, &row, pool, progress),
+    Stage stage{buildStage(std::move(description), options, LooksAt::Camera, &row, pool, progress),
                 {},
                 0.0,
                 {}};

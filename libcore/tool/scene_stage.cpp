@@ -182,7 +182,7 @@ SceneEffects chooseEffects(const SceneOptions& options, SceneDescription& scene,
     return effects;
 }
 
-SceneStage buildStage(SceneDescription description, const SceneOptions& options, Look look,
+SceneStage buildStage(SceneDescription description, const SceneOptions& options, LooksAt looksAt,
                       const MethodRow* method, const ThreadPool& pool, Progress& progress) {
     SceneStage stage;
     stage.phaseSeconds = description.phaseSeconds;
@@ -193,7 +193,7 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
     for (const std::string& text : description.warnings) warn(text);
 
     // Everything that may refuse the command line comes before the long work.
-    const bool looks = look == Look::Camera;
+    const bool looks = looksAt == LooksAt::Camera;
     const Camera::Film film = looks ? filmOf(options, description) : Camera::Film{};
     Camera::Lens lens = looks ? chooseLens(options, description) : Camera::Lens{};
     double radius = looks ? double(lens.radius) : lensRadius(options, description);
@@ -248,12 +248,12 @@ void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& 
     stage.effects.insert(stage.effects.end(), rows.begin(), rows.end());
 }
 
-SceneStage loadScene(const SceneOptions& options, Look look, const ThreadPool& pool,
+SceneStage loadScene(const SceneOptions& options, LooksAt looksAt, const ThreadPool& pool,
                      Progress& progress) {
     progress.phase("loading");
     SceneDescription description;
     pool.run([&] { description = describeScene(options); });
-    return buildStage(std::move(description), options, look, nullptr, pool, progress);
+    return buildStage(std::move(description), options, looksAt, nullptr, pool, progress);
 }
 
 }  // namespace lacuna

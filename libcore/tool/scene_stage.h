@@ -17,7 +17,7 @@
 namespace lacuna {
 
 /// What a tool looks at.
-enum class Look : std::uint8_t {
+enum class LooksAt : std::uint8_t {
     Scene,   ///< the scene alone: cameras are not asked for
     Camera,  ///< through the chosen camera
 };
@@ -69,7 +69,7 @@ SceneEffects chooseEffects(const SceneOptions& options, SceneDescription& scene,
 
 /// Applies the options to what describeScene() gave, and builds. `method` may be null. Warnings go
 /// to `progress` as well. Throws InputError, UsageError, RunError.
-SceneStage buildStage(SceneDescription description, const SceneOptions& options, Look look,
+SceneStage buildStage(SceneDescription description, const SceneOptions& options, LooksAt looksAt,
                       const MethodRow* method, const ThreadPool& pool, Progress& progress);
 
 /// Puts the techniques of `method`, as far as effects were not forced, in place of those that the
@@ -77,7 +77,7 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
 void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& method);
 
 /// describeScene() in the pool's threads and buildStage(), for tools without a method.
-SceneStage loadScene(const SceneOptions& options, Look look, const ThreadPool& pool,
+SceneStage loadScene(const SceneOptions& options, LooksAt looksAt, const ThreadPool& pool,
                      Progress& progress);
 
 }  // namespace lacuna

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-std::string Choice::byName() const {
+std::string RowChoice::byName() const {
     std::string text = "--method " + method;
     const MethodRow& row = findMethod(method);
     if (!needsOf(row, resolve(row, assignments)).empty()) text += " --prepare";
@@ -15,7 +15,7 @@ std::string Choice::byName() const {
     return text + " --sampler " + nameOf(sampling);
 }
 
-nlohmann::json Choice::json() const {
+nlohmann::json RowChoice::json() const {
     nlohmann::json parameters = nlohmann::json::object();
     for (const std::string& a : assignments) {
         const std::size_t equals = a.find('=');
@@ -27,7 +27,7 @@ nlohmann::json Choice::json() const {
     return j;
 }
 
-std::string Choice::text() const {
+std::string RowChoice::text() const {
     return nlohmann::json{{"method", method},
                           {"set", assignments},
                           {"sampler", nameOf(sampling)},
@@ -36,18 +36,18 @@ std::string Choice::text() const {
         .dump();
 }
 
-Choice Choice::ofText(const std::string& text) {
+RowChoice RowChoice::ofText(const std::string& text) {
     const nlohmann::json j = nlohmann::json::parse(text);
     return {j.at("method"), j.at("set"), parseSampler(j.at("sampler")), j.at("why"),
             j.at("speeds")};
 }
 
-Choice Choice::ofInputs(const CacheStamp& inputs) {
+RowChoice RowChoice::ofInputs(const CacheStamp& inputs) {
     const auto value = [&](const std::string& name) {
         const auto found = inputs.inputs.find(name);
         return found == inputs.inputs.end() ? std::string{} : found->second;
     };
-    Choice choice{
+    RowChoice choice{
         value("method"), {}, parseSampler(value("sampler")), "as the checkpoint has it", {}};
     const MethodRow& row = findMethod(choice.method, "the checkpoint's method");
     for (const Option& option : row.options) {

@@ -15,7 +15,7 @@ namespace lacuna {
 /// The name that is no row's: a row is chosen for the scene.
 inline constexpr const char* kAuto = "auto";
 
-struct Choice {
+struct RowChoice {
     std::string method;                    ///< a row's name
     std::vector<std::string> assignments;  ///< "name=value", as --set takes them
     Sampling sampling = Sampling::Independent;
@@ -30,9 +30,9 @@ struct Choice {
 
     /// As other ranks are told.
     std::string text() const;
-    static Choice ofText(const std::string& text);
+    static RowChoice ofText(const std::string& text);
     /// What a checkpoint is of: its inputs name the row and its settings.
-    static Choice ofInputs(const CacheStamp& inputs);
+    static RowChoice ofInputs(const CacheStamp& inputs);
 };
 
 }  // namespace lacuna

@@ -104,7 +104,7 @@ class Pilot {
           const std::atomic<bool>& cancel, Progress& progress)
         : options_(options), stage_(stage), pool_(pool), cancel_(cancel), progress_(progress) {}
 
-    Choice choose(const std::function<void(const Image&)>& show) {
+    RowChoice choose(const std::function<void(const Image&)>& show) {
         sizeUp();
         show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
         for (const Row& row : std::span(kRows).subspan(1)) {
@@ -250,7 +250,7 @@ class Pilot {
         }
     }
 
-    Choice best() const {
+    RowChoice best() const {
         const Tried& bpt = tried_.front();
         std::size_t usual = 0;  // bpt, where the usual one was not tried
         std::vector<Verdict> verdicts;
@@ -259,7 +259,7 @@ class Pilot {
             if (tried_[i].row->name() == kUsual) usual = i;
         }
         const Tried& chosen = tried_[rowToTake(verdicts, usual)];
-        Choice choice{
+        RowChoice choice{
             chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(), "", {}};
         // Where nothing was seen all are alike.
         const auto speed = [&](const Tried& t) {
@@ -300,9 +300,9 @@ std::string triedMethods() {
     return joined(kRows, ", ", &Row::name);
 }
 
-Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
-                    const std::atomic<bool>& cancel, Progress& progress,
-                    const std::function<void(const Image&)>& show) {
+RowChoice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
+                       const std::atomic<bool>& cancel, Progress& progress,
+                       const std::function<void(const Image&)>& show) {
     progress.phase(kPhase, kNothingWritten);
     if (stage.scene->lights().empty()) return {"pt", {}, options.sampling, "there is no light", {}};
     return Pilot(options, stage, pool, cancel, progress).choose(show);

@@ -20,8 +20,8 @@ std::string triedMethods();
 /// all. With --time the clock has a say; else the choice is a function of the command and the scene. Caches of candidates that are trained are
 /// read or made, and stay. `show` is called with the first small picture, as large as the one that
 /// is asked for: something to look at within a second. Throws Error 130 once `cancel` is set.
-Choice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
-                    const std::atomic<bool>& cancel, Progress& progress,
-                    const std::function<void(const Image&)>& show);
+RowChoice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
+                       const std::atomic<bool>& cancel, Progress& progress,
+                       const std::function<void(const Image&)>& show);
 
 }  // namespace lacuna

@@ -231,8 +231,9 @@ TEST(Judge, KeepsTheUsualRowUnlessAnotherIsClearlyBetter) {
 }
 
 TEST(Choices, TravelAsText) {
-    const Choice choice{"spcbpt", {"train.paths=4000"}, Sampling::Sobol, "because", {{"bpt", 1.0}}};
-    const Choice read = Choice::ofText(choice.text());
+    const RowChoice choice{
+        "spcbpt", {"train.paths=4000"}, Sampling::Sobol, "because", {{"bpt", 1.0}}};
+    const RowChoice read = RowChoice::ofText(choice.text());
     EXPECT_EQ(read.json(), choice.json());
     EXPECT_EQ(choice.byName(), "--method spcbpt --prepare --set train.paths=4000 --sampler sobol");
 }
