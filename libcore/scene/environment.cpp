@@ -56,6 +56,7 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
     cells_ = DiscreteDistribution(weights);
     if (black()) return;
+    even_ = image_.size() == 1;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const double evenly = rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
         contrast_ += std::max(0.0, cells_.pmf(i) - evenly);
@@ -133,7 +134,16 @@ Environment::Sample Environment::sample(double uCell, float u1, float u2) const 
     return inCell(cells_.sample(uCell), u1, u2);
 }
 
+/// What sampleSquare does where there is one texel.
+Environment::Sample Environment::onSphere(double across, double down) const {
+    const double cosine = 1.0 - 2.0 * down;
+    const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
+    const SineCosine longitude = sineCosineOfTurns(float(across) + turn_);
+    return {{sine * longitude.sine, float(cosine), -sine * longitude.cosine}, kEvenPdfW};
+}
+
 Environment::Sample Environment::sampleSquare(double across, double down) const {
+    if (even_) return onSphere(across, down);
     const auto width = std::size_t(width_);
     const std::size_t row = cells_.sample(down).index / width;
     const double begin = cells_.before(row * width), end = cells_.before((row + 1) * width);

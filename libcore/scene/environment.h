@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libcore/base/discrete.h"
+#include "libcore/base/sampling.h"
 #include "libcore/base/square_density.h"
 #include "libcore/base/vec.h"
 #include "libcore/image/image.h"
@@ -18,15 +19,20 @@ class Environment {
     /// for an empty image or negative or non-finite texels, naming `file`.
     Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
 
-    Rgb radiance(Vec3 direction) const { return radianceAt(placeOf(direction)); }
+    Rgb radiance(Vec3 direction) const {
+        return even_ ? image_[0] : radianceAt(placeOf(direction));
+    }
     /// Density of `sample` at `direction`, per solid angle; 0 for a black map.
-    float pdfW(Vec3 direction) const { return pdfWAt(placeOf(direction), direction); }
+    float pdfW(Vec3 direction) const {
+        return even_ ? kEvenPdfW : pdfWAt(placeOf(direction), direction);
+    }
     /// Both.
     struct Seen {
         Rgb radiance;
         float pdfW;
     };
     Seen seen(Vec3 direction) const {
+        if (even_) return {image_[0], kEvenPdfW};
         const Place place = placeOf(direction);
         return {radianceAt(place), pdfWAt(place, direction)};
     }
@@ -62,6 +68,8 @@ class Environment {
         const Rgb &leftAbove, &rightAbove, &leftBelow, &rightBelow;
     };
     Corners cornersOf(int x, int y) const;
+    static constexpr float kEvenPdfW = 0.25f / kPi;
+    Sample onSphere(double across, double down) const;
     Rgb radianceAt(const Place& place) const;
     float pdfWAt(const Place& place, Vec3 direction) const;
     double shareBelow(int y, Vec3 direction) const;
@@ -78,7 +86,8 @@ class Environment {
     DiscreteDistribution cells_;
     Rgb integral_;
     double contrast_ = 0.0;
-    float turn_;  ///< rotation as a fraction of a whole turn
+    bool even_ = false;  ///< one texel that is not black: the same from everywhere
+    float turn_;         ///< rotation as a fraction of a whole turn
 };
 
 }  // namespace lacuna

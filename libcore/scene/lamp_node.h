@@ -42,8 +42,16 @@ struct alignas(32) LampTree::Node {
 struct LampTree::Shares {
     Node::Lanes weights{};
     double sum = 0.0;
+    bool dark = false;  ///< none can send anything: they are picked by intensity
 
     double operator[](std::size_t i) const { return double(weights[i]) / sum; }
+};
+
+/// Of the choice between the tree and the lights at infinity: the tree's, and all together.
+struct LampTree::Roots {
+    Shares node;  ///< of the tree's first node, if there is one
+    double tree = 1.0, sum = 1.0;
+    bool even = false;  ///< nothing can arrive: all are alike
 };
 
 /// What a node has of its lights.

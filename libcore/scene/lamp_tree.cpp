@@ -77,34 +77,47 @@ LampTree::Shares LampTree::Node::shares(const Viewpoint& from) const {
     weigh(from, result.weights);
     for (const float w : result.weights) result.sum += double(w);
     if (result.sum > 0.0) return result;
+    result.dark = true;
     result.weights = intensity;
     for (const float w : result.weights) result.sum += double(w);
     return result;
 }
 
-double LampTree::importanceOf(const Distant& light, const Viewpoint& from) {
-    if (from.side == Vec3{} || light.direction == Vec3{}) return double(light.irradiance);
-    const float cosine = dot(from.side, light.direction);
-    return cosine > 0.0f ? double(light.irradiance) * double(cosine) : 0.0;
+/// By the cosine of the direction that is closest to the side, which is positive unless all are
+/// behind it.
+double LampTree::importanceOf(const Bundle& bundle, const Viewpoint& from) {
+    if (from.side == Vec3{} || bundle.axis == Vec3{}) return bundle.irradiance;
+    const float c = dot(from.side, bundle.axis);
+    if (c >= bundle.cosine) return bundle.irradiance;
+    const float s = std::sqrt(std::max(0.0f, 1.0f - c * c));
+    return bundle.irradiance * double(std::max(0.0f, c * bundle.cosine + s * bundle.sine));
 }
 
 LampTree::Roots LampTree::roots(const Viewpoint& from) const {
-    if (distant_.empty()) return {1.0, 1.0, false};
-    double tree = 0.0;
-    if (!nodes_.empty()) {
-        Node::Lanes weights;
-        nodes_[0].weigh(from, weights);
-        for (const float w : weights) tree += double(w);
-    }
-    double sum = tree;
-    for (const Distant& d : distant_) sum += importanceOf(d, from);
-    if (sum > 0.0) return {tree, sum, false};
-    const double ofTree = nodes_.empty() ? 0.0 : 1.0;
-    return {ofTree, ofTree + double(distant_.size()), true};
+    Roots roots;
+    if (!nodes_.empty()) roots.node = nodes_[0].shares(from);
+    if (distant_.empty()) return roots;
+    roots.tree = roots.node.dark ? 0.0 : roots.node.sum;
+    roots.sum = roots.tree;
+    for (const Bundle& b : bundles_) roots.sum += importanceOf(b, from);
+    if (roots.sum > 0.0) return roots;
+    roots.even = true;
+    roots.tree = nodes_.empty() ? 0.0 : 1.0;
+    roots.sum = roots.tree + double(bundles_.size());
+    return roots;
 }
 
-double LampTree::shareOf(const Roots& roots, const Distant& light, const Viewpoint& from) {
-    return (roots.even ? 1.0 : importanceOf(light, from)) / roots.sum;
+double LampTree::shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from) {
+    return (roots.even ? 1.0 : importanceOf(bundle, from)) / roots.sum;
+}
+
+/// `pmf`: of the bundle.
+LampTree::Pick LampTree::pickIn(const Bundle& bundle, double pmf, double u) const {
+    const auto begin = distant_.begin() + bundle.begin, end = distant_.begin() + bundle.end;
+    const auto behind = std::upper_bound(begin + 1, end, u,
+                                         [](double x, const Distant& d) { return x < d.before; });
+    const Distant& found = *(behind - 1);
+    return {found.light, pmf * found.share, below1((u - found.before) / found.share)};
 }
 
 LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
@@ -115,18 +128,18 @@ LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
         u -= pmf;
         // The last one that can be picked at all has what rounding leaves over.
         Pick found{};
-        for (const Distant& d : distant_) {
-            const double p = shareOf(top, d, from);
+        for (const Bundle& b : bundles_) {
+            const double p = shareOf(top, b, from);
             if (!(p > 0.0)) continue;
-            found = {d.light, p, below1(u / p)};
+            found = pickIn(b, p, below1(u / p));
             if (u < p) break;
             u -= p;
         }
         return found;
     }
     u = below1(u / pmf);
+    Shares shares = top.node;
     for (const Node* node = &nodes_[0];;) {
-        const Shares shares = node->shares(from);
         std::size_t chosen = 0;
         double rest = u * shares.sum;
         for (std::size_t i = 0; i < Node::kWidth; ++i) {
@@ -140,6 +153,7 @@ LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
         u = below1(rest / double(shares.weights[chosen]));
         if (node->child[chosen] != 0) {
             node = &nodes_[node->child[chosen]];
+            shares = node->shares(from);
             continue;
         }
         const Leaf& leaf = leaves_[node->begin[chosen]];
@@ -155,15 +169,19 @@ double LampTree::pmf(const Viewpoint& fileFrom, std::uint32_t light) const {
     if (place == kNone) return 0.0;
     const Viewpoint from = scaled(fileFrom);
     const Roots top = roots(from);
-    if (place >= leaves_.size()) return shareOf(top, distant_[place - leaves_.size()], from);
+    if (place >= leaves_.size()) {
+        const Distant& d = distant_[place - leaves_.size()];
+        return shareOf(top, bundles_[d.bundle], from) * d.share;
+    }
     double pmf = top.tree / top.sum;
-    std::uint32_t next = 0;
-    do {
-        const Node& node = nodes_[next];
-        const std::size_t child = node.childOf(place);
-        pmf *= node.shares(from)[child];
-        next = node.child[child];
-    } while (next != 0 && pmf > 0.0);
+    Shares shares = top.node;
+    for (const Node* node = &nodes_[0];;) {
+        const std::size_t child = node->childOf(place);
+        pmf *= shares[child];
+        if (node->child[child] == 0 || !(pmf > 0.0)) break;
+        node = &nodes_[node->child[child]];
+        shares = node->shares(from);
+    }
     return pmf * leaves_[place].shareOf(light);
 }
 
@@ -171,7 +189,10 @@ double LampTree::importance(const Viewpoint& fileFrom, std::uint32_t light) cons
     const std::uint32_t place = placeOf_[light];
     if (place == kNone) return 0.0;
     const Viewpoint from = scaled(fileFrom);
-    if (place >= leaves_.size()) return importanceOf(distant_[place - leaves_.size()], from);
+    if (place >= leaves_.size()) {
+        const Distant& d = distant_[place - leaves_.size()];
+        return importanceOf(bundles_[d.bundle], from) * d.share;
+    }
     const Node* node = &nodes_[0];
     std::size_t child = node->childOf(place);
     while (node->child[child] != 0) {
@@ -185,7 +206,7 @@ double LampTree::importance(const Viewpoint& fileFrom, std::uint32_t light) cons
 
 std::uint64_t LampTree::bytes() const {
     return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) +
-           placeOf_.size() * sizeof(std::uint32_t);
+           placeOf_.size() * sizeof(std::uint32_t) + distant_.size() * sizeof(Distant);
 }
 
 LampTree::LampTree() = default;

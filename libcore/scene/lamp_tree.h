@@ -4,7 +4,8 @@
 // children, which are weighed at once. (theory.md, "Lamps that are seen")
 //
 // Lights with a place are the tree's leaves; lights at infinity stand beside its root, weighed by
-// their irradiance. A pick goes down one path, and so does the question for its probability: both
+// their irradiance: those in about one direction as one, as a sun that has a size is made of many.
+// A pick goes down one path, and so does the question for its probability: both
 // take the same numbers in the same order, so that they agree in every bit.
 #pragma once
 
@@ -88,28 +89,33 @@ class LampTree {
         double share;  ///< of the light; the rest is that of the next one
         double shareOf(std::uint32_t l) const { return l == light ? share : 1.0 - share; }
     };
+    /// Lights at infinity in about one direction, in a row; they are picked by irradiance.
+    struct Bundle {
+        Vec3 axis{};                       ///< unit; zero: from all sides
+        float cosine = 1.0f, sine = 0.0f;  ///< of the angle that none is further from the axis by
+        double irradiance = 0.0;
+        std::uint32_t begin = 0, end = 0;
+    };
     struct Distant {
-        std::uint32_t light;
-        Vec3 direction;
-        float irradiance;
+        std::uint32_t light, bundle;
+        double before, share;  ///< of its bundle: those in front of it, its own
     };
 
     Viewpoint scaled(const Viewpoint& from) const { return {from.position * toUnits_, from.side}; }
     void build(std::vector<PlacedLight>& lights);
-    static double importanceOf(const Distant& light, const Viewpoint& from);
+    void add(const DistantLight& light, double irradiance, ShiningCone& cone);
+    static double importanceOf(const Bundle& bundle, const Viewpoint& from);
 
-    /// Of the choice between the tree and the lights at infinity: the tree's, and all together.
-    struct Roots {
-        double tree, sum;
-        bool even;  ///< nothing can arrive: all are alike
-    };
+    struct Roots;
     Roots roots(const Viewpoint& from) const;
-    static double shareOf(const Roots& roots, const Distant& light, const Viewpoint& from);
+    static double shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from);
+    Pick pickIn(const Bundle& bundle, double pmf, double u) const;
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<std::uint32_t> placeOf_;  // by light: its leaf, then those at infinity
     std::vector<Distant> distant_;
+    std::vector<Bundle> bundles_;
     float toUnits_ = 1.0f;  // lengths to those of the tree: a power of two
 };
 

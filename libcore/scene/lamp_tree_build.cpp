@@ -14,6 +14,11 @@ constexpr double kPiD = std::numbers::pi;
 constexpr int kBuckets = 12;  // [Pharr23 12.6.3]
 /// Boxes are so much larger than they are, in units of the scene's size: rounding.
 constexpr float kRounding = 0x1p-21f;
+/// Radians that lights of a bundle are from its axis at most: the size of a sun, of which all or none
+/// are above a surface nearly everywhere.
+constexpr double kBundle = 0.2;
+/// What the directions of a bundle are off by rounding at most, in radians.
+constexpr double kRoundingOfAngles = 1e-5;
 
 Vec3 centreOf(const PlacedLight& l) {
     return (l.low + l.high) * 0.5f;
@@ -118,13 +123,39 @@ LampTree::LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight
         l.intensity = std::max(kLeast, l.intensity / total);
     }
     const double units = double(toUnits_);
+    ShiningCone cone;
     for (const DistantLight& l : distant) {
         const double relative = l.irradiance / (total * units) / units;
         constexpr double kMost = 1e30;
         placeOf_[l.light] = std::uint32_t(placed.size() + distant_.size());
-        distant_.push_back({l.light, l.direction, float(std::clamp(relative, kLeast, kMost))});
+        add(l, std::clamp(relative, kLeast, kMost), cone);
+    }
+    for (Distant& d : distant_) {
+        d.before /= bundles_[d.bundle].irradiance;
+        d.share /= bundles_[d.bundle].irradiance;
     }
     if (!placed.empty()) build(placed);
+}
+
+/// To the last bundle, whose directions fill `cone`, or to one of its own.
+void LampTree::add(const DistantLight& light, double irradiance, ShiningCone& cone) {
+    const ShiningCone own{Vec3d(light.direction)};
+    ShiningCone joined = cone;
+    joined.add(own);
+    const bool isSky = light.direction == Vec3{};
+    const bool fits =
+        !isSky && !bundles_.empty() && !(bundles_.back().axis == Vec3{}) && joined.angle <= kBundle;
+    cone = fits ? joined : own;
+    if (!fits) bundles_.push_back({.begin = std::uint32_t(distant_.size())});
+    Bundle& bundle = bundles_.back();
+    const double angle = cone.angle > 0.0 ? cone.angle + kRoundingOfAngles : 0.0;
+    bundle.axis = Vec3(cone.axis);
+    bundle.cosine = float(std::cos(angle));
+    bundle.sine = float(std::sin(angle));
+    distant_.push_back(
+        {light.light, std::uint32_t(bundles_.size() - 1), bundle.irradiance, irradiance});
+    bundle.irradiance += irradiance;
+    bundle.end = std::uint32_t(distant_.size());
 }
 
 /// Leaves in a row.

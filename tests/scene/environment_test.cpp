@@ -258,6 +258,26 @@ TEST(Environment, SquaresAndDirectionsAreEachOthersInverse) {
     }
 }
 
+/// What is quicker of one texel than of many is the same.
+TEST(Environment, ATexelIsAsGoodAsTwoOfIt) {
+    const Rgb grey(0.5f, 3.0f, 1.0f);
+    const Environment one(Image(1, 1, grey), 2, -70, "one"), two(Image(1, 2, grey), 2, -70, "two");
+    Rng rng(9, 0, StreamKind::User, 0);
+    for (int i = 0; i < 2000; ++i) {
+        const double across = rng.uniformDouble(), down = rng.uniformDouble();
+        const Environment::Sample a = one.sampleSquare(across, down),
+                                  b = two.sampleSquare(across, down);
+        EXPECT_LT(length(Vec3d(a.direction) - Vec3d(b.direction)), 2e-6);
+        EXPECT_NEAR(a.pdfW, b.pdfW, 1e-6f);
+        EXPECT_EQ(a.pdfW, one.pdfW(a.direction));
+        EXPECT_EQ(a.pdfW, one.seen(a.direction).pdfW);
+        expectNear(one.radiance(a.direction), two.seen(b.direction).radiance, 1e-6f);
+        const SquarePoint back = one.squareOf(a.direction);
+        EXPECT_NEAR(back[0], across, 2e-3) << down;
+        EXPECT_NEAR(back[1], down, 1e-4);
+    }
+}
+
 TEST(Environment, RefusesWhatIsNoRadiance) {
     Image image(4, 3, Rgb(1.0f));
     EXPECT_TRUE(Environment(Image(4, 3), 1, 0, "black").black());

@@ -63,6 +63,12 @@ class SomeLights {
         sky_ = std::make_unique<Environment>(image, 1.0, 0.0, "sky");
         punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.3f)));
         punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.2f)));
+        // A sun of a size, which the tree knows as one.
+        const Vec3 middle = direction();
+        for (int i = 0; i < 20; ++i) {
+            punctual.push_back(directionalLight(Vec3d(normalize(middle + direction() * 0.1f)),
+                                                Rgb(between(0.001f, 0.02f))));
+        }
     }
     Lights lights() const { return Lights(triangles, punctual, {}, sky_.get(), 2.0f); }
 
@@ -231,6 +237,26 @@ TEST(LampTree, trianglesOfABallArePickedByWhatTheySend) {
         squares += sent * sent / pmf;
     }
     EXPECT_LT(squares / (sum * sum) - 1.0, 0.2);
+}
+
+// Those that lie about one direction are picked by what they send wherever all of them are above the
+// side, and each is picked where it alone is.
+TEST(LampTree, sunsAboutOneDirectionArePickedByWhatTheySend) {
+    std::vector<PunctualLight> suns;
+    for (int i = 0; i < 64; ++i) {
+        const double turn = 2.4 * i, off = 0.01 * std::sqrt(double(i));
+        suns.push_back(directionalLight({off * std::cos(turn), -1.0, off * std::sin(turn)},
+                                        Rgb(0.5f + 0.01f * float(i))));
+    }
+    const Lights lights({}, suns, {}, nullptr, 1.0f);
+    const Viewpoint high{{}, normalize(Vec3{0.5f, 1.0f, -0.2f})};
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+        EXPECT_NEAR(lights.tree().pmf(high, l), lights.pmf(l), 1e-6);
+    }
+    const Viewpoint grazing{{}, normalize(Vec3{1.0f, -0.075f, 0.0f})};
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+        EXPECT_GT(lights.tree().pmf(grazing, l), 0.0);
+    }
 }
 
 // Walks that go on by a BSDF find a sky that is the same everywhere as well as next event does.
