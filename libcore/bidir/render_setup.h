@@ -39,7 +39,7 @@ struct RenderSetup {
           settings(settings_),
           threads(threads_),
           walker(scene_, settings.guides, camera_, settings_.limits),
-          sampler(settings_.sampling, settings_.seed, settings_.blockIterations),
+          sampler(settings_.sampling, settings_.seed),
           lightPaths(settings_.lightPaths ? settings_.lightPaths : filmPixels()) {}
 
     RenderSetup(const RenderSetup&) = delete;

@@ -6,11 +6,8 @@ namespace lacuna {
 
 namespace {
 
-/// Iterations that a sequence lasts, unless its block ends before: errors fall the faster, the longer
-/// it is, up to about here.
-constexpr std::uint64_t kSequence = 64;
-/// Variances are told by whole groups: a render of 64 iterations has eight. Those of one sequence are
-/// further apart than independent ones.
+/// Variances are told by whole groups: a render of 64 iterations has eight. They are further apart
+/// than independent ones.
 constexpr std::uint64_t kGroup = 8;
 
 std::uint32_t dimensionsOf(StreamKind kind) {
@@ -36,10 +33,8 @@ Rng Sampler::stream(std::uint32_t iteration, StreamKind kind, std::uint64_t inde
     Rng rng(seed_, iteration, kind, index);
     const std::uint32_t dimensions = dimensionsOf(kind);
     if (sampling_ == Sampling::Independent || dimensions == 0) return rng;
-    const std::uint64_t place = iteration % blockIterations_ % kSequence, first = iteration - place;
-    const std::uint64_t ofSequence = mixBits(mixBits(seed_) ^ first);
-    rng.follow({mixBits(ofSequence ^ (std::uint64_t(kind) << 56 | index)), std::uint32_t(place),
-                dimensions});
+    const std::uint64_t stream = std::uint64_t(kind) << 56 | index;
+    rng.follow({mixBits(mixBits(mixBits(seed_)) ^ stream), iteration, dimensions});
     return rng;
 }
 

@@ -8,7 +8,7 @@
 namespace lacuna {
 
 enum class Sampling {
-    Sobol,        ///< even over the iterations of a sequence
+    Sobol,        ///< even over the iterations
     Independent,  ///< all of them independent
 };
 /// As --sampler names it.
@@ -37,20 +37,19 @@ constexpr std::uint32_t ofPicks(std::uint32_t t) {
 
 class Sampler {
   public:
-    /// `blockIterations`: of a block; sequences begin anew with each.
-    Sampler(Sampling sampling, std::uint64_t seed, std::uint64_t blockIterations)
-        : sampling_(sampling), seed_(seed), blockIterations_(blockIterations) {}
+    Sampler(Sampling sampling, std::uint64_t seed) : sampling_(sampling), seed_(seed) {}
 
-    /// Iterations of a group, a power of two: streams of one kind and index are even over them. What
-    /// they spread by is what variances are told by (theory.md, "Even numbers").
+    /// Iterations of a group, a power of two: what they spread by is what variances are told by
+    /// (theory.md, "Even numbers").
     static std::uint64_t groupOf(Sampling sampling);
 
-    /// A stream of an iteration, even where its kind has dimensions.
+    /// A stream of an iteration; where its kind has dimensions, even with those of its kind and index of
+    /// all others.
     Rng stream(std::uint32_t iteration, StreamKind kind, std::uint64_t index) const;
 
   private:
     Sampling sampling_;
-    std::uint64_t seed_, blockIterations_;
+    std::uint64_t seed_;
 };
 
 }  // namespace lacuna

@@ -11,6 +11,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/rng.h"
 #include "libcore/bidir/film.h"
+#include "libcore/bidir/sampler.h"
 #include "libcore/image/error_metrics.h"
 
 namespace lacuna::test {
@@ -46,6 +47,11 @@ struct Said {
     double ratio() const { return truth.mape / estimate.mape.error; }
 };
 
+ErrorMeasures errorOf(const FilmSum& sum) {
+    const ErrorReference reference(Image(kWidth, kHeight, Rgb(1.0f)));
+    return reference.compare(sum.image(kWidth, kHeight));
+}
+
 /// The picture after `iterations`, each pixel drawn by itself and `shared`, if there is one, added
 /// to bands of 32 columns of an iteration's pixels.
 Said said(int iterations, std::uint64_t seed, const Draw& draw, const Draw& shared = {},
@@ -65,8 +71,7 @@ Said said(int iterations, std::uint64_t seed, const Draw& draw, const Draw& shar
         film.add(pixels, threads);
     }
     const FilmSum sum = film.sum();
-    const ErrorReference reference(Image(kWidth, kHeight, Rgb(1.0f)));
-    return {estimateError(sum, meter, &threads), reference.compare(sum.image(kWidth, kHeight))};
+    return {estimateError(sum, meter, &threads), errorOf(sum)};
 }
 
 TEST(ErrorEstimate, meetsTheErrorOfNoise) {
@@ -79,6 +84,35 @@ TEST(ErrorEstimate, meetsTheErrorOfNoise) {
         EXPECT_NEAR(s.ratio(), 0.94, 0.04);
         EXPECT_NEAR(s.truth.rmse / s.estimate.rmse.error, 0.94, 0.04);
         EXPECT_NEAR(s.truth.relmse / s.estimate.relmse.error, 0.93, 0.07);
+    }
+}
+
+// Halves of a sequence are further apart than their mean is from the truth: an edge through the pixel,
+// alone and beside noise that no numbers make even.
+TEST(ErrorEstimate, meetsTheErrorOfEvenNumbers) {
+    const ThreadPool threads(1);
+    const ErrorMeter meter(even(kWidth, kHeight));
+    for (const float independent : {0.0f, 0.1f}) {
+        for (const int n : {64, 80, 128, 512}) {
+            SCOPED_TRACE(std::to_string(independent) + " after " + std::to_string(n));
+            const Sampler sampler(Sampling::Sobol, 7);
+            Film film(kWidth, kHeight, {});
+            film.measure(meter);
+            std::vector<Rgb> pixels(std::size_t(kWidth) * kHeight);
+            for (std::uint32_t i = 0; i < std::uint32_t(n); ++i) {
+                for (std::size_t p = 0; p < pixels.size(); ++p) {
+                    Rng rng = sampler.stream(i, StreamKind::EyePath, p);
+                    const auto [u, v] = rng.evenPair();
+                    pixels[p] = Rgb((u + v < 1.0f ? 1.5f : 0.5f) + independent * normal(rng));
+                }
+                film.add(pixels, threads);
+            }
+            const FilmSum sum = film.sum();
+            const ErrorEstimate estimate = estimateError(sum, meter, &threads);
+            EXPECT_EQ(estimate.mape.doubt, "");
+            EXPECT_LT(errorOf(sum).mape / estimate.mape.error, 1.0);
+            EXPECT_GT(errorOf(sum).mape / estimate.mape.error, 0.75) << "halves alone: 0.6";
+        }
     }
 }
 
