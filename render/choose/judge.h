@@ -27,7 +27,7 @@ double errorWithout(std::span<const Rgb> part, const HalfPictures& picture, int 
 /// What a trial found of a row.
 struct Verdict {
     double error = 0.0;  ///< mape of its small picture
-    double loss = 0.0;   ///< time to a given error, in units that only compare
+    double loss = 0.0;   ///< its squared error at the end of the render
 };
 
 /// The row to take: the usual one where none is clearly better. Where trials met hardly any light,
