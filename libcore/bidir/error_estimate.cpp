@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "libcore/base/parallel.h"
+#include "libcore/bidir/half_models.h"
 
 namespace lacuna {
 namespace {
@@ -30,8 +31,6 @@ constexpr std::uint64_t kFewestSamples = 16;
 constexpr double kFewestPaths = 1 << 17;
 /// How many standard deviations of the picture's own error are added to what is said: 19 of 20.
 constexpr double kCaution = 1.645;
-/// What is smooth in a pixel's area falls by m^(-1) and faster; nothing is promised of it.
-constexpr double kSteepest = 1.0;
 /// Where so much of the error is borne by so few that it may be anything.
 constexpr double kMostUneven = 0.2;
 /// Of the error, by the unevenness of its square: spikes of which the largest few carry the square
@@ -183,109 +182,13 @@ double ErrorMeter::overSquare(const FilmSum& sum, std::span<const float> values,
 
 namespace {
 
-double h(const HalfDifference& d) {
-    return d.sum / double(d.nodes);
-}
-
-/// h(m) = g m^(-1/2) + c: noise that falls, and rare spikes that do not.
-struct Model {
-    double g = 0.0, c = 0.0;
-};
-
-/// Least squares of relative distances, a node a measurement.
-Model fit(std::span<const HalfDifference> sizes) {
-    double xx = 0.0, x1 = 0.0, one = 0.0, xh = 0.0, h1 = 0.0;
-    for (const HalfDifference& d : sizes) {
-        const double x = 1.0 / std::sqrt(double(d.iterations)), y = h(d);
-        if (!(y > 0.0)) continue;
-        const double w = double(d.nodes) / (y * y);
-        xx += w * x * x;
-        x1 += w * x;
-        one += w;
-        xh += w * x * y;
-        h1 += w * y;
-    }
-    const double determinant = xx * one - x1 * x1;
-    Model m;
-    if (determinant > 0.0)
-        m = {(xh * one - h1 * x1) / determinant, (h1 * xx - xh * x1) / determinant};
-    if (xx > 0.0 && m.c <= 0.0) m = {xh / xx, 0.0};
-    if (one > 0.0 && m.g < 0.0) m = {0.0, h1 / one};
-    return m;
-}
-
-/// Means of nodes of m iterations whose numbers are even have the variance c m^(-2a): another c for
-/// even powers of two than for odd ones, as 4^k points fill squares. Their halves then differ by
-/// h(m)^2 = v(m/2) - v(m).
-class EvenModel {
-  public:
-    /// `scatter`: of the nodes' h. a is the least that they do not speak against.
-    EvenModel(std::span<const HalfDifference> sizes, double scatter)
-        : exponent_(exponentOf(sizes, scatter)) {
-        double logs[2] = {}, nodes[2] = {};
-        for (const HalfDifference& d : sizes) {
-            if (!(d.sum > 0.0)) continue;
-            const std::size_t odd = oddness(d.iterations);
-            logs[odd] += double(d.nodes) * (std::log(h(d)) + exponent_ * std::log(d.iterations));
-            nodes[odd] += double(d.nodes);
-        }
-        if (!(nodes[0] > 0.0 && nodes[1] > 0.0)) return;
-        const double q = std::exp2(2.0 * exponent_);
-        const double even = std::exp(2.0 * logs[0] / nodes[0]);
-        const double odd = std::exp(2.0 * logs[1] / nodes[1]);
-        // even = c1 q - c0, odd = c0 q - c1
-        c_ = {(even + odd * q) / (q * q - 1.0), (odd + even * q) / (q * q - 1.0)};
-    }
-
-    /// Whether it says more than that of independent numbers.
-    bool holds() const { return exponent_ > 0.5 && c_[0] > 0.0; }
-
-    /// Root of the variance after n iterations: of one node, or of several that know little of each
-    /// other.
-    double noise(std::uint64_t n) const {
-        double sum = 0.0;
-        for (std::uint64_t rest = n; rest != 0; rest &= rest - 1) {
-            const std::uint64_t m = rest & (~rest + 1);
-            const double share = double(m) / double(n);
-            sum += share * share * c_[oddness(m)] * std::pow(double(m), -2.0 * exponent_);
-        }
-        return std::sqrt(sum);
-    }
-
-  private:
-    static std::size_t oddness(std::uint64_t powerOfTwo) {
-        return std::size_t(std::countr_zero(powerOfTwo)) % 2;
-    }
-
-    /// By sizes of which one is four times the other; from 1/2 to kSteepest.
-    static double exponentOf(std::span<const HalfDifference> sizes, double scatter) {
-        double sum = 0.0, weights = 0.0;
-        for (const HalfDifference& small : sizes) {
-            for (const HalfDifference& large : sizes) {
-                if (large.iterations != 4 * small.iterations) continue;
-                if (!(small.sum > 0.0 && large.sum > 0.0)) continue;
-                const double w = 1.0 / (1.0 / double(small.nodes) + 1.0 / double(large.nodes));
-                sum += w * std::log(h(small) / h(large));
-                weights += w;
-            }
-        }
-        if (weights == 0.0) return 0.5;
-        const double octaves = std::log(4.0);
-        const double falls = (sum / weights - kCaution * scatter / std::sqrt(weights)) / octaves;
-        return std::clamp(falls, 0.5, kSteepest);
-    }
-
-    double exponent_;
-    std::array<double, 2> c_{};  // of even powers of two, and of odd ones
-};
-
 /// Relative standard deviation of a node's h among those of its size: more than the pixels' own
 /// where they share light paths.
 double scatter(std::span<const HalfDifference> sizes) {
     double squares = 0.0, freedom = 0.0;
     for (const HalfDifference& d : sizes) {
         if (d.nodes < 2 || !(d.sum > 0.0)) continue;
-        const double mean = h(d);
+        const double mean = d.mean();
         squares += std::max(0.0, d.squares / (mean * mean) - double(d.nodes));
         freedom += double(d.nodes - 1);
     }
@@ -329,15 +232,15 @@ Measured mapeOf(const FilmSum& sum, const ErrorMeter::Mean& squares, std::size_t
         unevenness = d.unevenness / double(d.nodes);  // of the largest
     }
     const double s = std::max(scatter(sizes), unevenness);
-    const Model model = fit(sizes);
-    const EvenModel even(sizes, s);
-    const double noise = model.c == 0.0 && even.holds()
+    const SpikeModel model(sizes);
+    const EvenModel even(sizes, kCaution * s);
+    const double noise = model.c() == 0.0 && even.holds()
                              ? even.noise(sum.iterations)
-                             : model.g / std::sqrt(double(sum.iterations));
-    const double half = noise + model.c;
+                             : model.g() / std::sqrt(double(sum.iterations));
+    const double half = noise + model.c();
     // Of spikes of which a pixel has none or one, halves show a half. Where pixels have several,
     // h falls more slowly than noise as well, but shows nearly all.
-    const double seen = half > 0.0 ? model.c * model.c / half : 0.0;
+    const double seen = half > 0.0 ? model.c() * model.c() / half : 0.0;
     const double error = half + std::max(seen, kUnseenShare * squares.unevenness * half);
     Measured m = measured(error, s * std::sqrt(1.0 + 1.0 / nodes), unevenness, places);
     if (sizes.size() < kSizes || sum.iterations < kFewestIterations) m.doubt = kTooFew;

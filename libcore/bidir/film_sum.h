@@ -28,6 +28,8 @@ struct HalfDifference {
     double sum = 0.0;         ///< of the mean of |A - B| / 2 (R + e)
     double squares = 0.0;     ///< of its square
     double unevenness = 0.0;  ///< of the share of it that few places carry
+
+    double mean() const { return sum / double(nodes); }
     friend bool operator==(const HalfDifference&, const HalfDifference&) = default;
 };
 

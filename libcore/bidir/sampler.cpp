@@ -25,6 +25,9 @@ std::uint32_t dimensionsOf(StreamKind kind) {
 
 }  // namespace
 
+Sampler::Sampler(Sampling sampling, std::uint64_t seed)
+    : sampling_(sampling), seed_(seed), sequences_(mixBits(mixBits(seed))) {}
+
 std::uint64_t Sampler::groupOf(Sampling sampling) {
     return sampling == Sampling::Sobol ? kGroup : 1;
 }
@@ -34,7 +37,7 @@ Rng Sampler::stream(std::uint32_t iteration, StreamKind kind, std::uint64_t inde
     const std::uint32_t dimensions = dimensionsOf(kind);
     if (sampling_ == Sampling::Independent || dimensions == 0) return rng;
     const std::uint64_t stream = std::uint64_t(kind) << 56 | index;
-    rng.follow({mixBits(mixBits(mixBits(seed_)) ^ stream), iteration, dimensions});
+    rng.follow({mixBits(sequences_ ^ stream), iteration, dimensions});
     return rng;
 }
 

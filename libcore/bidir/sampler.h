@@ -37,7 +37,7 @@ constexpr std::uint32_t ofPicks(std::uint32_t t) {
 
 class Sampler {
   public:
-    Sampler(Sampling sampling, std::uint64_t seed) : sampling_(sampling), seed_(seed) {}
+    Sampler(Sampling sampling, std::uint64_t seed);
 
     /// Iterations of a group, a power of two: what they spread by is what variances are told by
     /// (theory.md, "Even numbers").
@@ -49,7 +49,7 @@ class Sampler {
 
   private:
     Sampling sampling_;
-    std::uint64_t seed_;
+    std::uint64_t seed_, sequences_;  // sequences_: which ones, by seed
 };
 
 }  // namespace lacuna

@@ -123,6 +123,13 @@ struct Bilinear {
     }
 };
 
+/// `cosine` to +Y; `turns` about it, from -Z towards +X.
+Vec3 directionAt(double cosine, float turns) {
+    const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
+    const SineCosine longitude = sineCosineOfTurns(turns);
+    return {sine * longitude.sine, float(cosine), -sine * longitude.cosine};
+}
+
 Bilinear bilinear(const auto& corners) {
     return {double(mean(corners.leftAbove)), double(mean(corners.rightAbove)),
             double(mean(corners.leftBelow)), double(mean(corners.rightBelow))};
@@ -134,16 +141,8 @@ Environment::Sample Environment::sample(double uCell, float u1, float u2) const 
     return inCell(cells_.sample(uCell), u1, u2);
 }
 
-/// What sampleSquare does where there is one texel.
-Environment::Sample Environment::onSphere(double across, double down) const {
-    const double cosine = 1.0 - 2.0 * down;
-    const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
-    const SineCosine longitude = sineCosineOfTurns(float(across) + turn_);
-    return {{sine * longitude.sine, float(cosine), -sine * longitude.cosine}, kEvenPdfW};
-}
-
 Environment::Sample Environment::sampleSquare(double across, double down) const {
-    if (even_) return onSphere(across, down);
+    if (even_) return {directionAt(1.0 - 2.0 * down, float(across) + turn_), kEvenPdfW};
     const auto width = std::size_t(width_);
     const std::size_t row = cells_.sample(down).index / width;
     const double begin = cells_.before(row * width), end = cells_.before((row + 1) * width);
@@ -175,10 +174,8 @@ Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, 
     const double below = density.down().sample(u2);
     const double right = density.across(below).sample(u1);
     const double cosine = row.top + (row.bottom - row.top) * below;
-    const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
-    const SineCosine longitude =
-        sineCosineOfTurns(float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
-    const Vec3 direction{sine * longitude.sine, float(cosine), -sine * longitude.cosine};
+    const Vec3 direction =
+        directionAt(cosine, float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
     // Rounding may lead into the next cell: the density is the one that is found there.
     return {direction, pdfW(direction)};
 }

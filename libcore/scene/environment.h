@@ -56,6 +56,8 @@ class Environment {
     double contrast() const { return contrast_; }
 
   private:
+    static constexpr float kEvenPdfW = 0.25f / kPi;  ///< of a sky that is the same from everywhere
+
     // A cell lies between four centres of texels, those above it being of row y - 1 and those below
     // of row y, 0 <= y <= height. In the first and the last row of cells, half as high, both are the
     // same.
@@ -68,8 +70,6 @@ class Environment {
         const Rgb &leftAbove, &rightAbove, &leftBelow, &rightBelow;
     };
     Corners cornersOf(int x, int y) const;
-    static constexpr float kEvenPdfW = 0.25f / kPi;
-    Sample onSphere(double across, double down) const;
     Rgb radianceAt(const Place& place) const;
     float pdfWAt(const Place& place, Vec3 direction) const;
     double shareBelow(int y, Vec3 direction) const;

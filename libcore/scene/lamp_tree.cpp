@@ -206,7 +206,8 @@ double LampTree::importance(const Viewpoint& fileFrom, std::uint32_t light) cons
 
 std::uint64_t LampTree::bytes() const {
     return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) +
-           placeOf_.size() * sizeof(std::uint32_t) + distant_.size() * sizeof(Distant);
+           placeOf_.size() * sizeof(std::uint32_t) + distant_.size() * sizeof(Distant) +
+           bundles_.size() * sizeof(Bundle);
 }
 
 LampTree::LampTree() = default;

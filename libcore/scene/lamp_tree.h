@@ -5,8 +5,8 @@
 //
 // Lights with a place are the tree's leaves; lights at infinity stand beside its root, weighed by
 // their irradiance: those in about one direction as one, as a sun that has a size is made of many.
-// A pick goes down one path, and so does the question for its probability: both
-// take the same numbers in the same order, so that they agree in every bit.
+// A pick goes down one path, and so does the question for its probability: both take the same
+// numbers in the same order, so that they agree in every bit.
 #pragma once
 
 #include <cstdint>

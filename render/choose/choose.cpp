@@ -244,17 +244,17 @@ class Pilot {
         for (std::size_t i = 0; i < tried_.size(); ++i) {
             Tried& t = tried_[i];
             const double left = doesMerge(t) ? 0.0 : lacking * lacking;
-            t.verdict = {errors[i], errors[i] * errors[i] * falls(t) + left};
+            t.verdict = {errors[i], errors[i] * errors[i] * shareLeft(t) + left};
         }
     }
 
     /// What is left at the end of the square of the trial's error: noise of one iteration times its
     /// cost, which is a share of the budget, and less where numbers are even over more iterations than
     /// a half of the trial has. What was trained is there already.
-    double falls(const Tried& t) const {
-        const double left = double(t.trial.iterations) * t.cost;
-        if (sampling() == Sampling::Independent) return left;
-        return left * std::pow(std::min(1.0, 0.5 * left), 2.0 * t.row->fall - 1.0);
+    double shareLeft(const Tried& t) const {
+        const double ofAll = double(t.trial.iterations) * t.cost;  // of the picture's iterations
+        if (sampling() == Sampling::Independent) return ofAll;
+        return ofAll * std::pow(std::min(1.0, 0.5 * ofAll), 2.0 * t.row->fall - 1.0);
     }
 
     RowChoice best() const {

@@ -193,7 +193,7 @@ FAULTS = [
           "return shareOf(top, bundles_[d.bundle], from) * d.share;", "return shareOf(top, bundles_[d.bundle], from);",
           {"scene": "LampTree.whatIsAskedForIsWhatThePickHad"}),
     Fault("estimate-of-independent-halves", "halves of even numbers are taken for independent",
-          "libcore/bidir/error_estimate.cpp",
+          "libcore/bidir/half_models.h",
           "bool holds() const { return exponent_ > 0.5 && c_[0] > 0.0; }", "bool holds() const { return false; }",
           {"bidir": "ErrorEstimate.meetsTheErrorOfEvenNumbers"}),
     Fault("lamp-cone-of-one-side", "lamps that shine both ways are taken for dark behind",
