@@ -150,6 +150,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     const std::vector<double> power = powers();
     byPower_ = std::make_shared<const DiscreteDistribution>(power);
     selection_ = *byPower_;
+    findBalls();
     tree_ = std::make_shared<const LampTree>(makeTree(power));
     chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
@@ -204,6 +205,14 @@ std::vector<double> Lights::powers() const {
     return power;
 }
 
+void Lights::findBalls() {
+    Balls balls{BallLamp::find(triangles_), std::vector<std::uint32_t>(kinds_.size(), kNone)};
+    for (std::uint32_t b = 0; b < balls.lamps.size(); ++b) {
+        for (const std::uint32_t light : balls.lamps[b].lights()) balls.of[light] = b;
+    }
+    balls_ = std::make_shared<const Balls>(std::move(balls));
+}
+
 /// Of the choice of a sky that is the same everywhere, what next event keeps: walks see no windows.
 constexpr double kEvenSky = 0.1;
 
@@ -215,11 +224,18 @@ LampTree Lights::makeTree(std::span<const double> powers) const {
     const auto canBePicked = [&](std::uint32_t i) { return selection_.pmf(i) > 0.0; };
     for (std::uint32_t i = 0; i < kinds_.size(); ++i) {
         if (!canBePicked(i)) continue;
+        if (const BallLamp* ball = ballOf(i)) {
+            if (i != ball->lights().front()) continue;
+            placed.push_back(ball->placed());
+            placed.back().intensity *= meanOf(triangles_[i].radiance);
+            continue;
+        }
         if (kinds_[i] == LightKind::Area) {
             const EmissiveTriangle& t = triangles_[i];
             placed.push_back(placedTriangle(t, i, powers[i]));
             const std::uint32_t next = i + 1;
-            if (next < triangles_.size() && canBePicked(next) && areHalves(t, triangles_[next])) {
+            if (next < triangles_.size() && canBePicked(next) && !ballOf(next) &&
+                areHalves(t, triangles_[next])) {
                 join(placed.back(), placedTriangle(triangles_[next], next, powers[next]));
                 ++i;
             }
@@ -382,35 +398,56 @@ LightPoint Lights::samplePoint(Rng& rng) const {
     return pointOn(pick.index, pick.remapped(), draw);
 }
 
-Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
+std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
-    if (!tree_->chooses() || draw.pick < kByPower) {
-        const double u = tree_->chooses() ? draw.pick / kByPower : draw.pick;
+    if (!picksBySight() || draw.pick < kByPower) {
+        const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
         const DiscreteDistribution::Pick pick = selection_.sample(u);
-        return {pointOn(pick.index, pick.remapped(), draw), seenSamples(pick.index, from)};
+        const LightPoint point = pointOn(pick.index, pick.remapped(), draw);
+        return SeenPoint{point, seenSamples(point, from)};
     }
     const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
-    return {pointOn(pick.light, pick.remapped, draw), seenSamples(pick.light, pick.pmf)};
+    LightPoint point;
+    if (const BallLamp* ball = ballOf(pick.light)) {
+        const auto found = ball->sample(from.position, pick.remapped, draw.u1, draw.u2);
+        if (!found) return std::nullopt;
+        point = pointOnTriangle(found->light, found->uv);
+    } else {
+        point = pointOn(pick.light, pick.remapped, draw);
+    }
+    return SeenPoint{point, seenSamples(point, pick.pmf, from)};
 }
 
-double Lights::seenSamples(std::uint32_t light, const Viewpoint& from) const {
-    if (!tree_->chooses()) return selection_.pmf(light) > 0.0 ? 1.0 : 0.0;
-    return seenSamples(light, tree_->pmf(from, light));
+double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
+    if (!picksBySight()) return selection_.pmf(y0.light) > 0.0 ? 1.0 : 0.0;
+    const BallLamp* ball = ballOf(y0.light);
+    const std::uint32_t inTree = ball ? ball->lights().front() : y0.light;
+    return seenSamples(y0, tree_->pmf(from, inTree), from);
 }
 
-double Lights::seenSamples(std::uint32_t light, double pmfOfTree) const {
-    const double byPower = selection_.pmf(light);
-    return byPower > 0.0 ? kByPower + (1.0 - kByPower) * (pmfOfTree / byPower) : 0.0;
+double Lights::seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const {
+    const double byPower = selection_.pmf(y0.light);
+    if (!(byPower > 0.0)) return 0.0;
+    double bySight = pmfOfTree / byPower;
+    if (const BallLamp* ball = ballOf(y0.light)) {
+        const double area = triangleArea(triangles_[y0.light]);
+        bySight *= ball->pdfA(from.position, y0.position, area_[y0.light].ng) * area;
+        if (guide_) bySight /= double(guidedPdf(y0));
+    }
+    return kByPower + (1.0 - kByPower) * bySight;
+}
+
+LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
+    const AreaLight& a = area_[light];
+    return areaPoint(light, a.corner + a.edge1 * uv.x + a.edge2 * uv.y, a.ng, uv);
 }
 
 /// A point on the light; `u` picks among an environment's texels.
 LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const {
     if (light < area_.size()) {
-        const AreaLight& a = area_[light];
         const SquarePoint at = warpPoint(light, {double(draw.u1), double(draw.u2)});
         const float s = std::sqrt(float(at[0]));
-        const Vec2 b{1.0f - s, float(at[1]) * s};
-        return areaPoint(light, a.corner + a.edge1 * b.x + a.edge2 * b.y, a.ng, b);
+        return pointOnTriangle(light, {1.0f - s, float(at[1]) * s});
     }
     LightPoint p;
     p.light = light;

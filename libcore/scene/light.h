@@ -30,6 +30,7 @@
 #include "libcore/base/sampling.h"
 #include "libcore/base/vec.h"
 #include "libcore/scene/alpha.h"
+#include "libcore/scene/ball_lamp.h"
 #include "libcore/scene/description.h"
 #include "libcore/scene/emission_guide.h"
 #include "libcore/scene/environment.h"
@@ -55,9 +56,9 @@ struct EmissiveTriangle {
 /// Where y_0 is: what the density of a ray from there depends on.
 struct LightPlace {
     std::uint32_t light = kNone;
-    Vec3 position;  ///< at infinity: unit direction from the scene towards the light
-    Vec3 ng;        ///< area lights: the emitting side
-    Vec2 uv;        ///< barycentric (area lights)
+    Vec3 position{};  ///< at infinity: unit direction from the scene towards the light
+    Vec3 ng{};        ///< area lights: the emitting side
+    Vec2 uv{};        ///< barycentric (area lights)
 };
 
 /// A point (or, at infinity, a direction) on a light: y_0.
@@ -121,16 +122,17 @@ class Lights {
     /// the light.
     LightPoint punctualPoint(std::uint32_t light) const { return pointOn(light, 0.0, {}); }
 
-    /// The same on a light that is picked by what `from` sees of it. Its pdf is still that of
-    /// samplePoint; `samples` says how many of those points it stands for.
+    /// The same on a light that is picked by what `from` sees of it, a BallLamp as one. Its pdf is
+    /// still that of samplePoint; `samples` says how many of those points it stands for. Empty where
+    /// the draw misses the lamp.
     struct SeenPoint {
         LightPoint point;
         double samples;
     };
-    SeenPoint sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
-    /// Its density over that of samplePoint, which is a function of the light alone; at least
-    /// kByPower where the light has power, else zero.
-    double seenSamples(std::uint32_t light, const Viewpoint& from) const;
+    std::optional<SeenPoint> sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
+    /// Its density over that of samplePoint, which is a function of the light alone but on a BallLamp;
+    /// at least kByPower where the light has power, else zero.
+    double seenSamples(const LightPlace& y0, const Viewpoint& from) const;
     /// Share of the points of sampleSeenPoint that go by power all the same: nothing that the tree
     /// does not know costs more than 1 / kByPower of the samples.
     static const double kByPower;
@@ -221,9 +223,17 @@ class Lights {
     Environment::Sample sampleSky(double rest, float across, float down) const;
     std::vector<double> powers() const;
     void chooseUnit(double power);
+    void findBalls();
     LampTree makeTree(std::span<const double> powers) const;
     LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const;
-    double seenSamples(std::uint32_t light, double pmfOfTree) const;
+    LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const;
+    const BallLamp* ballOf(std::uint32_t light) const {
+        const std::uint32_t ball = balls_->of[light];
+        return ball == kNone ? nullptr : &balls_->lamps[ball];
+    }
+    /// Whether what is picked depends on who looks.
+    bool picksBySight() const { return tree_->chooses() || !balls_->lamps.empty(); }
+    double seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const;
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
     float opacityAt(std::uint32_t light, Vec2 barycentric) const {
@@ -266,7 +276,12 @@ class Lights {
     std::uint32_t environmentIndex_ = kNone;  // the last one
     std::shared_ptr<const DiscreteDistribution> byPower_;
     DiscreteDistribution selection_;  // that, or what the guide says
-    std::shared_ptr<const LampTree> tree_;
+    struct Balls {
+        std::vector<BallLamp> lamps;
+        std::vector<std::uint32_t> of;  ///< by light: its ball; kNone: none
+    };
+    std::shared_ptr<const Balls> balls_;
+    std::shared_ptr<const LampTree> tree_;        // of a ball its first light
     std::shared_ptr<const EmissionGuide> guide_;  // null: by power, and evenly
     float diskRadius_;
     double unit_ = 1.0;

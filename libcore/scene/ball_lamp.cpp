@@ -1,0 +1,143 @@
+#include "libcore/scene/ball_lamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcore/base/sampling.h"
+#include "libcore/scene/light.h"
+
+namespace lacuna {
+
+namespace {
+
+/// A point on an edge lies in one of its two faces at least.
+constexpr float kRounding = 1e-5f;
+
+/// From inside the sphere there is no cone, and close to it the lamp is no ball.
+constexpr double kOutside = 1.0001;
+
+constexpr std::uint32_t kMostCells = 16;
+
+}  // namespace
+
+/// It sends about the same to all sides: a quarter of its surface.
+PlacedLight BallLamp::placed() const {
+    const ShiningCone all{{0.0, 1.0, 0.0}, std::numbers::pi, false, false};
+    return {lights_.front(), low_, high_, all, 0.25 * area_};
+}
+
+bool BallLamp::isOutside(const Vec3d& toMiddle) const {
+    return lengthSquared(toMiddle) > kOutside * radius_ * radius_;
+}
+
+/// 1 - cos of half the angle that the sphere is seen under, without cancellation.
+double BallLamp::versineOfCone(const Vec3d& toMiddle) const {
+    const double sine2 = radius_ * radius_ / lengthSquared(toMiddle);
+    return sine2 / (1.0 + std::sqrt(1.0 - sine2));
+}
+
+std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, float u1,
+                                                float u2) const {
+    const Vec3d toMiddle = middle_ - Vec3d(from);
+    if (!isOutside(toMiddle)) {
+        const float s = std::sqrt(u1);
+        return Point{lights_[byArea_.sample(u).index], {1.0f - s, u2 * s}};
+    }
+    // Even over the disk is even over the cap, if 1 - cos goes by the square of the disk's radius.
+    const double distance = length(toMiddle), versine = versineOfCone(toMiddle);
+    const Vec2 onDisk = concentricDisk(u1, u2);
+    const double off = versine * double(onDisk.x * onDisk.x + onDisk.y * onDisk.y);
+    const double stretch = std::sqrt(versine * (2.0 - off));
+    const double x = double(onDisk.x) * stretch, y = double(onDisk.y) * stretch;
+    const double cosine = 1.0 - off, radii = distance / radius_;
+    const Frame frame(Vec3(toMiddle * (1.0 / distance)));
+    const auto world = [&](double a, double b, double c) {
+        return frame.toWorld({float(a), float(b), float(c)});
+    };
+    const Vec3 closest = world(radii * cosine * x, radii * cosine * y, -radii * (x * x + y * y));
+    const std::optional<Entry> entry = enter(closest, world(x, y, cosine));
+    if (!entry) return std::nullopt;
+    return Point{lights_[entry->face], entry->uv};
+}
+
+double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const {
+    const Vec3d toMiddle = middle_ - Vec3d(from);
+    if (!isOutside(toMiddle)) return 1.0 / area_;
+    const Vec3d back = Vec3d(from) - Vec3d(position);
+    const double distance2 = lengthSquared(back);
+    const double cosine = dot(Vec3d(normal), back) / std::sqrt(distance2);
+    if (!(cosine > 0.0)) return 0.0;
+    return cosine / (2.0 * std::numbers::pi * versineOfCone(toMiddle) * distance2);
+}
+
+/// Where a ray comes in. `closest`: its point that is closest to the middle.
+std::optional<BallLamp::Entry> BallLamp::enter(const Vec3& closest, const Vec3& direction) const {
+    const float before = std::sqrt(std::max(0.0f, 1.0f - lengthSquared(closest)));
+    const std::uint32_t near = startOf(closest - direction * before);
+    if (dot(faces_[near].normal, direction) < 0.0f) return enterFrom(near, closest, direction);
+    return enterFrom(startOf(-direction), closest, direction);
+}
+
+/// From a face whose plane the ray comes in by, over the edge that it passes outside of. The next plane
+/// is passed later, or it is one that the ray comes out by: then it has missed the lamp.
+std::optional<BallLamp::Entry> BallLamp::enterFrom(std::uint32_t face, const Vec3& closest,
+                                                   const Vec3& direction) const {
+    for (std::size_t steps = 0; steps < faces_.size(); ++steps) {
+        const Face& f = faces_[face];
+        const float facing = dot(f.normal, direction);
+        if (!(facing < 0.0f)) return std::nullopt;
+        const float t = dot(f.normal, f.corner - closest) / facing;
+        const Vec3 p = closest + direction * t - f.corner;
+        const float b1 = dot(p, f.along1), b2 = dot(p, f.along2);
+        const std::array<float, 3> b{1.0f - b1 - b2, b1, b2};
+        const auto least = std::size_t(std::min_element(b.begin(), b.end()) - b.begin());
+        if (b[least] >= -kRounding) {
+            const float c1 = std::clamp(b1, 0.0f, 1.0f);
+            return Entry{face, {c1, std::clamp(b2, 0.0f, 1.0f - c1)}};
+        }
+        face = f.across[least];
+    }
+    return std::nullopt;
+}
+
+/// Of the cell of a cube around the ball that `direction` goes through.
+std::uint32_t BallLamp::startOf(const Vec3& direction) const {
+    const Vec3 size{std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)};
+    const std::size_t axis =
+        size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+    const float most = size[axis];
+    const auto cell = [&](std::size_t i) {
+        const float across = (direction[i] / most + 1.0f) * (0.5f * float(cells_));
+        return std::min(std::uint32_t(std::max(across, 0.0f)), cells_ - 1);
+    };
+    const std::uint32_t side = std::uint32_t(2 * axis) + (direction[axis] < 0.0f ? 1 : 0);
+    return starts_[(side * cells_ + cell((axis + 1) % 3)) * cells_ + cell((axis + 2) % 3)];
+}
+
+void BallLamp::makeStarts() {
+    cells_ = std::clamp(std::uint32_t(std::lround(std::sqrt(double(faces_.size()) / 6.0))), 1u,
+                        kMostCells);
+    std::uint32_t face = 0;
+    for (std::uint32_t side = 0; side < 6; ++side) {
+        for (std::uint32_t i = 0; i < cells_ * cells_; ++i) {
+            const auto across = [&](std::uint32_t cell) {
+                return (float(cell) + 0.5f) * 2.0f / float(cells_) - 1.0f;
+            };
+            Vec3 out;
+            const std::size_t axis = side / 2;
+            out[axis] = side % 2 ? -1.0f : 1.0f;
+            out[(axis + 1) % 3] = across(i / cells_);
+            out[(axis + 2) % 3] = across(i % cells_);
+            // Any face that looks that way; the one before mostly does.
+            for (std::size_t n = 0; n < faces_.size() && dot(faces_[face].normal, out) <= 0.0f;
+                 ++n) {
+                face = std::uint32_t((face + 1) % faces_.size());
+            }
+            if (const auto entry = enterFrom(face, {}, -normalize(out))) face = entry->face;
+            starts_.push_back(face);
+        }
+    }
+}
+
+}  // namespace lacuna
