@@ -83,7 +83,7 @@ def applies(scene: str, row: str) -> bool:
     return scene in {"lt": LT_SEES_ALL, "pt": PT_SEES_ALL}.get(row, SCENES)
 
 
-def run_all(program: Path, out: Path, results: list[dict], page_only: bool) -> None:
+def run_all(program: Path, out: Path, sampler: str, results: list[dict], page_only: bool) -> None:
     """Appends to `results`, which an interrupt leaves as they are. `page_only`: what is in the folder."""
     maker = None if page_only else program
     runs, references = out / "runs", out / "references"
@@ -98,7 +98,7 @@ def run_all(program: Path, out: Path, results: list[dict], page_only: bool) -> N
             if not applies(scene, row):
                 continue
             arguments = [*view, "--method", row, "--seed", str(number + 1), "--prepare", "--cache", str(out / "cache"),
-                         "--until", f"{measure}={bound}", "--iterations", str(MOST_ITERATIONS),
+                         "--until", f"{measure}={bound}", "--iterations", str(MOST_ITERATIONS), "--sampler", sampler,
                          "--reference", str(references / f"{scene}.exr")]
             try:
                 j = render(maker, runs, f"{scene}.{row}.{measure}-{bound}", arguments)
@@ -143,7 +143,7 @@ def forecasts(results: list[dict]) -> list[float]:
     return ratios
 
 
-def page(everything: list[dict], total: int, command: str) -> str:
+def page(everything: list[dict], total: int, sampler: str, command: str) -> str:
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     results = [r for r in everything if r["known"]]
@@ -159,7 +159,7 @@ def page(everything: list[dict], total: int, command: str) -> str:
         "| | |", "|---|---|",
         f"| date | {datetime.date.today()} |", f"| commit | {commit} |",
         f"| machine | {cpu.group(1) if cpu else platform.processor()} |", f"| command | `{command}` |",
-        f"| each run | `--until MEASURE=E --iterations {MOST_ITERATIONS}`, E: {', '.join(f'{m} {b}' for m, b in TARGETS)} |",
+        f"| each run | `--until MEASURE=E --iterations {MOST_ITERATIONS} --sampler {sampler}`, E: {', '.join(f'{m} {b}' for m, b in TARGETS)} |",
         f"| references | `{' '.join(REFERENCE)}`; their own errors are part of those of the runs |", "", "## Achieved over asked", "", HEAD]
     text += [line("all", results),
              line("tuned", [r for r in results if r["scene"] in TUNED]),
@@ -194,15 +194,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder of references and runs")
     parser.add_argument("--program", type=Path, default=ROOT / "build/render/lacuna-render")
+    parser.add_argument("--sampler", choices=["sobol", "independent"], default="sobol", help="random numbers (sobol, which auto draws)")
     parser.add_argument("--summary", type=Path, help="page to write")
     parser.add_argument("--page-only", action="store_true", help="render nothing: the page of what the folder has")
     arguments = parser.parse_args()
     program = arguments.program.resolve()
     results: list[dict] = []
     with contextlib.suppress(KeyboardInterrupt):
-        run_all(program, arguments.output.resolve(), results, arguments.page_only)
+        run_all(program, arguments.output.resolve(), arguments.sampler, results, arguments.page_only)
     total = len(TARGETS) * sum(applies(scene, row) for scene in SCENES for row in rows(program))
-    text = page(results, total, "python3 " + " ".join(sys.argv))
+    text = page(results, total, arguments.sampler, "python3 " + " ".join(sys.argv))
     print(text)
     if arguments.summary:
         arguments.summary.write_text(text)
