@@ -81,9 +81,13 @@ void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
         return;
     }
     place->nodes += d.nodes;
-    place->sum += d.sum;
-    place->squares += d.squares;
-    place->unevenness += d.unevenness;
+    for (auto measure : HalfDifference::kMeasures) {
+        HalfDifference::Sums& sums = (*place).*measure;
+        const HalfDifference::Sums& more = d.*measure;
+        sums.sum += more.sum;
+        sums.squares += more.squares;
+        sums.unevenness += more.unevenness;
+    }
 }
 
 double varianceOfMean(double squares, double divisor) {

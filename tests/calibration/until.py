@@ -83,13 +83,13 @@ def applies(scene: str, row: str) -> bool:
     return scene in {"lt": LT_SEES_ALL, "pt": PT_SEES_ALL}.get(row, SCENES)
 
 
-def run_all(program: Path, out: Path, sampler: str, results: list[dict], page_only: bool) -> None:
+def run_all(program: Path, out: Path, sampler: str, targets: list[tuple[str, float]], results: list[dict], page_only: bool) -> None:
     """Appends to `results`, which an interrupt leaves as they are. `page_only`: what is in the folder."""
     maker = None if page_only else program
     runs, references = out / "runs", out / "references"
     runs.mkdir(parents=True, exist_ok=True)
     references.mkdir(exist_ok=True)
-    for (scene, options), (measure, bound) in itertools.product(SCENES.items(), TARGETS):
+    for (scene, options), (measure, bound) in itertools.product(SCENES.items(), targets):
         view = [f"scenes/{scene}.glb", "--width", str(WIDTH), *options]
         with contextlib.suppress(NotThere):
             truth = render(maker, references, scene, [*view, *REFERENCE])["estimated_error"][measure]
@@ -143,8 +143,7 @@ def forecasts(results: list[dict]) -> list[float]:
     return ratios
 
 
-def page(everything: list[dict], total: int, sampler: str, command: str) -> str:
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+def page(everything: list[dict], total: int, sampler: str, targets: list[tuple[str, float]], commit: str, command: str) -> str:
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     results = [r for r in everything if r["known"]]
     unknown = sorted({f"{r['scene']} ({r['measure']} {r['bound']})" for r in everything if not r["known"]})
@@ -159,12 +158,12 @@ def page(everything: list[dict], total: int, sampler: str, command: str) -> str:
         "| | |", "|---|---|",
         f"| date | {datetime.date.today()} |", f"| commit | {commit} |",
         f"| machine | {cpu.group(1) if cpu else platform.processor()} |", f"| command | `{command}` |",
-        f"| each run | `--until MEASURE=E --iterations {MOST_ITERATIONS} --sampler {sampler}`, E: {', '.join(f'{m} {b}' for m, b in TARGETS)} |",
+        f"| each run | `--until MEASURE=E --iterations {MOST_ITERATIONS} --sampler {sampler}`, E: {', '.join(f'{m} {b}' for m, b in targets)} |",
         f"| references | `{' '.join(REFERENCE)}`; their own errors are part of those of the runs |", "", "## Achieved over asked", "", HEAD]
     text += [line("all", results),
              line("tuned", [r for r in results if r["scene"] in TUNED]),
              line("judges", [r for r in results if r["scene"] in JUDGES])]
-    text += [line(f"{m} {b}", [r for r in results if (r["measure"], r["bound"]) == (m, b)]) for m, b in TARGETS]
+    text += [line(f"{m} {b}", [r for r in results if (r["measure"], r["bound"]) == (m, b)]) for m, b in targets]
     text += ["", "By row and by scene:", "", HEAD]
     text += [line(row, [r for r in results if r["row"] == row]) for row in dict.fromkeys(r["row"] for r in results)]
     text += [line(scene, [r for r in results if r["scene"] == scene]) for scene in SCENES]
@@ -194,16 +193,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder of references and runs")
     parser.add_argument("--program", type=Path, default=ROOT / "build/render/lacuna-render")
+    parser.add_argument("--measure", choices=["mape", "relmse"], help="runs to errors of this one alone")
+    parser.add_argument("--commit", help="of the program, if not that of the work tree")
     parser.add_argument("--sampler", choices=["sobol", "independent"], default="sobol", help="random numbers (sobol, which auto draws)")
     parser.add_argument("--summary", type=Path, help="page to write")
     parser.add_argument("--page-only", action="store_true", help="render nothing: the page of what the folder has")
     arguments = parser.parse_args()
     program = arguments.program.resolve()
+    targets = [t for t in TARGETS if arguments.measure in (None, t[0])]
     results: list[dict] = []
     with contextlib.suppress(KeyboardInterrupt):
-        run_all(program, arguments.output.resolve(), arguments.sampler, results, arguments.page_only)
-    total = len(TARGETS) * sum(applies(scene, row) for scene in SCENES for row in rows(program))
-    text = page(results, total, arguments.sampler, "python3 " + " ".join(sys.argv))
+        run_all(program, arguments.output.resolve(), arguments.sampler, targets, results, arguments.page_only)
+    total = len(targets) * sum(applies(scene, row) for scene in SCENES for row in rows(program))
+    commit = arguments.commit or subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True,
+                                                check=True).stdout.strip()
+    text = page(results, total, arguments.sampler, targets, commit, "python3 " + " ".join(sys.argv))
     print(text)
     if arguments.summary:
         arguments.summary.write_text(text)
