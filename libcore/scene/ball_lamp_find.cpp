@@ -115,7 +115,7 @@ bool BallLamp::Mesh::isBall(double step) {
     if (lights.size() < kFewestFaces || lights.size() > kMostFaces) return false;
     const Rgb radiance = all_[lights[0]].radiance;
     for (const std::uint32_t l : lights) {
-        if (!(all_[l].radiance == radiance)) return false;
+        if (all_[l].radiance != radiance) return false;
     }
     measure();
     if (!(radius * kDent > step)) return false;
