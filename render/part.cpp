@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormat = 5;
+constexpr int kFormat = 4;
 constexpr const char* kAttributes[] = {"partInputs", "partSums", "partTotals"};
 constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
@@ -65,25 +65,16 @@ std::vector<Rgb> takePlanes(LayeredImage& image, const std::string& layer) {
 json halvesText(const std::vector<HalfDifference>& differences) {
     json list = json::array();
     for (const HalfDifference& d : differences) {
-        json one = {d.iterations, d.nodes};
-        for (auto measure : HalfDifference::kMeasures) {
-            const HalfDifference::Sums& s = d.*measure;
-            one.push_back(numbersText({s.sum, s.squares, s.unevenness}));
-        }
-        list.push_back(std::move(one));
+        list.push_back({d.iterations, d.nodes, exactText(d.sum), exactText(d.squares),
+                        exactText(d.unevenness)});
     }
     return list;
 }
 std::vector<HalfDifference> halvesOf(const json& list) {
     std::vector<HalfDifference> differences;
     for (const json& d : list) {
-        HalfDifference& one = differences.emplace_back();
-        one.iterations = countOf(d.at(0));
-        one.nodes = countOf(d.at(1));
-        for (std::size_t i = 0; i < std::size(HalfDifference::kMeasures); ++i) {
-            const auto [sum, squares, unevenness] = numbersOf(d.at(2 + i));
-            one.*HalfDifference::kMeasures[i] = {sum, squares, unevenness};
-        }
+        differences.push_back({countOf(d.at(0)), countOf(d.at(1)), numberOf(d.at(2)),
+                               numberOf(d.at(3)), numberOf(d.at(4))});
     }
     return differences;
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <tuple>
 
 #include "libcore/base/parallel.h"
 #include "libcore/bidir/half_models.h"
@@ -103,23 +102,19 @@ Vec3d ErrorMeter::smoothed(std::span<const Rgb> left, std::span<const Rgb> right
     return sum * (0.5 / std::max(1, std::popcount(place.alike)));
 }
 
-/// The means of term(place), an array, over all places, in a fixed order.
+/// The mean of term(place) over all places, in a fixed order.
 template <class Term>
-auto ErrorMeter::means(const ThreadPool* threads, const Term& term) const {
-    using Terms = decltype(term(places_.front()));
-    constexpr std::size_t kTerms = std::tuple_size_v<Terms>;
+ErrorMeter::Mean ErrorMeter::mean(const ThreadPool* threads, const Term& term) const {
     struct Sums {
-        Terms terms{}, squares{};
+        double terms = 0.0, squares = 0.0;
     };
     std::vector<Sums> sums((places_.size() + kPlacesPerTask - 1) / kPlacesPerTask);
     const auto task = [&](std::size_t t) {
         const std::size_t end = std::min(places_.size(), (t + 1) * kPlacesPerTask);
         for (std::size_t i = t * kPlacesPerTask; i < end; ++i) {
-            const Terms values = term(places_[i]);
-            for (std::size_t k = 0; k < kTerms; ++k) {
-                sums[t].terms[k] += values[k];
-                sums[t].squares[k] += values[k] * values[k];
-            }
+            const double value = term(places_[i]);
+            sums[t].terms += value;
+            sums[t].squares += value * value;
         }
     };
     if (threads && sums.size() > 1) {
@@ -127,43 +122,29 @@ auto ErrorMeter::means(const ThreadPool* threads, const Term& term) const {
     } else {
         for (std::size_t t = 0; t < sums.size(); ++t) task(t);
     }
-    std::array<Mean, kTerms> result;
-    for (std::size_t k = 0; k < kTerms; ++k) {
-        double terms = 0.0, squares = 0.0;
-        for (const Sums& s : sums) {
-            terms += s.terms[k];
-            squares += s.squares[k];
-        }
-        result[k] = {terms / double(places_.size()),
-                     terms > 0.0 ? std::sqrt(squares) / terms : 0.0};
+    Sums all;
+    for (const Sums& s : sums) {
+        all.terms += s.terms;
+        all.squares += s.squares;
     }
-    return result;
+    return {all.terms / double(places_.size()),
+            all.terms > 0.0 ? std::sqrt(all.squares) / all.terms : 0.0};
 }
 
 HalfDifference ErrorMeter::difference(const FilmSum& left, const FilmSum& right,
                                       const ThreadPool* threads) const {
     const double e = epsilonOf(left, right);
-    const auto measures = means(threads, [&](const Place& place) {
+    const Mean m = mean(threads, [&](const Place& place) {
         const Vec3d around = smoothed(left.mean, right.mean, place);
         const auto a = channels(left.mean[place.pixel]), b = channels(right.mean[place.pixel]);
-        std::array<double, 3> sums{};  // in the order of kMeasures
+        double sum = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
-            const double d = 0.5 * std::fabs(a[c] - b[c]), r = around[c];
-            if (!(d > 0.0)) continue;
-            sums[0] += d / (r + e);
-            sums[1] += d * d / (r * r + e * e);
-            sums[2] += d * d;
+            const double d = std::fabs(a[c] - b[c]);
+            if (d > 0.0) sum += d / (2.0 * (around[c] + e));
         }
-        return std::array{sums[0] / 3.0, sums[1] / 3.0, sums[2] / 3.0};
+        return sum / 3.0;
     });
-    HalfDifference result;
-    result.iterations = left.iterations + right.iterations;
-    result.nodes = 1;
-    for (std::size_t i = 0; i < measures.size(); ++i) {
-        const auto [value, unevenness] = measures[i];
-        result.*HalfDifference::kMeasures[i] = {value, value * value, unevenness};
-    }
-    return result;
+    return {left.iterations + right.iterations, 1, m.value, m.value * m.value, m.unevenness};
 }
 
 ErrorMeter::Squares ErrorMeter::squares(const FilmSum& sum, const ThreadPool* threads) const {
@@ -171,73 +152,48 @@ ErrorMeter::Squares ErrorMeter::squares(const FilmSum& sum, const ThreadPool* th
     if (divisor == 0.0 || sum.spread.empty()) return {};
     const double e = epsilonOf(sum, sum);
     const double scale = 1.0 / divisor;
-    const auto [absolute, relative] = means(threads, [&](const Place& place) {
-        const auto s = channels(sum.spread[place.pixel]);
-        const Vec3d r = smoothed(sum.mean, sum.mean, place);
-        std::array<double, 2> sums{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double v = s[c] * s[c] * scale;
-            if (!(v > 0.0)) continue;
-            sums[0] += v;
-            sums[1] += v / (r[c] * r[c] + e * e);
-        }
-        return std::array{sums[0] / 3.0, sums[1] / 3.0};
-    });
-    return {absolute, relative};
+    const auto term = [&](bool relative) {
+        return [this, &sum, e, scale, relative](const Place& place) {
+            const auto s = channels(sum.spread[place.pixel]);
+            const Vec3d r = relative ? smoothed(sum.mean, sum.mean, place) : Vec3d{};
+            double total = 0.0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double v = s[c] * s[c] * scale;
+                if (v > 0.0) total += relative ? v / (r[c] * r[c] + e * e) : v;
+            }
+            return total / 3.0;
+        };
+    };
+    return {mean(threads, term(false)), mean(threads, term(true))};
 }
 
 double ErrorMeter::overSquare(const FilmSum& sum, std::span<const float> values,
                               const ThreadPool* threads) const {
     const double e = epsilonOf(sum, sum);
-    const auto [over] = means(threads, [&](const Place& place) {
+    const Mean over = mean(threads, [&](const Place& place) {
         const double value = double(values[place.pixel]);
-        if (value == 0.0) return std::array{0.0};
+        if (value == 0.0) return 0.0;
         const Vec3d around = smoothed(sum.mean, sum.mean, place);
         const double r = (around[0] + around[1] + around[2]) / 3.0;
-        return std::array{value / (r * r + e * e)};
+        return value / (r * r + e * e);
     });
     return over.value;
 }
 
 namespace {
 
-/// What halves say of one measure, at the largest size and the next smaller ones.
-class Halves {
-  public:
-    Halves(const FilmSum& sum, HalfDifference::Sums HalfDifference::*measure) {
-        if (sum.differences.empty()) return;
-        const std::uint64_t least = sum.differences.back().iterations >> (kSizes - 1);
-        double squares = 0.0, freedom = 0.0;
-        for (const HalfDifference& d : sum.differences) {
-            if (d.iterations < least) continue;
-            const HalfDifference::Sums& s = d.*measure;
-            const auto n = double(d.nodes);
-            const double mean = s.sum / n;
-            sizes_.push_back({d.iterations, d.nodes, mean});
-            nodes_ += n;
-            unevenness_ = s.unevenness / n;  // of the largest
-            if (d.nodes < 2 || !(s.sum > 0.0)) continue;
-            squares += std::max(0.0, s.squares / (mean * mean) - n);
-            freedom += n - 1.0;
-        }
-        scatter_ = freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+/// Relative standard deviation of a node's h among those of its size: more than the pixels' own
+/// where they share light paths.
+double scatter(std::span<const HalfDifference> sizes) {
+    double squares = 0.0, freedom = 0.0;
+    for (const HalfDifference& d : sizes) {
+        if (d.nodes < 2 || !(d.sum > 0.0)) continue;
+        const double mean = d.mean();
+        squares += std::max(0.0, d.squares / (mean * mean) - double(d.nodes));
+        freedom += double(d.nodes - 1);
     }
-
-    std::span<const SizeMean> sizes() const { return sizes_; }
-    bool empty() const { return sizes_.empty(); }
-    double nodes() const { return nodes_; }
-    double unevenness() const { return unevenness_; }
-    /// Relative standard deviation of a node among those of its size, more than the pixels' own where
-    /// they share light paths; or by how few places carry the largest.
-    double uncertainty() const { return std::max(scatter_, unevenness_); }
-    bool areTooFew(const FilmSum& sum) const {
-        return sizes_.size() < kSizes || sum.iterations < kFewestIterations;
-    }
-
-  private:
-    std::vector<SizeMean> sizes_;
-    double nodes_ = 0.0, unevenness_ = 0.0, scatter_ = 0.0;
-};
+    return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+}
 
 std::string doubtOf(double unevenness, std::size_t places) {
     if (!(unevenness > kMostUneven)) return {};
@@ -265,11 +221,19 @@ bool seesLittle(const FilmSum& sum) {
 
 /// `squares`: of relmse.
 Measured mapeOf(const FilmSum& sum, const ErrorMeter::Mean& squares, std::size_t places) {
-    const Halves halves(sum, &HalfDifference::distance);
-    if (halves.empty()) return {kUnknown, kTooFew};
-    const double s = halves.uncertainty();
-    const SpikeModel model(halves.sizes());
-    const EvenModel even(halves.sizes(), kCaution * s);
+    if (sum.differences.empty()) return {kUnknown, kTooFew};
+    const std::uint64_t largest = sum.differences.back().iterations;
+    const auto begin = std::ranges::lower_bound(sum.differences, largest >> (kSizes - 1), {},
+                                                &HalfDifference::iterations);
+    const std::span<const HalfDifference> sizes(begin, sum.differences.end());
+    double nodes = 0.0, unevenness = 0.0;
+    for (const HalfDifference& d : sizes) {
+        nodes += double(d.nodes);
+        unevenness = d.unevenness / double(d.nodes);  // of the largest
+    }
+    const double s = std::max(scatter(sizes), unevenness);
+    const SpikeModel model(sizes);
+    const EvenModel even(sizes, kCaution * s);
     const double noise = model.c() == 0.0 && even.holds()
                              ? even.noise(sum.iterations)
                              : model.g() / std::sqrt(double(sum.iterations));
@@ -278,44 +242,8 @@ Measured mapeOf(const FilmSum& sum, const ErrorMeter::Mean& squares, std::size_t
     // h falls more slowly than noise as well, but shows nearly all.
     const double seen = half > 0.0 ? model.c() * model.c() / half : 0.0;
     const double error = half + std::max(seen, kUnseenShare * squares.unevenness * half);
-    Measured m =
-        measured(error, s * std::sqrt(1.0 + 1.0 / halves.nodes()), halves.unevenness(), places);
-    if (halves.areTooFew(sum)) m.doubt = kTooFew;
-    if (m.doubt.empty() && seesLittle(sum)) m.doubt = kUnseen;
-    return m;
-}
-
-/// The mean square after all iterations, by halves: what they show of nodes of m iterations is the
-/// variance of these, m / n times what is left after n, if numbers are independent; of even ones less
-/// is left.
-double squareOf(const FilmSum& sum, const Halves& halves) {
-    std::vector<SizeMean> roots(halves.sizes().begin(), halves.sizes().end());
-    double iterations = 0.0;
-    for (SizeMean& size : roots) {
-        iterations += double(size.nodes) * double(size.iterations) * size.h;
-        size.h = std::sqrt(size.h);
-    }
-    const EvenModel even(roots, 0.5 * kCaution * halves.uncertainty());
-    const double noise = even.noise(sum.iterations);
-    return even.holds() ? noise * noise : iterations / halves.nodes() / double(sum.iterations);
-}
-
-/// relmse or, as a root, rmse. `spread`: by the samples' distances from their mean, which says all
-/// where each iteration is one. Where even numbers go on from one to the next halves say more.
-Measured meanSquare(const FilmSum& sum, HalfDifference::Sums HalfDifference::*measure,
-                    const ErrorMeter::Mean& spread, bool root, std::size_t places) {
-    const Halves halves(sum, measure);
-    const bool bySpread = sum.samples == sum.iterations;
-    if (bySpread ? sum.varianceDivisor() == 0.0 : halves.empty()) return {kUnknown, kTooFew};
-    const double value = bySpread ? spread.value : squareOf(sum, halves);
-    const double unevenness =
-        bySpread ? spread.unevenness : std::max(spread.unevenness, halves.unevenness());
-    const double uncertainty =
-        bySpread ? unevenness
-                 : std::max(unevenness, halves.uncertainty() / std::sqrt(halves.nodes()));
-    Measured m = measured(root ? std::sqrt(value) : value, (root ? 0.5 : 1.0) * uncertainty,
-                          unevenness, places);
-    if (bySpread ? sum.samples < kFewestSamples : halves.areTooFew(sum)) m.doubt = kTooFew;
+    Measured m = measured(error, s * std::sqrt(1.0 + 1.0 / nodes), unevenness, places);
+    if (sizes.size() < kSizes || sum.iterations < kFewestIterations) m.doubt = kTooFew;
     if (m.doubt.empty() && seesLittle(sum)) m.doubt = kUnseen;
     return m;
 }
@@ -337,12 +265,17 @@ ErrorEstimate estimateError(const FilmSum& sum, const ErrorMeter& meter,
         return {none, none, none};
     }
     const ErrorMeter::Squares squares = meter.squares(sum, threads);
-    const auto square = [&](auto measure, const ErrorMeter::Mean& spread, bool root) {
-        return meanSquare(sum, measure, spread, root, meter.places());
+    const auto ofMean = [&](const ErrorMeter::Mean& m, bool root) {
+        const double value = root ? std::sqrt(m.value) : m.value;
+        Measured result =
+            measured(value, (root ? 0.5 : 1.0) * m.unevenness, m.unevenness, meter.places());
+        if (sum.varianceDivisor() == 0.0) result.error = kUnknown;
+        if (sum.samples < kFewestSamples) result.doubt = kTooFew;
+        if (result.doubt.empty() && seesLittle(sum)) result.doubt = kUnseen;
+        return result;
     };
-    return {mapeOf(sum, squares.relative, meter.places()),
-            square(&HalfDifference::relativeSquare, squares.relative, false),
-            square(&HalfDifference::square, squares.absolute, true)};
+    return {mapeOf(sum, squares.relative, meter.places()), ofMean(squares.relative, false),
+            ofMean(squares.absolute, true)};
 }
 
 bool isMeasured(std::uint64_t iterations) {

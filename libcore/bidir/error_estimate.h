@@ -52,7 +52,7 @@ class ErrorMeter {
     };
     Vec3d smoothed(std::span<const Rgb> left, std::span<const Rgb> right, const Place& place) const;
     template <class Term>
-    auto means(const ThreadPool* threads, const Term& term) const;
+    Mean mean(const ThreadPool* threads, const Term& term) const;
 
     int width_;
     std::vector<Place> places_;

@@ -81,13 +81,9 @@ void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
         return;
     }
     place->nodes += d.nodes;
-    for (auto measure : HalfDifference::kMeasures) {
-        HalfDifference::Sums& sums = (*place).*measure;
-        const HalfDifference::Sums& more = d.*measure;
-        sums.sum += more.sum;
-        sums.squares += more.squares;
-        sums.unevenness += more.unevenness;
-    }
+    place->sum += d.sum;
+    place->squares += d.squares;
+    place->unevenness += d.unevenness;
 }
 
 double varianceOfMean(double squares, double divisor) {

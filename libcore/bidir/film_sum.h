@@ -23,22 +23,13 @@ using Layers = std::map<std::string, std::vector<float>>;
 
 /// How far the two halves of nodes of one size are apart (error_estimate.h): sums over the nodes.
 struct HalfDifference {
-    /// A measure, over all nodes.
-    struct Sums {
-        double sum = 0.0;         ///< of its mean over the picture
-        double squares = 0.0;     ///< of the square of that
-        double unevenness = 0.0;  ///< of the share of it that few places carry
-
-        friend bool operator==(const Sums&, const Sums&) = default;
-    };
     std::uint64_t iterations = 0;  ///< of a node
     std::uint64_t nodes = 0;
-    Sums distance;        ///< |A - B| / 2 (R + e)
-    Sums relativeSquare;  ///< (A - B)^2 / 4 (R^2 + e^2)
-    Sums square;          ///< (A - B)^2 / 4
-    static constexpr Sums HalfDifference::*kMeasures[] = {
-        &HalfDifference::distance, &HalfDifference::relativeSquare, &HalfDifference::square};
+    double sum = 0.0;         ///< of the mean of |A - B| / 2 (R + e)
+    double squares = 0.0;     ///< of its square
+    double unevenness = 0.0;  ///< of the share of it that few places carry
 
+    double mean() const { return sum / double(nodes); }
     friend bool operator==(const HalfDifference&, const HalfDifference&) = default;
 };
 

@@ -17,14 +17,14 @@ std::size_t oddness(std::uint64_t iterations) {
 }
 
 /// a, by sizes of which one is four times the other; from 1/2 to kSteepest.
-double exponentOf(std::span<const SizeMean> sizes, double uncertainty) {
+double exponentOf(std::span<const HalfDifference> sizes, double uncertainty) {
     double sum = 0.0, weights = 0.0;
-    for (const SizeMean& small : sizes) {
-        for (const SizeMean& large : sizes) {
+    for (const HalfDifference& small : sizes) {
+        for (const HalfDifference& large : sizes) {
             if (large.iterations != 4 * small.iterations) continue;
-            if (!(small.h > 0.0 && large.h > 0.0)) continue;
+            if (!(small.sum > 0.0 && large.sum > 0.0)) continue;
             const double w = 1.0 / (1.0 / double(small.nodes) + 1.0 / double(large.nodes));
-            sum += w * std::log(small.h / large.h);
+            sum += w * std::log(small.mean() / large.mean());
             weights += w;
         }
     }
@@ -35,10 +35,10 @@ double exponentOf(std::span<const SizeMean> sizes, double uncertainty) {
 
 }  // namespace
 
-SpikeModel::SpikeModel(std::span<const SizeMean> sizes) {
+SpikeModel::SpikeModel(std::span<const HalfDifference> sizes) {
     double xx = 0.0, x1 = 0.0, one = 0.0, xh = 0.0, h1 = 0.0;
-    for (const SizeMean& d : sizes) {
-        const double x = 1.0 / std::sqrt(double(d.iterations)), y = d.h;
+    for (const HalfDifference& d : sizes) {
+        const double x = 1.0 / std::sqrt(double(d.iterations)), y = d.mean();
         if (!(y > 0.0)) continue;
         const double w = double(d.nodes) / (y * y);
         xx += w * x * x;
@@ -62,13 +62,13 @@ SpikeModel::SpikeModel(std::span<const SizeMean> sizes) {
     }
 }
 
-EvenModel::EvenModel(std::span<const SizeMean> sizes, double uncertainty)
+EvenModel::EvenModel(std::span<const HalfDifference> sizes, double uncertainty)
     : exponent_(exponentOf(sizes, uncertainty)) {
     std::array<double, 2> logs{}, nodes{};
-    for (const SizeMean& d : sizes) {
-        if (!(d.h > 0.0)) continue;
+    for (const HalfDifference& d : sizes) {
+        if (!(d.sum > 0.0)) continue;
         const std::size_t odd = oddness(d.iterations);
-        logs[odd] += double(d.nodes) * (std::log(d.h) + exponent_ * std::log(d.iterations));
+        logs[odd] += double(d.nodes) * (std::log(d.mean()) + exponent_ * std::log(d.iterations));
         nodes[odd] += double(d.nodes);
     }
     if (!(nodes[0] > 0.0 && nodes[1] > 0.0)) return;

@@ -6,20 +6,15 @@
 #include <cstdint>
 #include <span>
 
-namespace lacuna {
+#include "libcore/bidir/film_sum.h"
 
-/// Of all nodes of one size: h(m).
-struct SizeMean {
-    std::uint64_t iterations = 0;  ///< m
-    std::uint64_t nodes = 0;
-    double h = 0.0;
-};
+namespace lacuna {
 
 /// h(m) = g m^(-1/2) + c: noise that falls, and rare spikes that do not.
 class SpikeModel {
   public:
     /// Least squares of relative distances, a node a measurement.
-    explicit SpikeModel(std::span<const SizeMean> sizes);
+    explicit SpikeModel(std::span<const HalfDifference> sizes);
 
     double g() const { return g_; }
     double c() const { return c_; }
@@ -34,7 +29,7 @@ class SpikeModel {
 class EvenModel {
   public:
     /// `uncertainty`: of a node's h, relative. a is the least that they do not speak against.
-    EvenModel(std::span<const SizeMean> sizes, double uncertainty);
+    EvenModel(std::span<const HalfDifference> sizes, double uncertainty);
 
     /// Whether it says more than that of independent numbers.
     bool holds() const { return exponent_ > 0.5 && c_[0] > 0.0; }
