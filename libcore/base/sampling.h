@@ -73,6 +73,12 @@ inline float turnsOf(float y, float x) {
     return std::copysign(turns, y);
 }
 
+/// Barycentrics of the second and the third corner, even over a triangle.
+inline Vec2 uniformTriangle(float u1, float u2) {
+    const float s = std::sqrt(u1);
+    return {1.0f - s, u2 * s};
+}
+
 /// Uniform point of the unit disk, area-preserving and continuous [Shirley and Chiu 1997].
 inline Vec2 concentricDisk(float u1, float u2) {
     const float a = 2.0f * u1 - 1.0f;

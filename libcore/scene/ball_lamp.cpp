@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcore/base/octahedron.h"
 #include "libcore/base/sampling.h"
 #include "libcore/scene/light.h"
 
@@ -16,8 +17,6 @@ constexpr float kRounding = 1e-5f;
 
 /// From inside the sphere there is no cone, and close to it the lamp is no ball.
 constexpr double kOutside = 1.0001;
-
-constexpr std::uint32_t kMostCells = 16;
 
 }  // namespace
 
@@ -41,8 +40,7 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
                                                 float u2) const {
     const Vec3d toMiddle = middle_ - Vec3d(from);
     if (!isOutside(toMiddle)) {
-        const float s = std::sqrt(u1);
-        return Point{lights_[byArea_.sample(u).index], {1.0f - s, u2 * s}};
+        return Point{lights_[byArea_.sample(u).index], uniformTriangle(u1, u2)};
     }
     // Even over the disk is even over the cap, if 1 - cos goes by the square of the disk's radius.
     const double distance = length(toMiddle), versine = versineOfCone(toMiddle);
@@ -101,42 +99,29 @@ std::optional<BallLamp::Entry> BallLamp::enterFrom(std::uint32_t face, const Vec
     return std::nullopt;
 }
 
-/// Of the cell of a cube around the ball that `direction` goes through.
 std::uint32_t BallLamp::startOf(const Vec3& direction) const {
-    const Vec3 size{std::fabs(direction.x), std::fabs(direction.y), std::fabs(direction.z)};
-    const std::size_t axis =
-        size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-    const float most = size[axis];
-    const auto cell = [&](std::size_t i) {
-        const float across = (direction[i] / most + 1.0f) * (0.5f * float(cells_));
-        return std::min(std::uint32_t(std::max(across, 0.0f)), cells_ - 1);
+    const Vec2 p = octahedronPoint(direction);
+    const auto cell = [&](float x) {
+        return std::min(std::uint32_t(std::max(0.0f, 0.5f * (x + 1.0f) * float(cells_))),
+                        cells_ - 1);
     };
-    const std::uint32_t side = std::uint32_t(2 * axis) + (direction[axis] < 0.0f ? 1 : 0);
-    return starts_[(side * cells_ + cell((axis + 1) % 3)) * cells_ + cell((axis + 2) % 3)];
+    return starts_[cell(p.y) * cells_ + cell(p.x)];
 }
 
 void BallLamp::makeStarts() {
-    cells_ = std::clamp(std::uint32_t(std::lround(std::sqrt(double(faces_.size()) / 6.0))), 1u,
-                        kMostCells);
+    cells_ = std::uint32_t(std::lround(std::sqrt(double(faces_.size()))));
     std::uint32_t face = 0;
-    for (std::uint32_t side = 0; side < 6; ++side) {
-        for (std::uint32_t i = 0; i < cells_ * cells_; ++i) {
-            const auto across = [&](std::uint32_t cell) {
-                return (float(cell) + 0.5f) * 2.0f / float(cells_) - 1.0f;
-            };
-            Vec3 out;
-            const std::size_t axis = side / 2;
-            out[axis] = side % 2 ? -1.0f : 1.0f;
-            out[(axis + 1) % 3] = across(i / cells_);
-            out[(axis + 2) % 3] = across(i % cells_);
-            // Any face that looks that way; the one before mostly does.
-            for (std::size_t n = 0; n < faces_.size() && dot(faces_[face].normal, out) <= 0.0f;
-                 ++n) {
-                face = std::uint32_t((face + 1) % faces_.size());
-            }
-            if (const auto entry = enterFrom(face, {}, -normalize(out))) face = entry->face;
-            starts_.push_back(face);
+    for (std::uint32_t i = 0; i < cells_ * cells_; ++i) {
+        const auto middle = [&](std::uint32_t cell) {
+            return (2.0f * float(cell) + 1.0f) / float(cells_) - 1.0f;
+        };
+        const Vec3 out = octahedronDirection({middle(i % cells_), middle(i / cells_)});
+        // Any face that looks that way; the one before mostly does.
+        for (std::size_t n = 0; n < faces_.size() && dot(faces_[face].normal, out) <= 0.0f; ++n) {
+            face = std::uint32_t((face + 1) % faces_.size());
         }
+        if (const auto entry = enterFrom(face, {}, -out)) face = entry->face;
+        starts_.push_back(face);
     }
 }
 

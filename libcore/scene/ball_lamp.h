@@ -70,8 +70,8 @@ class BallLamp {
     std::vector<std::uint32_t> lights_;  // by face
     std::vector<Face> faces_;
     DiscreteDistribution byArea_;
-    std::uint32_t cells_ = 1;            // along an edge of the cube around it
-    std::vector<std::uint32_t> starts_;  // by the cube's cells: the face that is behind
+    std::uint32_t cells_ = 1;            // along a side of the square of directions
+    std::vector<std::uint32_t> starts_;  // by its cells: the face that lies there
 };
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Which emissive triangles make a ball.
+// Which emissive triangles make a ball (ball_lamp.h).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "libcore/base/union_find.h"
 #include "libcore/scene/ball_lamp.h"
 #include "libcore/scene/light.h"
 
@@ -61,20 +62,6 @@ std::vector<Corners> numberedCorners(std::span<const EmissiveTriangle> triangles
     }
     return numbers;
 }
-
-/// Which corners hang together.
-class Parts {
-  public:
-    explicit Parts(std::size_t size) : of_(size) { std::iota(of_.begin(), of_.end(), 0u); }
-    std::uint32_t of(std::uint32_t corner) {
-        while (of_[corner] != corner) corner = of_[corner] = of_[of_[corner]];
-        return corner;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { of_[of(a)] = of(b); }
-
-  private:
-    std::vector<std::uint32_t> of_;
-};
 
 }  // namespace
 
@@ -215,7 +202,7 @@ std::vector<BallLamp> BallLamp::find(std::span<const EmissiveTriangle> triangles
         return !t.texture && !t.alpha && !isBlack(t.radiance) && c[0] != c[1] && c[1] != c[2] &&
                c[2] != c[0];
     };
-    Parts parts(3 * triangles.size());
+    UnionFind parts(3 * triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!mayBelong(i)) continue;
         parts.join(corners[i][0], corners[i][1]);
@@ -224,7 +211,7 @@ std::vector<BallLamp> BallLamp::find(std::span<const EmissiveTriangle> triangles
     std::map<std::uint32_t, Mesh> meshes;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!mayBelong(i)) continue;
-        meshes.try_emplace(parts.of(corners[i][0]), triangles)
+        meshes.try_emplace(parts.find(corners[i][0]), triangles)
             .first->second.add(std::uint32_t(i), corners[i]);
     }
     std::vector<BallLamp> balls;

@@ -161,6 +161,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         a.edge2 = t.corners[2] - t.corners[0];
         a.ng = triangleNormal(t.corners[0], t.corners[1], t.corners[2]);
         a.exitance = t.radiance * perRadiance(t);
+        a.area = triangleArea(t);
         a.pdfA = pdfOfTriangle(i);
         a.twoSided = t.twoSided;
         a.textured = t.texture != nullptr;
@@ -181,7 +182,7 @@ Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
 /// Of its points, selection included. A triangle without area is never picked; a ray may still run
 /// into what rounding left of it.
 float Lights::pdfOfTriangle(std::uint32_t i) const {
-    const double area = triangleArea(triangles_[i]);
+    const double area = area_[i].area;
     return area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
 }
 
@@ -340,7 +341,7 @@ double turnOf(double y, double x) {
 
 SquarePoint Lights::pointSquare(const LightPlace& y0) const {
     if (y0.light < area_.size()) {
-        // Undoes the map of pointOn.
+        // Undoes uniformTriangle.
         const double s = 1.0 - double(y0.uv.x);
         return {s * s, s > 0.0 ? std::clamp(double(y0.uv.y) / s, 0.0, 1.0) : 0.0};
     }
@@ -430,8 +431,8 @@ double Lights::seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoi
     if (!(byPower > 0.0)) return 0.0;
     double bySight = pmfOfTree / byPower;
     if (const BallLamp* ball = ballOf(y0.light)) {
-        const double area = triangleArea(triangles_[y0.light]);
-        bySight *= ball->pdfA(from.position, y0.position, area_[y0.light].ng) * area;
+        const AreaLight& a = area_[y0.light];
+        bySight *= ball->pdfA(from.position, y0.position, a.ng) * a.area;
         if (guide_) bySight /= double(guidedPdf(y0));
     }
     return kByPower + (1.0 - kByPower) * bySight;
@@ -446,8 +447,7 @@ LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
 LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const {
     if (light < area_.size()) {
         const SquarePoint at = warpPoint(light, {double(draw.u1), double(draw.u2)});
-        const float s = std::sqrt(float(at[0]));
-        return pointOnTriangle(light, {1.0f - s, float(at[1]) * s});
+        return pointOnTriangle(light, uniformTriangle(float(at[0]), float(at[1])));
     }
     LightPoint p;
     p.light = light;

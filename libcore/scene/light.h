@@ -263,7 +263,8 @@ class Lights {
         Vec3 corner, edge1, edge2;
         Vec3 ng;
         Rgb exitance;  ///< where it has no texture
-        float pdfA;    ///< selection included
+        double area;
+        float pdfA;  ///< selection included
         bool twoSided, textured, hasHoles;
     };
 

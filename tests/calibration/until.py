@@ -101,7 +101,7 @@ def run_all(program: Path, out: Path, sampler: str, targets: list[tuple[str, flo
                          "--until", f"{measure}={bound}", "--iterations", str(MOST_ITERATIONS), "--sampler", sampler,
                          "--reference", str(references / f"{scene}.exr")]
             try:
-                j = render(maker, runs, f"{scene}.{row}.{measure}-{bound}", arguments)
+                j = render(maker, runs, f"{scene}.{row}.{sampler}.{measure}-{bound}", arguments)
             except NotThere:
                 continue
             results.append({"scene": scene, "row": row, "measure": measure, "bound": bound,

@@ -22,7 +22,11 @@ Rng someNumbers(std::uint64_t seed) {
     return Rng(seed, 0, StreamKind::User, 0);
 }
 
-/// One ball in the middle of nowhere, without the triangles of no size.
+Vec3 someDirection(Rng& rng) {
+    return normalize(Vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f});
+}
+
+/// One ball in the middle of nowhere.
 class Ball {
   public:
     explicit Ball(Vec3 middle = {0.3f, -0.2f, 0.1f}, float radius = 0.5f, int rings = 12)
@@ -120,9 +124,7 @@ TEST(BallLamp, pointsComeByTheirDensityAndMissesByTheRest) {
     for (const int rings : {5, 12}) {
         const Ball ball({0.3f, -0.2f, 0.1f}, 0.5f, rings);
         for (const float distance : {0.3f, 0.55f, 0.7f, 2.0f, 1e4f}) {
-            const Vec3 to =
-                normalize(Vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f});
-            const Vec3 from = Vec3{0.3f, -0.2f, 0.1f} + to * distance;
+            const Vec3 from = Vec3{0.3f, -0.2f, 0.1f} + someDirection(rng) * distance;
             std::vector<double> probabilities(ball.triangles.size());
             double hit = 0.0;
             for (const std::uint32_t l : ball.lamp.lights()) {
@@ -152,8 +154,7 @@ TEST(BallLamp, pointsAreThoseThatAreSeen) {
     const Ball ball;
     Rng rng = someNumbers(42);
     for (int n = 0; n < 2000; ++n) {
-        const Vec3 to =
-            normalize(Vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f});
+        const Vec3 to = someDirection(rng);
         const Vec3 from = Vec3{0.3f, -0.2f, 0.1f} + to * (0.51f + 3.0f * rng.uniform());
         const float u1 = rng.uniform(), u2 = rng.uniform();
         const auto point = ball.lamp.sample(from, 0.0, u1, u2);
@@ -193,7 +194,7 @@ TEST(BallLamp, everyPointBringsTheSame) {
     }
     const double mean = sum / kDraws;
     EXPECT_LT(squares / kDraws / (mean * mean) - 1.0, 0.1) << "a twentieth goes to the far side";
-    // The solid angle of the polyhedron, by its mean over all sides: two thousandths below the ball's.
+    // The solid angle of the polyhedron, about two hundredths below the ball's.
     const double sine2 = 0.01 / double(lengthSquared(from.position));
     const double ball = 2.0 * std::numbers::pi * sine2 / (1.0 + std::sqrt(1.0 - sine2));
     EXPECT_NEAR(mean / ball, 0.98, 0.015);
