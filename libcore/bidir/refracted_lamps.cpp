@@ -58,6 +58,7 @@ double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const PathVertex& last, std::size_t vertices,
                                       const Vec3& toChain, RayTally& tally) const {
+    if (!(walker_.seenSamples(y0, z) > 0.0)) return 0.0;
     const auto found = between(z, y0, tally);
     if (!found || found->chain.size() != vertices) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));

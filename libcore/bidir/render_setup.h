@@ -38,12 +38,21 @@ struct RenderSetup {
           techniques(techniques_),
           settings(settings_),
           threads(threads_),
-          walker(scene_, settings.guides, camera_, settings_.limits),
+          walker(scene_, guidesFor(scene_, techniques_, settings_.guides), camera_,
+                 settings_.limits),
           sampler(settings_.sampling, settings_.seed),
           lightPaths(settings_.lightPaths ? settings_.lightPaths : filmPixels()) {}
 
     RenderSetup(const RenderSetup&) = delete;
     RenderSetup& operator=(const RenderSetup&) = delete;
+
+    /// Where no walk runs into lights, next event has to draw all of a sky.
+    static Guides guidesFor(const Scene& scene, const Techniques& techniques, Guides guides) {
+        if (!techniques.hits && !guides.lights && scene.lights().environment()) {
+            guides.lights = std::make_shared<const Lights>(scene.lights().withoutHits());
+        }
+        return guides;
+    }
 
     std::uint64_t filmPixels() const {
         return std::uint64_t(camera.film().width) * std::uint64_t(camera.film().height);

@@ -10,6 +10,11 @@
 
 namespace lacuna {
 
+namespace {
+/// What is above the mean by less is not above it.
+constexpr double kRounding = 1e-5;
+}  // namespace
+
 Environment::Environment(const Image& image, double scale, double rotationDegrees,
                          const std::string& file)
     : width_(image.width),
@@ -59,8 +64,9 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     even_ = image_.size() == 1;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const double evenly = rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
-        contrast_ += std::max(0.0, cells_.pmf(i) - evenly);
+        weights[i] = std::max(0.0, cells_.pmf(i) - (1.0 + kRounding) * evenly);
     }
+    above_ = DiscreteDistribution(weights);
 }
 
 Environment::Place Environment::placeOf(Vec3 d) const {
@@ -137,19 +143,26 @@ Bilinear bilinear(const auto& corners) {
 
 }  // namespace
 
-Environment::Sample Environment::sample(double uCell, float u1, float u2) const {
-    return inCell(cells_.sample(uCell), u1, u2);
+Environment::Sample Environment::sample(double uCell, float u1, float u2, Part part) const {
+    return inCell(cells(part).sample(uCell), u1, u2);
 }
 
-Environment::Sample Environment::sampleSquare(double across, double down) const {
+Environment::Sample Environment::sampleSquare(double across, double down, Part part) const {
     if (even_) return {directionAt(1.0 - 2.0 * down, float(across) + turn_), kEvenPdfW};
+    const DiscreteDistribution& cells = this->cells(part);
     const auto width = std::size_t(width_);
-    const std::size_t row = cells_.sample(down).index / width;
-    const double begin = cells_.before(row * width), end = cells_.before((row + 1) * width);
+    const std::size_t row = cells.sample(down).index / width;
+    const double begin = cells.before(row * width), end = cells.before((row + 1) * width);
     // Rounding must not lead into the next row.
     const double u = std::min(begin + across * (end - begin), std::nextafter(end, begin));
-    const DiscreteDistribution::Pick cell = cells_.sample(u);
+    const DiscreteDistribution::Pick cell = cells.sample(u);
     return inCell(cell, cell.remapped(), (down - begin) / (end - begin));
+}
+
+double Environment::aboveMeanAt(const Place& p) const {
+    const std::size_t cell = std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x);
+    const double whole = cells_.pmf(cell);
+    return whole > 0.0 ? above_.pmf(cell) / whole : 0.0;
 }
 
 SquarePoint Environment::squareOf(Vec3 direction) const {

@@ -41,19 +41,26 @@ class Environment {
         Vec3 direction;  ///< unit, from the scene towards the sky
         float pdfW;
     };
-    /// Not to be called for a black map.
-    Sample sample(double uTexel, float u1, float u2) const;
+    /// What is drawn: the whole radiance, or what of each cell is above the mean [Karlik19].
+    enum class Part { Whole, AboveMean };
+    /// `pdfW` is that of the whole, whatever is drawn. Not to be called for a black map, nor for a part
+    /// that has nothing.
+    Sample sample(double uTexel, float u1, float u2, Part part = Part::Whole) const;
     /// The same density from a point of the square: points that are even there are even in the sky.
-    Sample sampleSquare(double across, double down) const;
+    Sample sampleSquare(double across, double down, Part part = Part::Whole) const;
     /// The point of the square that gives `direction`: {across, down}. Not for a black map.
     SquarePoint squareOf(Vec3 direction) const;
 
     bool black() const { return cells_.empty(); }
     /// Integral of the radiance over all directions, as the density has it.
     Rgb integral() const { return integral_; }
-    /// Share of it above its mean [Karlik19]: 0 of a sky that is the same everywhere, near 1 where a
-    /// small sun has all the light.
-    double contrast() const { return contrast_; }
+    /// Share of it above its mean: 0 of a sky that is the same everywhere, near 1 where a small sun has
+    /// all the light.
+    double contrast() const { return above_.total(); }
+    /// Density of what is drawn above the mean over that of the whole. 0 where there is no contrast.
+    double aboveMean(Vec3 direction) const {
+        return above_.empty() ? 0.0 : aboveMeanAt(placeOf(direction));
+    }
 
   private:
     static constexpr float kEvenPdfW = 0.25f / kPi;  ///< of a sky that is the same from everywhere
@@ -74,6 +81,10 @@ class Environment {
     float pdfWAt(const Place& place, Vec3 direction) const;
     double shareBelow(int y, Vec3 direction) const;
     Sample inCell(const DiscreteDistribution::Pick& cell, double u1, double u2) const;
+    double aboveMeanAt(const Place& place) const;
+    const DiscreteDistribution& cells(Part part) const {
+        return part == Part::Whole ? cells_ : above_;
+    }
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;
@@ -84,8 +95,8 @@ class Environment {
     };
     std::vector<Row> rows_;  // of cells
     DiscreteDistribution cells_;
+    DiscreteDistribution above_;  ///< by what is above the mean; its sum is the share of that
     Rgb integral_;
-    double contrast_ = 0.0;
     bool even_ = false;  ///< one texel that is not black: the same from everywhere
     float turn_;         ///< rotation as a fraction of a whole turn
 };

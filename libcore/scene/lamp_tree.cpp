@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/base/sampling.h"
 #include "libcore/scene/lamp_node.h"
 #include "libcore/scene/ray.h"
 
@@ -15,10 +16,6 @@ constexpr float kLeastCosine = 1e-4f;
 
 /// What leaves a surface is at least so much of the most that may: the mean is no bound.
 constexpr float kLeastUsual = 0.1f;
-
-double below1(double u) {
-    return std::min(u, 0x1.fffffffffffffp-1);
-}
 
 }  // namespace
 

@@ -147,12 +147,12 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
         environmentIndex_ = std::uint32_t(kinds_.size());
         kinds_.push_back(LightKind::Environment);
     }
-    const std::vector<double> power = powers();
-    byPower_ = std::make_shared<const DiscreteDistribution>(power);
+    powers_ = std::make_shared<const std::vector<double>>(powers());
+    byPower_ = std::make_shared<const DiscreteDistribution>(*powers_);
     selection_ = *byPower_;
     findBalls();
-    tree_ = std::make_shared<const LampTree>(makeTree(power));
-    chooseUnit(std::accumulate(power.begin(), power.end(), 0.0));
+    drawSky(Environment::Part::AboveMean);
+    chooseUnit(std::accumulate(powers_->begin(), powers_->end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
         const EmissiveTriangle& t = triangles_[i];
         AreaLight& a = area_.emplace_back();
@@ -170,13 +170,29 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
 }
 
 Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
-    Lights guided = *this;
+    Lights guided = withoutHits();
     guided.guide_ = std::move(guide);
     guided.selection_ = DiscreteDistribution(guided.guide_->pmf);
     for (std::uint32_t i = 0; i < guided.area_.size(); ++i) {
         guided.area_[i].pdfA = guided.pdfOfTriangle(i);
     }
     return guided;
+}
+
+Lights Lights::withoutHits() const {
+    Lights lights = *this;
+    lights.drawSky(Environment::Part::Whole);
+    return lights;
+}
+
+/// Decides what next event draws of the sky.
+void Lights::drawSky(Environment::Part part) {
+    skyPart_ = environment_ ? part : Environment::Part::Whole;
+    skyKept_ = nextEventSeesWholeSky() ? 1.0 : environment_->contrast();
+    kept_ = nextEventSeesWholeSky() ? 1.0
+                                    : selection_.before(environmentIndex_) +
+                                          skyKept_ * selection_.pmf(environmentIndex_);
+    tree_ = std::make_shared<const LampTree>(makeTree());
 }
 
 /// Of its points, selection included. A triangle without area is never picked; a ray may still run
@@ -214,11 +230,12 @@ void Lights::findBalls() {
     balls_ = std::make_shared<const Balls>(std::move(balls));
 }
 
-/// Of the choice of a sky that is the same everywhere, what next event keeps: walks see no windows.
+/// Where next event draws all of a sky, no less of it counts: walks see no windows.
 constexpr double kEvenSky = 0.1;
 
 /// Over the lights that can be picked.
-LampTree Lights::makeTree(std::span<const double> powers) const {
+LampTree Lights::makeTree() const {
+    const std::vector<double>& powers = *powers_;
     std::vector<PlacedLight> placed;
     std::vector<DistantLight> distant;
     const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
@@ -228,7 +245,8 @@ LampTree Lights::makeTree(std::span<const double> powers) const {
         if (const BallLamp* ball = ballOf(i)) {
             if (i != ball->lights().front()) continue;
             placed.push_back(ball->placed());
-            placed.back().intensity *= meanOf(triangles_[i].radiance);
+            placed.back().intensity *=
+                powers[i] / (triangleArea(triangles_[i]) * double(perRadiance(triangles_[i])));
             continue;
         }
         if (kinds_[i] == LightKind::Area) {
@@ -243,10 +261,10 @@ LampTree Lights::makeTree(std::span<const double> powers) const {
             continue;
         }
         if (kinds_[i] == LightKind::Environment) {
-            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter. Of
-            // that, what stands out: walks find an even sky as well.
-            const double share = std::max(environment_->contrast(), kEvenSky);
-            distant.push_back({i, {}, 0.25 * share * powers[i] / disk});
+            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter.
+            const double share =
+                nextEventSeesWholeSky() ? std::max(environment_->contrast(), kEvenSky) : skyKept_;
+            if (share > 0.0) distant.push_back({i, {}, 0.25 * share * powers[i] / disk});
             continue;
         }
         const std::size_t p = i - triangles_.size();
@@ -256,14 +274,14 @@ LampTree Lights::makeTree(std::span<const double> powers) const {
             continue;
         }
         // A spot's edge is dark: to round its cone up costs nothing.
-        const double cone = kinds_[i] == LightKind::Point
-                                ? std::numbers::pi
-                                : std::min(l.outerConeAngle + 1e-3, std::numbers::pi);
+        const bool isPoint = kinds_[i] == LightKind::Point;
+        const double cone =
+            isPoint ? std::numbers::pi : std::min(l.outerConeAngle + 1e-3, std::numbers::pi);
         placed.push_back({i,
                           punctualPosition_[p],
                           punctualPosition_[p],
                           {Vec3d(punctualDirection_[p]), cone, false, false},
-                          meanOf(l.intensity)});
+                          powers[i] / (isPoint ? 4.0 * std::numbers::pi : spotSolidAngle(l))});
     }
     return LampTree(std::move(placed), distant, diskRadius_, kinds_.size());
 }
@@ -300,12 +318,13 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
 const double Lights::kByPower = 0.1;
 
 /// By even numbers of 24 bits and another one, which gives each 26 more: skies have rare texels.
-Environment::Sample Lights::sampleSky(double rest, float across, float down) const {
+Environment::Sample Lights::sampleSky(double rest, float across, float down,
+                                      Environment::Part part) const {
     const double scaled = rest * 0x1p26, first = std::floor(scaled);
     const SquarePoint u{double(across) + first * 0x1p-50,
                         double(down) + (scaled - first) * 0x1p-24};
     const SquarePoint at = warpPoint(environmentIndex_, u);
-    return environment_->sampleSquare(at[0], at[1]);
+    return environment_->sampleSquare(at[0], at[1], part);
 }
 
 /// To where the guide wants it.
@@ -401,10 +420,14 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 
 std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
+    if (!(kept_ > 0.0)) return std::nullopt;
     if (!picksBySight() || draw.pick < kByPower) {
         const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
-        const DiscreteDistribution::Pick pick = selection_.sample(u);
-        const LightPoint point = pointOn(pick.index, pick.remapped(), draw);
+        // The sky is the last light, so that the end of the table is what is left out of it.
+        const DiscreteDistribution::Pick pick = selection_.sample(u * kept_);
+        const double kept = pick.index == environmentIndex_ ? skyKept_ : 1.0;
+        const LightPoint point =
+            pointOn(pick.index, below1(pick.remapped() / kept), draw, skyPart_);
         return SeenPoint{point, seenSamples(point, from)};
     }
     const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
@@ -414,28 +437,32 @@ std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, 
         if (!found) return std::nullopt;
         point = pointOnTriangle(found->light, found->uv);
     } else {
-        point = pointOn(pick.light, pick.remapped, draw);
+        point = pointOn(pick.light, pick.remapped, draw, skyPart_);
     }
     return SeenPoint{point, seenSamples(point, pick.pmf, from)};
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
-    if (!picksBySight()) return selection_.pmf(y0.light) > 0.0 ? 1.0 : 0.0;
+    const bool asked = picksBySight() && skySamples(y0) > 0.0;
+    if (!asked) return seenSamples(y0, 0.0, from);
     const BallLamp* ball = ballOf(y0.light);
     const std::uint32_t inTree = ball ? ball->lights().front() : y0.light;
     return seenSamples(y0, tree_->pmf(from, inTree), from);
 }
 
+/// `pmfOfTree` is read where lights are picked by sight.
 double Lights::seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const {
-    const double byPower = selection_.pmf(y0.light);
-    if (!(byPower > 0.0)) return 0.0;
-    double bySight = pmfOfTree / byPower;
+    const double power = selection_.pmf(y0.light), ofSky = skySamples(y0);
+    if (!(power > 0.0 && ofSky > 0.0)) return 0.0;
+    const double byPower = (y0.light == environmentIndex_ ? skyKept_ : 1.0) / kept_;
+    if (!picksBySight()) return byPower * ofSky;
+    double bySight = pmfOfTree / power;
     if (const BallLamp* ball = ballOf(y0.light)) {
         const AreaLight& a = area_[y0.light];
         bySight *= ball->pdfA(from.position, y0.position, a.ng) * a.area;
         if (guide_) bySight /= double(guidedPdf(y0));
     }
-    return kByPower + (1.0 - kByPower) * bySight;
+    return (kByPower * byPower + (1.0 - kByPower) * bySight) * ofSky;
 }
 
 LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
@@ -444,7 +471,8 @@ LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
 }
 
 /// A point on the light; `u` picks among an environment's texels.
-LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const {
+LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                           Environment::Part sky) const {
     if (light < area_.size()) {
         const SquarePoint at = warpPoint(light, {double(draw.u1), double(draw.u2)});
         return pointOnTriangle(light, uniformTriangle(float(at[0]), float(at[1])));
@@ -455,8 +483,8 @@ LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw)
     const double pmf = selection_.pmf(light);
     if (p.kind == LightKind::Environment) {
         const Environment::Sample s = draw.even || guide_
-                                          ? sampleSky(u, draw.u1, draw.u2)
-                                          : environment_->sample(u, draw.u1, draw.u2);
+                                          ? sampleSky(u, draw.u1, draw.u2, sky)
+                                          : environment_->sample(u, draw.u1, draw.u2, sky);
         p.position = s.direction;
         p.pdf = float(pmf) * s.pdfW;
         p.exitance = skyExitance(environment_->radiance(s.direction));

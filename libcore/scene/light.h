@@ -94,6 +94,8 @@ class Lights {
     /// these refer to (textures, the environment) must outlive the result.
     Lights guidedBy(std::shared_ptr<const EmissionGuide> guide) const;
     bool guided() const { return guide_ != nullptr; }
+    /// These lights where no walk runs into them: sampleSeenPoint then draws all of a sky.
+    Lights withoutHits() const;
 
     /// No light has any power.
     bool empty() const { return selection_.empty(); }
@@ -122,20 +124,24 @@ class Lights {
     /// the light.
     LightPoint punctualPoint(std::uint32_t light) const { return pointOn(light, 0.0, {}); }
 
-    /// The same on a light that is picked by what `from` sees of it, a BallLamp as one. Its pdf is
-    /// still that of samplePoint; `samples` says how many of those points it stands for. Empty where
-    /// the draw misses the lamp.
+    /// The same on a light that is picked by what `from` sees of it, a BallLamp as one, and a sky by
+    /// what of it is above its mean, unless nextEventSeesWholeSky(). Its pdf is still that of samplePoint;
+    /// `samples` says how many of those points it stands for. Empty where the draw misses the lamp, or
+    /// there is nothing to draw.
     struct SeenPoint {
         LightPoint point;
         double samples;
     };
     std::optional<SeenPoint> sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
-    /// Its density over that of samplePoint, which is a function of the light alone but on a BallLamp;
-    /// at least kByPower where the light has power, else zero.
+    /// Its density over that of samplePoint, which is a function of the light alone but on a BallLamp
+    /// and in a sky. Of a light with a place at least kByPower where it has power.
     double seenSamples(const LightPlace& y0, const Viewpoint& from) const;
     /// Share of the points of sampleSeenPoint that go by power all the same: nothing that the tree
     /// does not know costs more than 1 / kByPower of the samples.
     static const double kByPower;
+    /// Whether sampleSeenPoint draws a sky as samplePoint does. So it is where a guide knows better than
+    /// the mean, and without hits.
+    bool nextEventSeesWholeSky() const { return skyPart_ == Environment::Part::Whole; }
     const LampTree& tree() const { return *tree_; }
 
     /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
@@ -220,12 +226,15 @@ class Lights {
     static Rgb scaled(const Rgb& c, double s) {
         return {float(double(c.r) * s), float(double(c.g) * s), float(double(c.b) * s)};
     }
-    Environment::Sample sampleSky(double rest, float across, float down) const;
+    Environment::Sample sampleSky(double rest, float across, float down,
+                                  Environment::Part part) const;
     std::vector<double> powers() const;
+    void drawSky(Environment::Part part);
     void chooseUnit(double power);
     void findBalls();
-    LampTree makeTree(std::span<const double> powers) const;
-    LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw) const;
+    LampTree makeTree() const;
+    LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                       Environment::Part sky = Environment::Part::Whole) const;
     LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const;
     const BallLamp* ballOf(std::uint32_t light) const {
         const std::uint32_t ball = balls_->of[light];
@@ -233,6 +242,10 @@ class Lights {
     }
     /// Whether what is picked depends on who looks.
     bool picksBySight() const { return tree_->chooses() || !balls_->lamps.empty(); }
+    double skySamples(const LightPlace& y0) const {
+        const bool asLightWalks = nextEventSeesWholeSky() || y0.light != environmentIndex_;
+        return asLightWalks ? 1.0 : environment_->aboveMean(y0.position);
+    }
     double seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const;
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
@@ -274,7 +287,8 @@ class Lights {
     std::vector<PunctualLight> punctual_;      // then the punctual ones
     std::vector<Vec3> punctualPosition_, punctualDirection_;
     const Environment* environment_;
-    std::uint32_t environmentIndex_ = kNone;  // the last one
+    std::uint32_t environmentIndex_ = kNone;             // the last one
+    std::shared_ptr<const std::vector<double>> powers_;  // in W, whatever the unit
     std::shared_ptr<const DiscreteDistribution> byPower_;
     DiscreteDistribution selection_;  // that, or what the guide says
     struct Balls {
@@ -282,7 +296,10 @@ class Lights {
         std::vector<std::uint32_t> of;  ///< by light: its ball; kNone: none
     };
     std::shared_ptr<const Balls> balls_;
-    std::shared_ptr<const LampTree> tree_;        // of a ball its first light
+    std::shared_ptr<const LampTree> tree_;  // of a ball its first light
+    // Of the sky, for next event; what of it that is, and of the probability of all lights.
+    Environment::Part skyPart_ = Environment::Part::Whole;
+    double skyKept_ = 1.0, kept_ = 1.0;
     std::shared_ptr<const EmissionGuide> guide_;  // null: by power, and evenly
     float diskRadius_;
     double unit_ = 1.0;

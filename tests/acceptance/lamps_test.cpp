@@ -33,5 +33,31 @@ TEST_P(LampsSeen, makeThePictureThatPowerMakes) {
 INSTANTIATE_TEST_SUITE_P(All, LampsSeen, testing::Values("pt", "bpt", "risbpt", "tsrbpt"),
                          ByParameter());
 
+// Hits find what next event leaves out of a sky. Where there are none, next event has to bring all of it.
+TEST(SkySeen, isWholeWithHitsAndWithout) {
+    for (const bool even : {true, false}) {
+        SceneBuilder b = stage();
+        addLight(b, LightChoice::Directional, 0.3f);
+        addLight(b, LightChoice::Environment);
+        if (even) b.d.environment->colour = Rgb(0.5f, 0.7f, 1.0f);
+        const auto scene = b.build();
+        Shot shot = quickShot(300);
+        shot.transparentBackground = true;  // which hits alone can bring
+        MethodRow row = pathTracer();
+        row.techniques.hits = false;
+        const Picture without = render(*scene, row, shot);
+        shot.seed = 100;
+        for (const char* method : {"pt", "bpt"}) {
+            const std::string name =
+                std::string(method) + (even ? ", even sky" : ", sky with a sun");
+            for (const char* lamps : {"lamps=seen", "lamps=power"}) {
+                shot.settings = {lamps};
+                expectSame(render(*scene, rowNamed(method), shot), without, name + ", " + lamps);
+                ++shot.seed;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace lacuna::test
