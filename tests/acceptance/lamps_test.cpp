@@ -43,7 +43,7 @@ TEST(SkySeen, isWholeWithHitsAndWithout) {
         const auto scene = b.build();
         Shot shot = quickShot(300);
         shot.transparentBackground = true;  // which hits alone can bring
-        MethodRow row = pathTracer();
+        MethodRow row = rowNamed("pt");
         row.techniques.hits = false;
         const Picture without = render(*scene, row, shot);
         shot.seed = 100;

@@ -219,7 +219,7 @@ FAULTS = [
           {"scene": "LampTree.pointsInASkyCountAsTheyAreDrawn"}),
     Fault("sky-above-its-mean-without-hits", "next event leaves to hits what they are forbidden to bring",
           "libcore/bidir/render_setup.h",
-          "!techniques.hits &&", "false &&",
+          "!techniques.hits &&", "techniques.hits &&",
           {"acceptance": "SkySeen.isWholeWithHitsAndWithout"}),
     Fault("spot-falloff-linear", "spot lights fade out linearly",
           "libcore/scene/light.cpp",
