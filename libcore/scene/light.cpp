@@ -151,6 +151,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     byPower_ = std::make_shared<const DiscreteDistribution>(*powers_);
     selection_ = *byPower_;
     findBalls();
+    sumBalls();
     drawSky(Environment::Part::AboveMean);
     chooseUnit(std::accumulate(powers_->begin(), powers_->end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
@@ -173,6 +174,7 @@ Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
     Lights guided = withoutHits();
     guided.guide_ = std::move(guide);
     guided.selection_ = DiscreteDistribution(guided.guide_->pmf);
+    guided.sumBalls();
     for (std::uint32_t i = 0; i < guided.area_.size(); ++i) {
         guided.area_[i].pdfA = guided.pdfOfTriangle(i);
     }
@@ -228,6 +230,15 @@ void Lights::findBalls() {
         for (const std::uint32_t light : balls.lamps[b].lights()) balls.of[light] = b;
     }
     balls_ = std::make_shared<const Balls>(std::move(balls));
+}
+
+void Lights::sumBalls() {
+    ballPmfs_.clear();
+    for (const BallLamp& ball : balls_->lamps) {
+        double pmf = 0.0;
+        for (const std::uint32_t light : ball.lights()) pmf += selection_.pmf(light);
+        ballPmfs_.push_back(pmf);
+    }
 }
 
 /// Where next event draws all of a sky, no less of it counts: walks see no windows.
@@ -421,25 +432,30 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
     if (!(kept_ > 0.0)) return std::nullopt;
-    if (!picksBySight() || draw.pick < kByPower) {
-        const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
-        // The sky is the last light, so that the end of the table is what is left out of it.
-        const DiscreteDistribution::Pick pick = selection_.sample(u * kept_);
-        const double kept = pick.index == environmentIndex_ ? skyKept_ : 1.0;
-        const LightPoint point =
-            pointOn(pick.index, below1(pick.remapped() / kept), draw, skyPart_);
-        return SeenPoint{point, seenSamples(point, from)};
+    if (picksBySight() && draw.pick >= kByPower) {
+        const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
+        const auto point = seenPointOn(pick.light, pick.remapped, draw, from.position);
+        if (!point) return std::nullopt;
+        return SeenPoint{*point, seenSamples(*point, pick.pmf, from)};
     }
-    const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
-    LightPoint point;
-    if (const BallLamp* ball = ballOf(pick.light)) {
-        const auto found = ball->sample(from.position, pick.remapped, draw.u1, draw.u2);
-        if (!found) return std::nullopt;
-        point = pointOnTriangle(found->light, found->uv);
-    } else {
-        point = pointOn(pick.light, pick.remapped, draw, skyPart_);
-    }
-    return SeenPoint{point, seenSamples(point, pick.pmf, from)};
+    const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
+    // The sky is the last light, so that the end of the table is what is left out of it.
+    const DiscreteDistribution::Pick pick = selection_.sample(u * kept_);
+    const double kept = pick.index == environmentIndex_ ? skyKept_ : 1.0;
+    const double rest = below1(pick.remapped() / kept);
+    const auto point = seenPointOn(pick.index, rest, draw, from.position);
+    if (!point) return std::nullopt;
+    return SeenPoint{*point, seenSamples(*point, from)};
+}
+
+/// A point of next event on the light, or on the ball that it is a part of.
+std::optional<LightPoint> Lights::seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                                              const Vec3& from) const {
+    const BallLamp* ball = ballOf(light);
+    if (!ball) return pointOn(light, u, draw, skyPart_);
+    const auto found = ball->sample(from, u, draw.u1, draw.u2);
+    if (!found) return std::nullopt;
+    return pointOnTriangle(found->light, found->uv);
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
@@ -450,19 +466,24 @@ double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
     return seenSamples(y0, tree_->pmf(from, inTree), from);
 }
 
+/// Probability of picking the light, or its ball, over that of light walks, times the same of the point.
 /// `pmfOfTree` is read where lights are picked by sight.
 double Lights::seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const {
-    const double power = selection_.pmf(y0.light), ofSky = skySamples(y0);
-    if (!(power > 0.0 && ofSky > 0.0)) return 0.0;
-    const double byPower = (y0.light == environmentIndex_ ? skyKept_ : 1.0) / kept_;
-    if (!picksBySight()) return byPower * ofSky;
-    double bySight = pmfOfTree / power;
+    const double power = selection_.pmf(y0.light);
+    double byPower = 1.0 / kept_, ofPoint = 1.0;
+    if (!(power > 0.0)) return 0.0;
     if (const BallLamp* ball = ballOf(y0.light)) {
         const AreaLight& a = area_[y0.light];
-        bySight *= ball->pdfA(from.position, y0.position, a.ng) * a.area;
-        if (guide_) bySight /= double(guidedPdf(y0));
+        byPower *= ballPmfs_[balls_->of[y0.light]] / power;
+        ofPoint = ball->pdfA(from.position, y0.position, a.ng) * a.area;
+        if (guide_) ofPoint /= double(guidedPdf(y0));
+    } else if (y0.light == environmentIndex_) {
+        byPower *= skyKept_;
+        ofPoint = skySamples(y0);
     }
-    return (kByPower * byPower + (1.0 - kByPower) * bySight) * ofSky;
+    if (!(ofPoint > 0.0)) return 0.0;
+    if (!picksBySight()) return byPower * ofPoint;
+    return (kByPower * byPower + (1.0 - kByPower) * (pmfOfTree / power)) * ofPoint;
 }
 
 LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {

@@ -134,10 +134,10 @@ class Lights {
     };
     std::optional<SeenPoint> sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
     /// Its density over that of samplePoint, which is a function of the light alone but on a BallLamp
-    /// and in a sky. Of a light with a place at least kByPower where it has power.
+    /// and in a sky. Of all others with power at least kByPower.
     double seenSamples(const LightPlace& y0, const Viewpoint& from) const;
-    /// Share of the points of sampleSeenPoint that go by power all the same: nothing that the tree
-    /// does not know costs more than 1 / kByPower of the samples.
+    /// Share of the points of sampleSeenPoint whose lamp is picked by power all the same: nothing that
+    /// the tree does not know costs more than 1 / kByPower of the samples.
     static const double kByPower;
     /// Whether sampleSeenPoint draws a sky as samplePoint does. So it is where a guide knows better than
     /// the mean, and without hits.
@@ -232,9 +232,12 @@ class Lights {
     void drawSky(Environment::Part part);
     void chooseUnit(double power);
     void findBalls();
+    void sumBalls();
     LampTree makeTree() const;
     LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                        Environment::Part sky = Environment::Part::Whole) const;
+    std::optional<LightPoint> seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                                          const Vec3& from) const;
     LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const;
     const BallLamp* ballOf(std::uint32_t light) const {
         const std::uint32_t ball = balls_->of[light];
@@ -296,6 +299,7 @@ class Lights {
         std::vector<std::uint32_t> of;  ///< by light: its ball; kNone: none
     };
     std::shared_ptr<const Balls> balls_;
+    std::vector<double> ballPmfs_;          // probability of picking any of a ball's triangles
     std::shared_ptr<const LampTree> tree_;  // of a ball its first light
     // Of the sky, for next event; what of it that is, and of the probability of all lights.
     Environment::Part skyPart_ = Environment::Part::Whole;

@@ -193,7 +193,7 @@ TEST(BallLamp, everyPointBringsTheSame) {
         squares += brought * brought;
     }
     const double mean = sum / kDraws;
-    EXPECT_LT(squares / kDraws / (mean * mean) - 1.0, 0.1) << "a twentieth goes to the far side";
+    EXPECT_LT(squares / kDraws / (mean * mean) - 1.0, 0.02) << "what passes by the corners";
     // The solid angle of the polyhedron, about two hundredths below the ball's.
     const double sine2 = 0.01 / double(lengthSquared(from.position));
     const double ball = 2.0 * std::numbers::pi * sine2 / (1.0 + std::sqrt(1.0 - sine2));
