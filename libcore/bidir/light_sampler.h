@@ -16,7 +16,7 @@ class LightSampler {
     /// where it gives nothing. Density and throughput of `out` are those of light walks.
     virtual double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const = 0;
     /// Density of sampleSeenLight over that of light walks: how many of their points one of its
-    /// points is worth. A function of the light, the place of `eye` and its side.
+    /// points is worth. A function of y_0, the place of `eye` and its side.
     virtual double seenSamples(const PathVertex& light, const PathVertex& eye) const = 0;
 };
 

@@ -183,11 +183,11 @@ Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
 
 Lights Lights::withoutHits() const {
     Lights lights = *this;
-    lights.drawSky(Environment::Part::Whole);
+    if (environment_) lights.drawSky(Environment::Part::Whole);
     return lights;
 }
 
-/// Decides what next event draws of the sky.
+/// Decides what next event draws of the sky, and makes the tree, which weighs that.
 void Lights::drawSky(Environment::Part part) {
     skyPart_ = environment_ ? part : Environment::Part::Whole;
     skyKept_ = nextEventSeesWholeSky() ? 1.0 : environment_->contrast();

@@ -245,6 +245,7 @@ class Lights {
     }
     /// Whether what is picked depends on who looks.
     bool picksBySight() const { return tree_->chooses() || !balls_->lamps.empty(); }
+    /// Of the sky, density of its directions in next event over that in light walks; 1 of all other lights.
     double skySamples(const LightPlace& y0) const {
         const bool asLightWalks = nextEventSeesWholeSky() || y0.light != environmentIndex_;
         return asLightWalks ? 1.0 : environment_->aboveMean(y0.position);

@@ -164,6 +164,25 @@ def differential(options):
     return {"summary": f"{total} from seed {options.seed} on", "rows": [], "findings": finds}
 
 
+def tried(output):
+    """What differential/pieces.py said: its last line, and the finds."""
+    total = re.search(r"^\d+ command lines, .*$", output, re.M)
+    return total[0] if total else "", re.findall(r"^(line \d+: .+)$", output, re.M)
+
+
+def pieces(options):
+    """Random command lines that no night before has had."""
+    folder = build("release", options.out / "pieces-build.log", "lacuna_tools")
+    log = options.out / "pieces.log"
+    output, code = run(["python3", "-B", "tests/differential/pieces.py", folder / "render", "--lines", options.lines,
+                        "--first", options.seed], log)
+    total, finds = tried(output)
+    if code != 0 and not finds:
+        finds = [f"ended with {code}: {log}"]
+    return {"summary": f"{total}, from seed {options.seed} on, on 1 and 3 threads, interrupted, and out of parts", "rows": [],
+            "findings": finds}
+
+
 def studies(options):
     """The quick forms of the studies of our own scenes."""
     folder = build("release", options.out / "studies-build.log", "lacuna_tools")
@@ -187,4 +206,4 @@ def endurance(options):
             "findings": findings}
 
 
-PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, studies, endurance)}
+PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, pieces, studies, endurance)}

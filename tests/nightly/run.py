@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Sanitizers, fuzzers, faults, random scenes, quick studies and a long render, one after the other, and one page of
-what came out.
+"""Sanitizers, fuzzers, faults, random scenes and command lines, quick studies and a long render, one after the other, and
+one page of what came out.
 
     bash tests/nightly.sh                                       all of it: hours
     bash tests/nightly.sh --only fuzz --executions 20000        a part of it
@@ -55,8 +55,9 @@ def main():
     parser.add_argument("--seconds-each", type=int, default=0, help="end the fuzzer of a parser after so long")
     parser.add_argument("--parser", nargs="+", help="fuzz these alone")
     parser.add_argument("--scenes", type=int, default=100, help="random ones")
+    parser.add_argument("--lines", type=int, default=1000, help="random command lines")
     parser.add_argument("--seed", type=int, default=1000 * datetime.date.today().toordinal(),
-                        help="of the first random scene (the day's)")
+                        help="of the first random scene and command line (the day's)")
     parser.add_argument("--minutes", type=int, default=60, help="of the long render (a day: 1440)")
     parser.add_argument("--long-scene", type=Path, default=ROOT / "scenes" / "nave.glb", help="what it shows (nave.glb)")
     parser.add_argument("--quick", action="store_true",

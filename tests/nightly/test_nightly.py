@@ -36,6 +36,11 @@ class Outputs(unittest.TestCase):
         output = "scene 5, pt: mean: off by 3 errors\n8 scenes, 32 comparisons\nscene 5: 1 finds\n"
         self.assertEqual(parts.compared(output), ("8 scenes, 32 comparisons", ["scene 5, pt: mean: off by 3 errors"]))
 
+    def test_random_command_lines(self):
+        output = "line 7: parts make another picture: lacuna-render scene.glb\n9 command lines, 2 of them refused\n"
+        self.assertEqual(parts.tried(output), ("9 command lines, 2 of them refused",
+                                               ["line 7: parts make another picture: lacuna-render scene.glb"]))
+
 
 class LongRender(unittest.TestCase):
     def test_memory(self):
