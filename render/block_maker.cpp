@@ -12,6 +12,8 @@ BlockMaker::BlockMaker(const RenderOptions& options, const MethodRow& row, const
       settings_(settings),
       assets_(caches.all()),
       method_(freshMethod()),
+      learns_(method_->learns()),
+      warmupIterations_(method_->warmupIterations()),
       plan_(planOf(options, *method_)) {
     stage.settings.blockIterations = plan_.iterations;
     stage.settings.guides = guidesOf(*stage.scene, assets_);

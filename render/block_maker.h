@@ -46,8 +46,8 @@ class BlockMaker {
     const BlockPlan& plan() const { return plan_; }
     /// Whether a block's iterations can only be made from its first one on, and all in one place:
     /// the method learns from them, or layers hold them together.
-    bool blocksAreWhole() const { return method_->learns() || !layers_.empty(); }
-    int warmupIterations() const { return method_->warmupIterations(); }
+    bool blocksAreWhole() const { return learns_ || !layers_.empty(); }
+    int warmupIterations() const { return warmupIterations_; }
     /// L.
     std::uint64_t lightPaths() const { return integrator_->lightPaths(); }
     /// Of the open block.
@@ -71,6 +71,9 @@ class BlockMaker {
     const Settings& settings_;
     const AssetSet assets_;
     std::unique_ptr<Method> method_;  ///< of the open block
+    // What all of them say: asked for by other threads while a block is opened.
+    const bool learns_;
+    const int warmupIterations_;
     BlockPlan plan_;
     std::unique_ptr<BidirIntegrator> integrator_;
     std::unique_ptr<TechniqueFilm> techniques_;
