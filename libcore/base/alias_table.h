@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "libcore/base/below1.h"
+
 namespace lacuna {
 
 /// Alias table [Vose91] over n outcomes, for tables that are too large for the processor's caches
@@ -59,7 +61,6 @@ class AliasTable {
         const auto k = std::size_t(u * double(slots_.size()));
         return k < slots_.size() ? k : slots_.size() - 1;
     }
-    static double below1(double x) { return x < 0x1.fffffffffffffp-1 ? x : 0x1.fffffffffffffp-1; }
 
     std::vector<Slot> slots_;
     double total_ = 0.0;

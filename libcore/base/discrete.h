@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "libcore/base/below1.h"
+
 namespace lacuna {
 
 /// Cumulative distribution over n outcomes. Accumulated in double; the last POSITIVE entry and all
@@ -38,7 +40,7 @@ class DiscreteDistribution {
         double pmf;
         double rest;  ///< u less the probability of all outcomes before this one
         /// u, stretched to [0, 1) inside the outcome: to be used again.
-        double remapped() const { return std::clamp(rest / pmf, 0.0, 0x1.fffffffffffffp-1); }
+        double remapped() const { return std::max(0.0, below1(rest / pmf)); }
     };
     /// u in [0, 1). Not to be called when empty().
     Pick sample(double u) const {

@@ -104,9 +104,4 @@ inline Vec3 cosineHemisphere(float u1, float u2) {
     return {p.x, p.y, std::sqrt(std::max(0.0f, 1.0f - p.x * p.x - p.y * p.y))};
 }
 
-/// A random number for the next choice, where rounding may have made it one.
-inline double below1(double u) {
-    return std::min(u, 0x1.fffffffffffffp-1);
-}
-
 }  // namespace lacuna

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "libcore/base/below1.h"
+
 namespace lacuna {
 
 SquareDensity::SquareDensity(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
@@ -49,7 +51,7 @@ SquarePoint SquareDensity::warp(SquarePoint u) const {
         low[axis] += upper ? size[axis] : 0.0;
         u[axis] = upper ? (u[axis] - lower) / (1.0 - lower) : u[axis] / lower;
         // Rounding must not lead into the next half.
-        u[axis] = std::min(u[axis], 0x1.fffffffffffffp-1);
+        u[axis] = below1(u[axis]);
         node = nodes_.data() + (node->code & ~(kInner | kSecondAxis)) + (upper ? 1 : 0);
     }
     return {low[0] + size[0] * u[0], low[1] + size[1] * u[1]};

@@ -37,8 +37,8 @@ std::optional<FoundChain> RefractedLamps::between(const PathVertex& z, const Pat
 
 /// p(y_0) over what an eye walk that leaves z along the chain has for it, but for the direction's density
 /// at z: the events' probabilities, and how far the chain spreads a solid angle.
-double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
-                                 const PathVertex& z) const {
+double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
+                                 const FoundChain& found) const {
     const Lights& lights = walker_.lights();
     const Chain& chain = found.chain;
     double walk = found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
@@ -50,7 +50,7 @@ double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
             walker_.scattering(vertexOf(walker_, v), v.toEye, v.toLight, v.event.event);
         walk *= double(e.pdfWToLight) / v.measure;
     }
-    const double samples = double(lightPointOf(lights, y0).pdf) * walker_.seenSamples(y0, z);
+    const double samples = double(lightPointOf(lights, y0).pdf) * seenSamples;
     return walk > 0.0 ? samples / walk : 0.0;
 }
 
@@ -58,13 +58,14 @@ double RefractedLamps::densityAt(const PathVertex& y0, const FoundChain& found,
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const PathVertex& last, std::size_t vertices,
                                       const Vec3& toChain, RayTally& tally) const {
-    if (!(walker_.seenSamples(y0, z) > 0.0)) return 0.0;
+    const double seenSamples = walker_.seenSamples(y0, z);
+    if (!(seenSamples > 0.0)) return 0.0;
     const auto found = between(z, y0, tally);
     if (!found || found->chain.size() != vertices) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
     if (!solver_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
-    return densityAt(y0, *found, z);
+    return densityAt(y0, seenSamples, *found);
 }
 
 bool RefractedLamps::isGlass(const PathVertex& v) const {
@@ -113,7 +114,8 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const double expected = samplesAt(z, connectionOrder(eye));
     if (rng.uniformDouble() >= expected) return std::nullopt;
     PathVertex y0;
-    const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
+    const double seenSamples = walker_.sampleSeenLight(z, rng, y0);
+    const double samples = expected * seenSamples;
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
     const auto found = between(z, y0, tally);
     if (!found || int(found->chain.size()) > left) return std::nullopt;
@@ -126,7 +128,7 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
     const Closed closed =
         closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
-    path.refracted = expected * densityAt(y0, *found, z) / double(atEye.pdfWToLight);
+    path.refracted = expected * densityAt(y0, seenSamples, *found) / double(atEye.pdfWToLight);
     return closed;
 }
 

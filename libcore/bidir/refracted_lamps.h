@@ -51,7 +51,7 @@ class RefractedLamps {
     bool isGlass(const PathVertex& v) const;
     std::optional<FoundChain> between(const PathVertex& z, const PathVertex& y0,
                                       RayTally& tally) const;
-    double densityAt(const PathVertex& y0, const FoundChain& found, const PathVertex& z) const;
+    double densityAt(const PathVertex& y0, double seenSamples, const FoundChain& found) const;
     double densityOfChain(const PathVertex& z, const PathVertex& y0, const PathVertex& last,
                           std::size_t vertices, const Vec3& toChain, RayTally& tally) const;
 

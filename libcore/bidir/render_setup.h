@@ -48,7 +48,8 @@ struct RenderSetup {
 
     /// Where no walk runs into lights, next event has to draw all of a sky.
     static Guides guidesFor(const Scene& scene, const Techniques& techniques, Guides guides) {
-        if (!techniques.hits && !guides.lights && scene.lights().environment()) {
+        const bool byNextEvent = techniques.connects && !techniques.hits && !guides.lights;
+        if (byNextEvent && scene.lights().environment()) {
             guides.lights = std::make_shared<const Lights>(scene.lights().withoutHits());
         }
         return guides;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcore/base/sampling.h"
+#include "libcore/base/below1.h"
 #include "libcore/scene/lamp_node.h"
 #include "libcore/scene/ray.h"
 

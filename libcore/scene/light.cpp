@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "libcore/base/below1.h"
 #include "libcore/base/sampling.h"
 #include "libcore/scene/texture.h"
 #include "libcore/scene/triangle.h"
@@ -190,10 +191,11 @@ Lights Lights::withoutHits() const {
 /// Decides what next event draws of the sky, and makes the tree, which weighs that.
 void Lights::drawSky(Environment::Part part) {
     skyPart_ = environment_ ? part : Environment::Part::Whole;
-    skyKept_ = nextEventSeesWholeSky() ? 1.0 : environment_->contrast();
-    kept_ = nextEventSeesWholeSky() ? 1.0
-                                    : selection_.before(environmentIndex_) +
-                                          skyKept_ * selection_.pmf(environmentIndex_);
+    skyKept_ = kept_ = 1.0;
+    if (skyPart_ == Environment::Part::AboveMean) {
+        skyKept_ = environment_->contrast();
+        kept_ = selection_.before(environmentIndex_) + skyKept_ * selection_.pmf(environmentIndex_);
+    }
     tree_ = std::make_shared<const LampTree>(makeTree());
 }
 
@@ -273,8 +275,9 @@ LampTree Lights::makeTree() const {
         }
         if (kinds_[i] == LightKind::Environment) {
             // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter.
-            const double share =
-                nextEventSeesWholeSky() ? std::max(environment_->contrast(), kEvenSky) : skyKept_;
+            const double share = skyPart_ == Environment::Part::Whole
+                                     ? std::max(environment_->contrast(), kEvenSky)
+                                     : skyKept_;
             if (share > 0.0) distant.push_back({i, {}, 0.25 * share * powers[i] / disk});
             continue;
         }
@@ -436,7 +439,9 @@ std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, 
         const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
         const auto point = seenPointOn(pick.light, pick.remapped, draw, from.position);
         if (!point) return std::nullopt;
-        return SeenPoint{*point, seenSamples(*point, pick.pmf, from)};
+        const double samples =
+            pickSamples(point->light, pick.pmf) * pointSamples(*point, from.position);
+        return SeenPoint{*point, samples};
     }
     const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
     // The sky is the last light, so that the end of the table is what is left out of it.
@@ -459,31 +464,35 @@ std::optional<LightPoint> Lights::seenPointOn(std::uint32_t light, double u, con
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
-    const bool asked = picksBySight() && skySamples(y0) > 0.0;
-    if (!asked) return seenSamples(y0, 0.0, from);
+    const double ofPoint = pointSamples(y0, from.position);
+    if (!(ofPoint > 0.0)) return 0.0;  // the tree need not be asked
+    if (!picksBySight()) return pickSamples(y0.light, 0.0) * ofPoint;
     const BallLamp* ball = ballOf(y0.light);
     const std::uint32_t inTree = ball ? ball->lights().front() : y0.light;
-    return seenSamples(y0, tree_->pmf(from, inTree), from);
+    return pickSamples(y0.light, tree_->pmf(from, inTree)) * ofPoint;
 }
 
-/// Probability of picking the light, or its ball, over that of light walks, times the same of the point.
-/// `pmfOfTree` is read where lights are picked by sight.
-double Lights::seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const {
-    const double power = selection_.pmf(y0.light);
-    double byPower = 1.0 / kept_, ofPoint = 1.0;
+/// Probability of picking the light, or its ball, over that of light walks. `pmfOfTree` is read where
+/// lights are picked by sight.
+double Lights::pickSamples(std::uint32_t light, double pmfOfTree) const {
+    const double power = selection_.pmf(light);
     if (!(power > 0.0)) return 0.0;
+    double byPower = 1.0 / kept_;
+    if (ballOf(light)) byPower *= ballPmfs_[balls_->of[light]] / power;
+    if (light == environmentIndex_) byPower *= skyKept_;
+    if (!picksBySight()) return byPower;
+    return kByPower * byPower + (1.0 - kByPower) * (pmfOfTree / power);
+}
+
+/// The same of the point on it.
+double Lights::pointSamples(const LightPlace& y0, const Vec3& from) const {
     if (const BallLamp* ball = ballOf(y0.light)) {
         const AreaLight& a = area_[y0.light];
-        byPower *= ballPmfs_[balls_->of[y0.light]] / power;
-        ofPoint = ball->pdfA(from.position, y0.position, a.ng) * a.area;
-        if (guide_) ofPoint /= double(guidedPdf(y0));
-    } else if (y0.light == environmentIndex_) {
-        byPower *= skyKept_;
-        ofPoint = skySamples(y0);
+        const double samples = ball->pdfA(from, y0.position, a.ng) * a.area;
+        return guide_ ? samples / double(guidedPdf(y0)) : samples;
     }
-    if (!(ofPoint > 0.0)) return 0.0;
-    if (!picksBySight()) return byPower * ofPoint;
-    return (kByPower * byPower + (1.0 - kByPower) * (pmfOfTree / power)) * ofPoint;
+    if (y0.light != environmentIndex_ || skyPart_ == Environment::Part::Whole) return 1.0;
+    return environment_->aboveMean(y0.position);
 }
 
 LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {

@@ -125,9 +125,9 @@ class Lights {
     LightPoint punctualPoint(std::uint32_t light) const { return pointOn(light, 0.0, {}); }
 
     /// The same on a light that is picked by what `from` sees of it, a BallLamp as one, and a sky by
-    /// what of it is above its mean, unless nextEventSeesWholeSky(). Its pdf is still that of samplePoint;
-    /// `samples` says how many of those points it stands for. Empty where the draw misses the lamp, or
-    /// there is nothing to draw.
+    /// what of it is above its mean: as a whole where a guide knows better, and withoutHits(). Its pdf is
+    /// still that of samplePoint; `samples` says how many of those points it stands for. Empty where the
+    /// draw misses the lamp, or there is nothing to draw.
     struct SeenPoint {
         LightPoint point;
         double samples;
@@ -139,9 +139,6 @@ class Lights {
     /// Share of the points of sampleSeenPoint whose lamp is picked by power all the same: nothing that
     /// the tree does not know costs more than 1 / kByPower of the samples.
     static const double kByPower;
-    /// Whether sampleSeenPoint draws a sky as samplePoint does. So it is where a guide knows better than
-    /// the mean, and without hits.
-    bool nextEventSeesWholeSky() const { return skyPart_ == Environment::Part::Whole; }
     const LampTree& tree() const { return *tree_; }
 
     /// The area light at barycentric `uv` of a hit triangle, as if samplePoint had drawn it (pdf
@@ -245,12 +242,8 @@ class Lights {
     }
     /// Whether what is picked depends on who looks.
     bool picksBySight() const { return tree_->chooses() || !balls_->lamps.empty(); }
-    /// Of the sky, density of its directions in next event over that in light walks; 1 of all other lights.
-    double skySamples(const LightPlace& y0) const {
-        const bool asLightWalks = nextEventSeesWholeSky() || y0.light != environmentIndex_;
-        return asLightWalks ? 1.0 : environment_->aboveMean(y0.position);
-    }
-    double seenSamples(const LightPlace& y0, double pmfOfTree, const Viewpoint& from) const;
+    double pickSamples(std::uint32_t light, double pmfOfTree) const;
+    double pointSamples(const LightPlace& y0, const Vec3& from) const;
     Rgb skyExitance(const Rgb& radiance) const;
     Rgb texturedExitance(std::uint32_t light, Vec2 barycentric) const;
     float opacityAt(std::uint32_t light, Vec2 barycentric) const {

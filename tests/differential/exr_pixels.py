@@ -5,7 +5,7 @@ from pathlib import Path
 
 MAGIC = 0x01312F76
 MULTI_PART = 1 << 12
-SIZES = {b"channels", b"dataWindow", b"lineOrder", b"compression", b"chunkCount", b"name"}
+SHOWN = {b"channels", b"dataWindow", b"lineOrder", b"compression", b"chunkCount", b"name"}
 
 
 def _word(content, at):
@@ -39,4 +39,4 @@ def of(file):
             break
     at += bool(version & MULTI_PART)
     first, = struct.unpack_from("<Q", content, at)  # behind the table of where chunks are
-    return [{name: part[name] for name in SIZES & part.keys()} for part in headers], content[first:]
+    return [{name: part[name] for name in SHOWN & part.keys()} for part in headers], content[first:]

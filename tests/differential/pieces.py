@@ -63,10 +63,11 @@ def _picture_options(r, width, height):
 
 def _without(options, names):
     """`options` less those of `names`, each with its value."""
-    kept, skip = [], False
-    for word in options:
-        skip, dropped = (not skip and word in names), skip
-        if not skip and not dropped:
+    kept, words = [], iter(options)
+    for word in words:
+        if word in names:
+            next(words)
+        else:
             kept.append(word)
     return kept
 
@@ -94,12 +95,14 @@ class CommandLine:
         """Exit code and the last line on stderr."""
         process = subprocess.Popen([self.programs / program, *arguments], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
-        try:
-            error = process.communicate(timeout=interrupt or SECONDS)[1]
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGINT if interrupt else signal.SIGKILL)
-            error = process.communicate()[1]
-        return process.returncode, (error.strip().splitlines() or [""])[-1]
+        for seconds, then in [*([(interrupt, signal.SIGINT)] if interrupt else []), (SECONDS, signal.SIGKILL)]:
+            try:
+                error = process.communicate(timeout=seconds)[1]
+                return process.returncode, (error.strip().splitlines() or [""])[-1]
+            except subprocess.TimeoutExpired:
+                process.send_signal(then)
+        process.communicate()
+        return process.returncode, f"not done in {SECONDS} s"
 
     def render(self, out, *more, threads=2):
         code, error = self.run("lacuna-render", *self.arguments, "--threads", str(threads), "-o", out, *more)

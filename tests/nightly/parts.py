@@ -151,34 +151,36 @@ def compared(output):
     return total[0] if total else "", re.findall(r"^(scene \d+, .+)$", output, re.M)
 
 
-def differential(options):
-    """Random scenes that no night before has had."""
-    folder = build("release", options.out / "differential-build.log", "lacuna_tools")
-    log = options.out / "differential.log"
-    output, code = run(["python3", "-B", "tests/differential/run.py", folder / "render" / "lacuna-render",
-                        options.out / f"differential-{options.seed}", "--scenes", options.scenes, "--first", options.seed],
-                       log)
-    total, finds = compared(output)
-    if code != 0 and not finds:
-        finds = [f"ended with {code}: {log}"]
-    return {"summary": f"{total} from seed {options.seed} on", "rows": [], "findings": finds}
-
-
 def tried(output):
     """What differential/pieces.py said: its last line, and the finds."""
     total = re.search(r"^\d+ command lines, .*$", output, re.M)
     return total[0] if total else "", re.findall(r"^(line \d+: .+)$", output, re.M)
 
 
-def pieces(options):
-    """Random command lines that no night before has had."""
-    folder = build("release", options.out / "pieces-build.log", "lacuna_tools")
-    log = options.out / "pieces.log"
-    output, code = run(["python3", "-B", "tests/differential/pieces.py", folder / "render", "--lines", options.lines,
-                        "--first", options.seed], log)
-    total, finds = tried(output)
+def with_the_days_seeds(name, read, options, command):
+    """A script of differential/ and its arguments, of which `command` makes a list from the build folder. What `read` tells
+    of its output: its last line, and the finds."""
+    folder = build("release", options.out / f"{name}-build.log", "lacuna_tools")
+    log = options.out / f"{name}.log"
+    script, *arguments = command(folder)
+    output, code = run(["python3", "-B", f"tests/differential/{script}", *arguments, "--first", options.seed], log)
+    total, finds = read(output)
     if code != 0 and not finds:
         finds = [f"ended with {code}: {log}"]
+    return total, finds
+
+
+def differential(options):
+    """Random scenes that no night before has had."""
+    total, finds = with_the_days_seeds("differential", compared, options, lambda folder: [
+        "run.py", folder / "render" / "lacuna-render", options.out / f"differential-{options.seed}", "--scenes", options.scenes])
+    return {"summary": f"{total} from seed {options.seed} on", "rows": [], "findings": finds}
+
+
+def pieces(options):
+    """Random command lines that no night before has had."""
+    total, finds = with_the_days_seeds("pieces", tried, options, lambda folder: [
+        "pieces.py", folder / "render", "--lines", options.lines])
     return {"summary": f"{total}, from seed {options.seed} on, on 1 and 3 threads, interrupted, and out of parts", "rows": [],
             "findings": finds}
 
