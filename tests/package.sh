@@ -9,8 +9,13 @@ project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 page=${1:-$project/tests/results/package-$(date +%F).md}
 packages=$project/build-package/packages
 work=$(mktemp -d)
-# What is still mounted in the root is not of ours to remove.
-trap 'rm -rf --one-file-system "$work"' EXIT
+step=
+# A step that fails says what it said. What is still mounted in the root is not of ours to remove.
+ended() {
+    [[ $1 == 0 || ! -s $work/$step ]] || { echo "tests/package.sh: $step failed:"; cat "$work/$step"; } >&2
+    rm -rf --one-file-system "$work"
+}
+trap 'ended $?' EXIT
 cd "$project"
 
 SECONDS=0
@@ -19,24 +24,35 @@ cmake --build --preset package >/dev/null
 rm -rf "$packages"
 cpack --preset package >/dev/null
 build_seconds=$SECONDS
-lintian --no-cfg -i --tag-display-limit 0 "$packages"/*.deb >"$work/lintian" 2>&1 || true
+lintian --allow-root --no-cfg -i --tag-display-limit 0 "$packages"/*.deb >"$work/lintian" 2>&1 || true
 
 SECONDS=0
+step=bootstrap
 mmdebstrap --variant=apt --aptopt='Apt::Install-Recommends "false"' bookworm "$work/root" \
     http://deb.debian.org/debian >"$work/bootstrap" 2>&1
-cp "$packages"/lacuna_*.deb "$work/root/root/"
+mkdir "$work/root/root/packages"
+cp "$packages"/*.deb "$work/root/root/packages/"
 inside() { chroot "$work/root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 # What is of Lacuna: its own files, not what apt itself keeps.
 listing() { (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./var -o -path ./root \) -prune -o -print | sort); }
 listing >"$work/before"
-inside apt-get install -y -qq /root/lacuna_*.deb >"$work/install" 2>&1
+step=update
+inside apt-get update -qq >"$work/update" 2>&1
+step=install
+inside sh -c 'apt-get install -y -qq /root/packages/*.deb' >"$work/install" 2>&1
 install_seconds=$SECONDS
 [[ -e $work/root/proc/self ]] || mount -t proc proc "$work/root/proc"
 rendered=$(inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.png --time 5s \
     --cache /root/cache 2>&1)
+step=python
+inside python3 -c '
+import lacuna
+render = lacuna.render("/usr/share/lacuna/scenes/cornell-box.glb", method="bpt", width=64, height=64, iterations=4)
+assert render.image.pixels.mean() > 0.0' >"$work/python" 2>&1
 umount "$work/root/proc" 2>/dev/null || true
 [[ -s $work/root/root/door.png ]]
-inside apt-get purge -y -qq --autoremove lacuna >"$work/purge" 2>&1
+step=purge
+inside apt-get purge -y -qq --autoremove lacuna liblacuna0 liblacuna-dev python3-lacuna >"$work/purge" 2>&1
 listing >"$work/after"
 left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
 

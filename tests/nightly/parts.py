@@ -3,7 +3,9 @@
 
 import os
 import re
+import shutil
 import subprocess
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -16,6 +18,10 @@ CORPUS = ROOT / "tests" / "fuzz" / "corpus"
 # Parsers read files. Where memory can hold them, the disk need not.
 MEMORY = {"TMPDIR": "/dev/shm"} if Path("/dev/shm").is_dir() else {}
 SUPPRESSIONS = Path(__file__).with_name("threads.supp")
+# A processor of 2010: SSE 4.2, no AVX. Its emulator takes some twenty times as long.
+OLD_PROCESSOR = ("qemu-x86_64", "-cpu", "Westmere")
+# Programs of tests that start no other program, which would not be emulated.
+ALONE = ("base", "image", "material", "scene", "bidir", "resampling", "specular", "subspace", "skeleton", "voxel")
 # Suites in which threads meet, as ctest -R takes them.
 THREADED = "^(ThreadPool|Library|Render|Live|Study|Train)"
 
@@ -74,6 +80,33 @@ def threads(options):
                                    environment={"TSAN_OPTIONS": f"suppressions={SUPPRESSIONS}"})
     return {"summary": f"ThreadSanitizer, what has threads, without the slow tests: {count} tests in {seconds:.0f} s",
             "rows": [], "findings": failed}
+
+
+def on_old_processor(program, log):
+    """A program of tests on OLD_PROCESSOR: a row of the table, and findings."""
+    begin = time.monotonic()
+    output, code = run([*OLD_PROCESSOR, program, "--gtest_filter=-*Slow.*"], log)
+    passed = re.search(r"\[  PASSED  \] (\d+) tests?\.", output)
+    failed = sorted(set(re.findall(r"^\[  FAILED  \] (\S+)", output, re.M)))
+    findings = [f"{program.name}: {test}" for test in failed]
+    if code != 0 and not findings:
+        findings.append(f"{program.name}: ended with {code}: {log}")
+    return [program.name, int(passed[1]) if passed else 0, f"{time.monotonic() - begin:.0f} s"], findings
+
+
+def baseline(options):
+    """What any x86-64 runs: the quick tests here, and those that start no other program on an old processor."""
+    count, seconds, failed = suite("baseline", options.out / "baseline.log", "-LE", "slow")
+    if not shutil.which(OLD_PROCESSOR[0]):
+        raise Failed(f"{OLD_PROCESSOR[0]} is missing: apt-get install qemu-user")
+    folder = ROOT / "build-baseline" / "tests"
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        done = list(pool.map(lambda name: on_old_processor(folder / f"test_{name}", options.out / f"baseline-{name}.log"),
+                             ALONE[:1] if options.quick else ALONE))
+    return {"summary": f"built without AVX2: {count} quick tests in {seconds:.0f} s; on an emulated processor that has none "
+                       f"({OLD_PROCESSOR[-1]}) {sum(row[1] for row, _ in done)} more",
+            "rows": [["program of tests, emulated", "passed", "time"], *(row for row, _ in done)],
+            "findings": failed + [finding for _, found in done for finding in found]}
 
 
 def fuzzed(output):
@@ -208,4 +241,4 @@ def endurance(options):
             "findings": findings}
 
 
-PARTS = {part.__name__: part for part in (sanitizers, threads, fuzz, hostile, differential, pieces, studies, endurance)}
+PARTS = {part.__name__: part for part in (sanitizers, threads, baseline, fuzz, hostile, differential, pieces, studies, endurance)}

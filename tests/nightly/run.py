@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Sanitizers, fuzzers, faults, random scenes and command lines, quick studies and a long render, one after the other, and
-one page of what came out.
+"""Sanitizers, an old processor, fuzzers, faults, random scenes and command lines, quick studies and a long render, one
+after the other, and one page of what came out.
 
     bash tests/nightly.sh                                       all of it: hours
     bash tests/nightly.sh --only fuzz --executions 20000        a part of it
@@ -61,7 +61,7 @@ def main():
     parser.add_argument("--minutes", type=int, default=60, help="of the long render (a day: 1440)")
     parser.add_argument("--long-scene", type=Path, default=ROOT / "scenes" / "nave.glb", help="what it shows (nave.glb)")
     parser.add_argument("--quick", action="store_true",
-                        help="sanitizers without slow tests, a few faults, one study")
+                        help="sanitizers without slow tests, one program on the old processor, a few faults, one study")
     options = parser.parse_args()
     options.out = options.out.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
