@@ -215,6 +215,49 @@ def kitchen_glass() -> SceneFile:
     return s
 
 
+def night_window() -> SceneFile:
+    s = SceneFile("night-window", "Living room by night; a street lamp shines in through a double window of solid glass", 640, 360)
+    wall = s.material(m.lambert("wall", (0.68, 0.66, 0.60)))
+    floor = s.material(m.coated("parquet", (0.34, 0.21, 0.11), 0.25))
+    wood = s.material(m.lambert("wood", (0.36, 0.24, 0.14)))
+    cloth = s.material(m.lambert("sofa cloth", (0.18, 0.32, 0.34)))
+    cushion = s.material(m.lambert("cushion", (0.70, 0.38, 0.12)))
+    carpet = s.material(m.lambert("carpet", (0.42, 0.16, 0.13)))
+    canvas = s.material(m.lambert("canvas", (0.20, 0.30, 0.42)))
+    brass = s.material(m.metal("brass", (0.90, 0.72, 0.38), 0.2))
+    frame = s.material(m.lambert("window frame", (0.72, 0.72, 0.70)))
+    glass = s.material(m.glass("glass"))
+    lamp = s.material(m.emitter("street lamp", (26000.0, 19500.0, 11000.0)))
+
+    # Two panes, each let two millimetres into the wall around it, and the street lamp beyond them.
+    z0, z1, y0, y1 = -1.5, 0.5, 0.8, 2.2
+    _put_room(s, room((-2.4, 0, -2.6), (2.4, 2.6, 2.4), 0.2, {"left": [(z0, z1, y0, y1)]}), {"walls": wall, "floor": floor})
+    pane = s.mesh("pane", (box((-0.002, y0 - SUNK, z0 - SUNK), (0.002, y1 + SUNK, z1 + SUNK)), glass))
+    for name, x in (("outer pane", -2.53), ("inner pane", -2.49)):
+        s.node(name, pane, at=(x, 0.0, 0.0))
+    s.add("window bars", boxes(((-2.46, y0 - SUNK, -0.53), (-2.42, y1 + SUNK, -0.47)), ((-2.455, 1.65, z0 - SUNK), (-2.425, 1.69, z1 + SUNK))), frame)
+    s.add("light", quad((0, -0.1, -0.1), (0, 0.2, 0), (0, 0, 0.2)), lamp, at=(-6.4, 4.2, -0.9), turned=about_z(-25))
+
+    sofa = s.node("sofa", at=(1.35, 0.0, -0.5), turned=about_y(-90))
+    s.add("sofa frame", boxes(((-1.0, 0.08, -0.42), (1.0, 0.42, 0.45)), ((-1.0 + SUNK, 0.4, -0.42 - SUNK), (1.0 - SUNK, 0.85, -0.2)),
+                              ((-1.2, 0.08 + SUNK, -0.4), (-0.99, 0.6, 0.44)), ((0.99, 0.08 + SUNK, -0.4), (1.2, 0.6, 0.44))), cloth, parent=sofa)
+    pillow = s.mesh("cushion", (sphere(1.0, 10, 20), cushion))
+    for x in (-0.72, 0.7):
+        s.node("cushion", pillow, parent=sofa, at=(x, 0.66, -0.1), turned=about_x(-20), scale=(0.26, 0.24, 0.08))
+    s.add("carpet", box((-1.3, -SUNK, -1.7), (0.75, 0.008, 0.7)), carpet)
+    desk = _put_table(s, "low table", (-0.35, 0.006, -0.5), (1.0, 0.42, 0.6), wood)
+    s.add("glass ball", sphere(0.09, 12, 24), glass, parent=desk, at=(-0.2, 0.511, 0.05))
+    s.add("brass cup", cylinder(0.05, 0.12, 24), brass, parent=desk, at=(0.22, 0.42 - SUNK, -0.05))
+    s.add("shelf", box_at((-0.9, -SUNK, -2.4), (1.6, 1.1, 0.45)), wood)
+    s.add("books", boxes(((-1.6, 1.1 - 2 * SUNK, -2.5), (-1.35, 1.36, -2.3)), ((-1.35 + SUNK, 1.1 - 3 * SUNK, -2.48), (-1.29, 1.32, -2.31)),
+                         ((-0.7, 1.1 - 2 * SUNK, -2.5), (-0.38, 1.17, -2.28))), cloth)
+    picture = s.node("picture", at=(0.95, 1.6, -2.585))
+    s.add("picture frame", box((-0.45, -0.35, -SUNK), (0.45, 0.35, 0.03)), wood, parent=picture)
+    s.add("picture canvas", quad((-0.4, -0.3, 0.032), (0.8, 0, 0), (0, 0.6, 0)), canvas, parent=picture)
+    s.camera((0.9, 1.45, 2.25), (-0.35, 0.95, -1.2), 50.0)
+    return s
+
+
 def glossy_room() -> SceneFile:
     s = SceneFile("glossy-room", "Everything is glossy (roughness 0.1 to 0.3); the lamp shines up into a cove", 640, 360)
     wall = s.material(m.coated("satin wall", (0.55, 0.52, 0.48), 0.25))
@@ -252,4 +295,4 @@ def glossy_room() -> SceneFile:
     return s
 
 
-SCENES = [door, bedroom_curtain, classroom_windows, kitchen_glass, glossy_room]
+SCENES = [door, bedroom_curtain, classroom_windows, kitchen_glass, night_window, glossy_room]
