@@ -9,6 +9,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/text_list.h"
 #include "render/block_plan.h"
+#include "render/choose/processor_share.h"
 #include "render/choose/trial.h"
 
 namespace lacuna {
@@ -43,7 +44,8 @@ constexpr double kFewestSplats = 10'000.0;
 struct Row {
     const char* method;
     double rayCost;
-    double fall;  ///< errors go by iterations to the power of -fall, where numbers are even
+    double fall;   ///< errors go by iterations to the power of -fall, where numbers are even
+    double alike;  ///< variances by pixels to the power of -alike: neighbours see more alike
     const char* strength;    ///< behind "light ", where it wins
     bool wholeFilm = false;  ///< an iteration costs as much as the film is large, whatever the crop
     const char* setting = nullptr;  ///< of the row, beside what is measured
@@ -53,11 +55,12 @@ struct Row {
     }
 };
 constexpr Row kRows[] = {
-    {"bpt", 1.0, 0.54, "is found from both ends"},
-    {"pt", 1.1, 0.58, "is in plain sight"},
-    {"sharebpt", 1.5, 0.53, "takes ways that can be learned, and pixels see much alike"},
-    {"sharebpt", 1.6, 0.53, "comes through glass or mirrors on both sides", false, "merge=on"},
-    {"vcm", 1.4, 0.53, "comes through glass or mirrors", true},
+    {"bpt", 1.0, 0.54, 0.0, "is found from both ends"},
+    {"pt", 1.1, 0.58, 0.0, "is in plain sight"},
+    {"sharebpt", 1.5, 0.53, 0.07, "takes ways that can be learned, and pixels see much alike"},
+    {"sharebpt", 1.6, 0.53, 0.07, "comes through glass or mirrors on both sides", false,
+     "merge=on"},
+    {"vcm", 1.4, 0.53, 0.0, "comes through glass or mirrors", true},
 };
 /// Where trials find nothing clearly better.
 constexpr const char* kUsual = "sharebpt";
@@ -128,11 +131,13 @@ class Pilot {
         const double busy = byClock() ? kPixelsPerThread * double(pool_.threads()) : kFewestPixels;
         small_.emplace(stage_, std::min(pixels, busy));
         Trial first;
+        const ProcessorShare processors;
         run(kRows[0], assignments(kRows[0], 0), kFewestTrialRays / 4.0, first);
         budget_ = double(iterations()) * first.rays;
         if (byClock()) {
             seconds_ = *options_.timeSeconds;
             if (options_.countSetup) seconds_ = std::max(0.1, seconds_ - stage_.setupSeconds);
+            seconds_ *= processors.value();
             budget_ = seconds_ * first.rays / first.seconds;
         }
         rays_ = std::clamp(kTrialShare * budget_, kFewestTrialRays, kMostTrialRays);
@@ -249,12 +254,14 @@ class Pilot {
     }
 
     /// What is left at the end of the square of the trial's error: noise of one iteration times its
-    /// cost, which is a share of the budget, and less where numbers are even over more iterations than
-    /// a half of the trial has. What was trained is there already.
+    /// cost, which is a share of the budget, less where pixels share what they find and are more than
+    /// the trial's, and less where numbers are even over more iterations than a half of the trial has.
+    /// What was trained is there already.
     double shareLeft(const Tried& t) const {
         const double ofAll = double(t.trial.iterations) * t.cost;  // of the picture's iterations
-        if (sampling() == Sampling::Independent) return ofAll;
-        return ofAll * std::pow(std::min(1.0, 0.5 * ofAll), 2.0 * t.row->fall - 1.0);
+        const double left = ofAll * std::pow(small_->scale, -t.row->alike);
+        if (sampling() == Sampling::Independent) return left;
+        return left * std::pow(std::min(1.0, 0.5 * ofAll), 2.0 * t.row->fall - 1.0);
     }
 
     RowChoice best() const {
@@ -295,7 +302,7 @@ class Pilot {
     Progress& progress_;
     std::optional<SmallFilm> small_;
     double budget_ = 0.0;   ///< of the render, in rays of bpt
-    double seconds_ = 0.0;  ///< of the render, where its time is limited
+    double seconds_ = 0.0;  ///< of the render, where its time is limited: what other programs leave
     double rays_ = 0.0;     ///< of a trial, in rays of bpt
     std::uint64_t runs_ = 0;
     std::vector<Tried> tried_;  ///< bpt first

@@ -101,17 +101,17 @@ std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width) 
             for (std::size_t j = 0; j < i; ++j) {
                 const double d = target.distance([&](std::size_t p) { return means[i][p]; },
                                                  [&](std::size_t p) { return means[j][p]; });
-                sums[i] += d * d;
-                sums[j] += d * d;
-                all += d * d;
+                sums[i] += d;
+                sums[j] += d;
+                all += d;
             }
         }
         for (std::size_t i = 0; i < n; ++i) {
             // Of three and more the equations give each its own; two share what they differ by.
-            const double square = n > 2    ? (sums[i] - all / double(n - 1)) / double(n - 2)
-                                  : n == 2 ? 0.5 * all
-                                           : 0.0;
-            errors[i] = std::max(seen[i], std::sqrt(std::max(0.0, square)));
+            const double own = n > 2    ? (sums[i] - all / double(n - 1)) / double(n - 2)
+                               : n == 2 ? 0.5 * all
+                                        : 0.0;
+            errors[i] = std::max(seen[i], own);
             weights[i] = 1.0 / std::max(errors[i] * errors[i], 1e-12);
         }
     }

@@ -16,9 +16,10 @@ struct HalfPictures {
 
 /// The mape of the mean of both halves, by picture; all of `width` pixels a row, at least one.
 ///
-/// |I_i - I_j| over what all of them show, smoothed, is d_ij; with independent noise d_ij^2 =
-/// s_i^2 + s_j^2, solved for s by least squares. A picture's own halves differ by what it has seen;
-/// light that it never met shows in the distance to the others alone. So s_i is the larger of both.
+/// |I_i - I_j| over what all of them show, smoothed, is d_ij. Errors that are rare and large add up,
+/// d_ij = s_i + s_j, solved for s by least squares; of many small ones d_ij is less. Those a
+/// picture's own halves tell, which differ by what it has seen; light that it never met shows in the
+/// distance to the others alone. So s_i is the larger of both.
 std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width);
 
 /// The mape of a picture that lacks `part`, of its channels: what no other row brings.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "preprocess/emission_asset.h"
+#include "render/choose/processor_share.h"
 
 namespace lacuna {
 namespace {
@@ -19,17 +20,25 @@ double ofWholePicture(double lightPart, double rest, double paths, double pixels
     return lightPart * paths + rest * pixels;
 }
 
-/// What a phase of an iteration takes where nothing disturbs it: caches that are still cold and other
-/// programs make any but the quickest one longer.
-class LeastSeconds {
+/// What a phase of an iteration takes where nothing disturbs it: caches that are still cold make any
+/// but the quickest one longer, other programs most of them.
+class QuietSeconds {
   public:
-    explicit LeastSeconds(const char* phase) : phase_(phase) {}
-    void see(IterationStatistics& one) { least_ = std::min(least_, one.phaseSeconds[phase_]); }
-    double value() const { return least_; }
+    explicit QuietSeconds(const char* phase) : phase_(phase) {}
+    void see(IterationStatistics& one) {
+        const double seconds = one.phaseSeconds[phase_];
+        least_ = std::min(least_, seconds);
+        sum_ += seconds;
+        ++count_;
+    }
+    /// With `share` of the processor time that it wanted, as a whole.
+    double value(double share) const { return std::min(least_, sum_ / count_ * share); }
 
   private:
     const char* phase_;
     double least_ = std::numeric_limits<double>::infinity();
+    double sum_ = 0.0;
+    double count_ = 0.0;
 };
 
 /// Whether merges alone can make the path.
@@ -124,15 +133,17 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
             });
         }
     }
-    LeastSeconds light("light paths"), prepare("prepare"), eye("eye paths"), observe("observe");
+    QuietSeconds light("light paths"), prepare("prepare"), eye("eye paths"), observe("observe");
+    const ProcessorShare processors;
     std::uint64_t& n = result.iterations;
     for (n = 0; n < 2 || n % 2 == 1 || double(statistics.totalRays()) < rays; ++n) {
         IterationStatistics one;
         if (!integrators[n % 2]->render(std::uint32_t(n / 2), picture, cancel, one)) return false;
-        for (LeastSeconds* least : {&light, &prepare, &eye, &observe}) least->see(one);
+        for (QuietSeconds* phase : {&light, &prepare, &eye, &observe}) phase->see(one);
         statistics.add(one);
         for (std::size_t i = 0; i < pixels; ++i) (*halves[n % 2])[i] += picture[i];
     }
+    const double share = processors.value();
     const float ofHalf = 2.0f / float(n);
     for (auto* sums : halves) {
         for (Rgb& c : *sums) c = c * ofHalf;
@@ -154,8 +165,9 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     const auto allRays = double(statistics.totalRays());
     result.rays = ofWholePicture(lightRays, allRays - lightRays, all / few, small.scale) / count;
     const double apart = std::max(1.0, few - own), allApart = all - own * small.scale;
-    result.seconds = ofWholePicture(light.value(), eye.value(), allApart / apart, small.scale) +
-                     (prepare.value() + observe.value()) * poolScale;
+    result.seconds =
+        ofWholePicture(light.value(share), eye.value(share), allApart / apart, small.scale) +
+        (prepare.value(share) + observe.value(share)) * poolScale;
     return true;
 }
 

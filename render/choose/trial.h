@@ -16,7 +16,7 @@ struct Trial {
     HalfPictures halves;
     std::uint64_t iterations = 0;  ///< in both halves together
     double rays = 0.0;             ///< of an iteration of the whole picture
-    double seconds = 0.0;          ///< likewise, on this machine
+    double seconds = 0.0;          ///< likewise, on this machine, had it nothing else to do
     /// Of a row that merges: what paths that nothing else can make add to a pixel. Else empty.
     std::vector<Rgb> onlyMerged = {};
 };

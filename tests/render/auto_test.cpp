@@ -1,13 +1,16 @@
 // --method auto, and what people try first: a scene and nothing else.
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "libcore/base/rng.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
 #include "render/choose/choice.h"
 #include "render/choose/judge.h"
+#include "render/choose/processor_share.h"
 #include "tests/render/render_tool.h"
 
 namespace lacuna::test {
@@ -199,6 +202,27 @@ TEST(Judge, TellsTheNoiseOfPicturesApart) {
     EXPECT_NEAR(e[0] / e[2], 2.0, 0.2);
 }
 
+// As where light is hard: each picture is right but for a few pixels, which are never the same.
+TEST(Judge, RareErrorsOfTwoPicturesAddUp) {
+    const auto sparkling = [](double rate, std::uint64_t seed) {
+        HalfPictures p;
+        Rng rng(seed, 0, StreamKind::User, 0);
+        for (auto* half : {&p.first, &p.second}) {
+            for (int i = 0; i < 4096; ++i) {
+                half->push_back(Rgb(rng.uniform() < float(rate) ? 2.0f : 1.0f));
+            }
+        }
+        return p;
+    };
+    // The mean of two halves is off by 1/2 in twice as many pixels: by `rate` in the mean, up to those
+    // that meet, and over a mean that is a little above 1.
+    const HalfPictures all[] = {sparkling(0.02, 1), sparkling(0.04, 2), sparkling(0.08, 3)};
+    const std::vector<double> e = errorsOf(all, 64);
+    EXPECT_NEAR(e[0], 0.02, 0.005);
+    EXPECT_NEAR(e[1], 0.04, 0.006);
+    EXPECT_NEAR(e[2], 0.08, 0.016);
+}
+
 TEST(Judge, SeesLightThatAPictureLacks) {
     // The third one hardly has noise of its own: it has never met half of the light.
     const HalfPictures all[] = {noisy(0.1, 1.0, 1), noisy(0.1, 1.0, 2), noisy(0.01, 0.5, 3)};
@@ -228,6 +252,23 @@ TEST(Judge, KeepsTheUsualRowUnlessAnotherIsClearlyBetter) {
     EXPECT_EQ(taken({{0.5, 0.4}, {0.5, 1.0}, {0.5, 0.6}}), 0u);
     EXPECT_EQ(taken({{0.9, 0.01}, {1.1, 1.0}, {0.1, 0.02}}), 1u);
     EXPECT_EQ(taken({{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}), 1u);
+}
+
+TEST(ProcessorShare, IsWhatOthersLeave) {
+    if (!std::ifstream("/proc/self/schedstat")) GTEST_SKIP() << "the system does not tell";
+    const ProcessorShare processors;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+    std::vector<std::jthread> threads;
+    for (unsigned i = 0; i < 4 * std::thread::hardware_concurrency(); ++i) {
+        threads.emplace_back([&] {
+            while (std::chrono::steady_clock::now() < end) {
+            }
+        });
+    }
+    // Before they end: they take with them what they waited.
+    std::this_thread::sleep_until(end - std::chrono::milliseconds(50));
+    EXPECT_GT(processors.value(), 0.0);
+    EXPECT_LT(processors.value(), 0.6);  // a quarter, had they always run when it was their turn
 }
 
 TEST(Choices, TravelAsText) {

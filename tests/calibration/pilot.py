@@ -1,0 +1,116 @@
+"""What a pilot in few pixels tells of a picture in many: writes a page of tests/results.
+
+    python3 tests/calibration/pilot.py build/render/lacuna-render DIRECTORY PAGE [SCENE ...]
+
+Renders each scene in three sizes by bpt, whose pixels know nothing of each other, and by sharebpt, whose pixels share what
+they find, with equal numbers of iterations. The noise is the mean relative distance of pictures of different seeds. From
+the sizes follows `alike` of render/choose/choose.cpp: the power of the number of pixels by which sharebpt's variance falls
+faster than bpt's. Iterations count, not seconds, so a busy machine changes nothing. DIRECTORY keeps the training; NumPy is
+wanted. Scenes that are not named: some of scenes/, and those of $LACUNA_SHARED_SCENES, where that is set.
+"""
+
+import datetime
+import itertools
+import os
+import pathlib
+import platform
+import statistics
+import subprocess
+import sys
+
+import numpy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+OURS = ("classroom-windows", "court", "door", "drapery-hall", "glossy-room", "kitchen-glass", "nave", "bedroom-curtain")
+SHARED = ("classroom", "staircase", "kitchen-su22", "sponza-crytek", "veach-bidir", "veach-mis")
+LIGHT = {"classroom": "classroom_env.hdr"}  # environments that scenes do not bring along
+SIZES = ((40, 22), (160, 90), (640, 360))
+ITERATIONS = 4
+SEEDS = (1, 2, 3, 4)
+SMOOTHED = 5     # pixels, square
+EPSILON = 0.01   # of the mean, as of mape
+TRAINED = ["--prepare", "--set", "candidates=10000", "--set", "train.paths=16000", "--set", "train.subspaces=90",
+           "--set", "train.light_paths=68000", "--set", "train.epochs=5"]
+ROWS = {"bpt": [], "sharebpt": TRAINED}
+
+
+def scenes(names):
+    shared = os.environ.get("LACUNA_SHARED_SCENES")
+    folders = [(ROOT / "scenes", OURS)] + ([(pathlib.Path(shared), SHARED)] if shared else [])
+    found = {}
+    for folder, stems in folders:
+        for stem in stems:
+            light = ["--env", folder / LIGHT[stem]] if folder != ROOT / "scenes" and stem in LIGHT else []
+            found[stem if not light and folder == ROOT / "scenes" else f"{stem} (shared)"] = [folder / f"{stem}.glb", *light]
+    return {name: of for name, of in found.items() if not names or of[0].stem in names}
+
+
+def pixels(path):
+    """Of a .pfm: (height, width, 3), whichever way up."""
+    kind, size, scale, content = path.read_bytes().split(b"\n", 3)
+    assert kind == b"PF"
+    width, height = map(int, size.split())
+    order = "<f4" if float(scale) < 0 else ">f4"
+    return numpy.frombuffer(content, order).reshape(height, width, 3).astype(float)
+
+
+def smoothed(picture):
+    reach = SMOOTHED // 2
+    padded = numpy.pad(picture, ((reach, reach), (reach, reach), (0, 0)), mode="edge")
+    windows = numpy.lib.stride_tricks.sliding_window_view(padded, (SMOOTHED, SMOOTHED), axis=(0, 1))
+    return windows.mean(axis=(-1, -2))
+
+
+def pictures(program, directory, scene, size, row):
+    target = directory / "picture.pfm"
+    for seed in SEEDS:
+        subprocess.run([str(part) for part in [
+            program, *scene, "--method", row, *ROWS[row], "--cache", directory / "caches" / scene[0].stem, "--width", size[0],
+            "--height", size[1], "--iterations", ITERATIONS, "--sampler", "sobol", "--seed", seed, "-o", target, "--quiet"]],
+            check=True, stdout=subprocess.DEVNULL)
+        yield pixels(target)
+
+
+def noises(program, directory, scene, size):
+    """Of each row, over what all show."""
+    by_row = {row: list(pictures(program, directory, scene, size, row)) for row in ROWS}
+    mean = numpy.mean([p for of in by_row.values() for p in of], axis=0)
+    over = smoothed(mean) + EPSILON * mean.mean()
+    return {row: statistics.mean((abs(a - b) / over).mean() for a, b in itertools.combinations(of, 2)) / 2 ** 0.5
+            for row, of in by_row.items()}
+
+
+def measure(program, directory, scene):
+    """Noises by size, and the power from the smallest to the largest."""
+    by_size = [noises(program, directory, scene, size) for size in SIZES]
+    gains = [(n["bpt"] / n["sharebpt"]) ** 2 for n in by_size]
+    ratio = SIZES[-1][0] * SIZES[-1][1] / (SIZES[0][0] * SIZES[0][1])
+    return by_size, gains, numpy.log(gains[-1] / gains[0]) / numpy.log(ratio)
+
+
+def main():
+    program, directory, page, *names = sys.argv[1:]
+    directory = pathlib.Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    lines, powers = [], []
+    for name, scene in scenes(names).items():
+        by_size, gains, power = measure(program, directory, scene)
+        powers.append(power)
+        noise = " | ".join(f"{n['bpt']:.3f} | {n['sharebpt']:.3f}" for n in by_size)
+        lines.append(f"| {name} | {noise} | {' | '.join(f'{g:.2f}' for g in gains)} | {power:.3f} |")
+        print(lines[-1], flush=True)
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    sizes = [f"{w} x {h}" for w, h in SIZES]
+    head = [f"{row}, {size}" for size in sizes for row in ROWS] + [f"gain, {size}" for size in sizes]
+    pathlib.Path(page).write_text("\n".join([
+        "# What a pilot in few pixels tells of a picture in many", "",
+        f"By `python3 tests/calibration/pilot.py`, {datetime.date.today()}, commit {commit}, on {platform.machine()}. After",
+        f"{ITERATIONS} iterations with even numbers: the mean relative distance of pictures of {len(SEEDS)} seeds, over the square root",
+        "of 2; the gain is the ratio of bpt's variance to sharebpt's; the power is that of the number of pixels by which the gain",
+        "grows from the smallest size to the largest. No figure of a paper.", "",
+        f"The median of the powers is {statistics.median(powers):.3f}, the least {min(powers):.3f}, the largest {max(powers):.3f}.", "",
+        f"| scene | {' | '.join(head)} | power |", "|---" * (len(head) + 2) + "|", *lines, ""]))
+
+
+if __name__ == "__main__":
+    main()
