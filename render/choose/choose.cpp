@@ -17,15 +17,16 @@ namespace {
 
 // Of what the render may take. (tests/results/auto-2026-11-24.md)
 constexpr double kTrialShare = 0.008;    // of each candidate
-constexpr double kTrainingShare = 0.06;  // of the subspaces, which trials and picture share
+constexpr double kTrainingShare = 0.08;  // of the subspaces, which trials and picture share
 constexpr double kFewestTrialRays = 4e4;
 constexpr double kMostTrialRays = 2e6;  // more would tell nothing new
 
 /// Of the picture, where it is an error that ends it.
 constexpr std::uint64_t kIterationsToAnError = 256;
 
-/// A path of training costs as much as so many rays of a render.
-constexpr double kRaysPerTrainingPath = 75.0;
+/// A path of training costs as much as so many rays of a render, three times as many where few of
+/// those that are tried carry light.
+constexpr double kRaysPerTrainingPath = 50.0;
 constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1'024'000.0;
 
 constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
