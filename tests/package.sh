@@ -47,12 +47,12 @@ rendered=$(inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.
 step=python
 inside python3 -c '
 import lacuna
-render = lacuna.render("/usr/share/lacuna/scenes/cornell-box.glb", method="bpt", width=64, height=64, iterations=4)
-assert render.image.pixels.mean() > 0.0' >"$work/python" 2>&1
+image = lacuna.render("/usr/share/lacuna/scenes/cornell-box.glb", method="bpt", width=64, height=64, iterations=4)
+assert image.rgb.mean() > 0.0' >"$work/python" 2>&1
 umount "$work/root/proc" 2>/dev/null || true
 [[ -s $work/root/root/door.png ]]
 step=purge
-inside apt-get purge -y -qq --autoremove lacuna liblacuna0 liblacuna-dev python3-lacuna >"$work/purge" 2>&1
+inside apt-get purge -y -qq --autoremove lacuna liblacuna-dev python3-lacuna >"$work/purge" 2>&1
 listing >"$work/after"
 left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
 
