@@ -47,7 +47,7 @@ rendered=$(inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.
 step=python
 inside python3 -c '
 import lacuna
-image = lacuna.render("/usr/share/lacuna/scenes/cornell-box.glb", method="bpt", width=64, height=64, iterations=4)
+image = lacuna.render("/usr/share/lacuna/scenes/door.glb", method="bpt", width=64, height=36, iterations=4)
 assert image.rgb.mean() > 0.0' >"$work/python" 2>&1
 umount "$work/root/proc" 2>/dev/null || true
 [[ -s $work/root/root/door.png ]]
