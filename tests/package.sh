@@ -74,7 +74,7 @@ left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
     echo
     echo "lintian:"
     echo
-    sed 's/^/    /' "$work/lintian"
+    [[ -s $work/lintian ]] && sed 's/^/    /' "$work/lintian" || echo "    nothing"
     echo
     echo "The render in the clean root:"
     echo
