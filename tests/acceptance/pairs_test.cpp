@@ -81,6 +81,7 @@ struct SceneFile {
     /// 21,000 iterations 1.3, after 120,000 0.9).
     bool caustics = false;
     int width = 32, height = 24;  ///< fewer pixels: fewer blocks to judge, each as sharply
+    int depth = 5;
 };
 void PrintTo(const SceneFile& s, std::ostream* out) {
     *out << s.name;
@@ -104,7 +105,7 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
     Shot shot;
     shot.width = GetParam().width;
     shot.height = GetParam().height;
-    shot.maxDepth = 5;
+    shot.maxDepth = GetParam().depth;
     shot.iterations = 2 * GetParam().iterations;
     shot.seed = 100;
     const Picture reference =
@@ -124,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, SceneFilesSlow,
     testing::Values(SceneFile{"cornell-box", 100}, SceneFile{"door", 60},
                     SceneFile{"glossy-room", 240, true}, SceneFile{"kitchen-glass", 240, true},
+                    SceneFile{"night-window", 240, true, 32, 24, 8},  // four faces of panes
                     SceneFile{"ring-caustic", 240, true}, SceneFile{"furnace", 40},
                     SceneFile{"light-quad", 60}, SceneFile{"light-sphere", 60},
                     SceneFile{"light-two-sided", 60}, SceneFile{"light-point", 60},
