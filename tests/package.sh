@@ -9,13 +9,14 @@ project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 page=${1:-$project/tests/results/package-$(date +%F).md}
 packages=$project/build-package/packages
 work=$(mktemp -d)
-step=
-# A step that fails says what it said. What is still mounted in the root is not of ours to remove.
-ended() {
-    [[ $1 == 0 || ! -s $work/$step ]] || { echo "tests/package.sh: $step failed:"; cat "$work/$step"; } >&2
-    rm -rf --one-file-system "$work"
+# What is still mounted in the root is not of ours to remove.
+trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+# Keeps what a command says in a file of the step's name, and says it where the step fails.
+step() {
+    local name=$1
+    shift
+    "$@" >"$work/$name" 2>&1 || { echo "tests/package.sh: $name failed:"; cat "$work/$name"; exit 1; } >&2
 }
-trap 'ended $?' EXIT
 cd "$project"
 
 SECONDS=0
@@ -27,32 +28,25 @@ build_seconds=$SECONDS
 lintian --allow-root --no-cfg -i --tag-display-limit 0 "$packages"/*.deb >"$work/lintian" 2>&1 || true
 
 SECONDS=0
-step=bootstrap
-mmdebstrap --variant=apt --aptopt='Apt::Install-Recommends "false"' bookworm "$work/root" \
-    http://deb.debian.org/debian >"$work/bootstrap" 2>&1
+step bootstrap mmdebstrap --variant=apt --aptopt='Apt::Install-Recommends "false"' bookworm "$work/root" \
+    http://deb.debian.org/debian
 mkdir "$work/root/root/packages"
 cp "$packages"/*.deb "$work/root/root/packages/"
 inside() { chroot "$work/root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 # What is of Lacuna: its own files, not what apt itself keeps.
 listing() { (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./var -o -path ./root \) -prune -o -print | sort); }
 listing >"$work/before"
-step=update
-inside apt-get update -qq >"$work/update" 2>&1
-step=install
-inside sh -c 'apt-get install -y -qq /root/packages/*.deb' >"$work/install" 2>&1
+step update inside apt-get update -qq
+step install inside sh -c 'apt-get install -y -qq /root/packages/*.deb'
 install_seconds=$SECONDS
 [[ -e $work/root/proc/self ]] || mount -t proc proc "$work/root/proc"
-rendered=$(inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.png --time 5s \
-    --cache /root/cache 2>&1)
-step=python
-inside python3 -c '
+step render inside lacuna-render /usr/share/lacuna/scenes/door.glb -o /root/door.png --time 5s --cache /root/cache
+step python inside python3 -c '
 import lacuna
 image = lacuna.render("/usr/share/lacuna/scenes/door.glb", method="bpt", width=64, height=36, iterations=4)
-assert image.rgb.mean() > 0.0' >"$work/python" 2>&1
-umount "$work/root/proc" 2>/dev/null || true
+assert image.rgb.mean() > 0.0'
 [[ -s $work/root/root/door.png ]]
-step=purge
-inside apt-get purge -y -qq --autoremove lacuna liblacuna-dev python3-lacuna >"$work/purge" 2>&1
+step purge inside apt-get purge -y -qq --autoremove lacuna liblacuna-dev python3-lacuna
 listing >"$work/after"
 left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
 
@@ -78,6 +72,6 @@ left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
     echo
     echo "The render in the clean root:"
     echo
-    sed 's/^/    /' <<<"$rendered"
+    sed 's/^/    /' "$work/render"
 } >"$page"
 [[ -z $left ]]

@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-// Of what the render may take. (tests/results/auto-2026-11-24.md)
+// Of what the render may take. (theory.md, "auto")
 constexpr double kTrialShare = 0.008;    // of each candidate
 constexpr double kTrainingShare = 0.08;  // of the subspaces, which trials and picture share
 constexpr double kFewestTrialRays = 4e4;

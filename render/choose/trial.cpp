@@ -25,20 +25,16 @@ double ofWholePicture(double lightPart, double rest, double paths, double pixels
 class QuietSeconds {
   public:
     explicit QuietSeconds(const char* phase) : phase_(phase) {}
-    void see(IterationStatistics& one) {
-        const double seconds = one.phaseSeconds[phase_];
-        least_ = std::min(least_, seconds);
-        sum_ += seconds;
-        ++count_;
+    void see(IterationStatistics& one) { least_ = std::min(least_, one.phaseSeconds[phase_]); }
+    /// `all` is the sum of the `count` that were seen; they had `share` of the processor time that
+    /// they wanted.
+    double value(IterationStatistics& all, double count, double share) const {
+        return std::min(least_, share * all.phaseSeconds[phase_] / count);
     }
-    /// With `share` of the processor time that it wanted, as a whole.
-    double value(double share) const { return std::min(least_, sum_ / count_ * share); }
 
   private:
     const char* phase_;
     double least_ = std::numeric_limits<double>::infinity();
-    double sum_ = 0.0;
-    double count_ = 0.0;
 };
 
 /// Whether merges alone can make the path.
@@ -165,9 +161,11 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     const auto allRays = double(statistics.totalRays());
     result.rays = ofWholePicture(lightRays, allRays - lightRays, all / few, small.scale) / count;
     const double apart = std::max(1.0, few - own), allApart = all - own * small.scale;
-    result.seconds =
-        ofWholePicture(light.value(share), eye.value(share), allApart / apart, small.scale) +
-        (prepare.value(share) + observe.value(share)) * poolScale;
+    const auto quiet = [&](const QuietSeconds& phase) {
+        return phase.value(statistics, count, share);
+    };
+    result.seconds = ofWholePicture(quiet(light), quiet(eye), allApart / apart, small.scale) +
+                     (quiet(prepare) + quiet(observe)) * poolScale;
     return true;
 }
 

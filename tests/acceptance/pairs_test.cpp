@@ -81,7 +81,7 @@ struct SceneFile {
     /// 21,000 iterations 1.3, after 120,000 0.9).
     bool caustics = false;
     int width = 32, height = 24;  ///< fewer pixels: fewer blocks to judge, each as sharply
-    int depth = 5;
+    int depth = 5;                ///< edges of the longest path
 };
 void PrintTo(const SceneFile& s, std::ostream* out) {
     *out << s.name;

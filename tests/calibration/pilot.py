@@ -11,7 +11,6 @@ wanted. Scenes that are not named: some of scenes/, and those of $LACUNA_SHARED_
 
 import datetime
 import itertools
-import os
 import pathlib
 import platform
 import statistics
@@ -20,10 +19,11 @@ import sys
 
 import numpy
 
+import scenes
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OURS = ("classroom-windows", "court", "door", "drapery-hall", "glossy-room", "kitchen-glass", "nave", "bedroom-curtain")
 SHARED = ("classroom", "staircase", "kitchen-su22", "sponza-crytek", "veach-bidir", "veach-mis")
-LIGHT = {"classroom": "classroom_env.hdr"}  # environments that scenes do not bring along
 SIZES = ((40, 22), (160, 90), (640, 360))
 ITERATIONS = 4
 SEEDS = (1, 2, 3, 4)
@@ -32,17 +32,6 @@ EPSILON = 0.01   # of the mean, as of mape
 TRAINED = ["--prepare", "--set", "candidates=10000", "--set", "train.paths=16000", "--set", "train.subspaces=90",
            "--set", "train.light_paths=68000", "--set", "train.epochs=5"]
 ROWS = {"bpt": [], "sharebpt": TRAINED}
-
-
-def scenes(names):
-    shared = os.environ.get("LACUNA_SHARED_SCENES")
-    folders = [(ROOT / "scenes", OURS)] + ([(pathlib.Path(shared), SHARED)] if shared else [])
-    found = {}
-    for folder, stems in folders:
-        for stem in stems:
-            light = ["--env", folder / LIGHT[stem]] if folder != ROOT / "scenes" and stem in LIGHT else []
-            found[stem if not light and folder == ROOT / "scenes" else f"{stem} (shared)"] = [folder / f"{stem}.glb", *light]
-    return {name: of for name, of in found.items() if not names or of[0].stem in names}
 
 
 def pixels(path):
@@ -93,7 +82,7 @@ def main():
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     lines, powers = [], []
-    for name, scene in scenes(names).items():
+    for name, scene in scenes.of(OURS, SHARED, names).items():
         by_size, gains, power = measure(program, directory, scene)
         powers.append(power)
         noise = " | ".join(f"{n['bpt']:.3f} | {n['sharebpt']:.3f}" for n in by_size)

@@ -11,13 +11,14 @@ are not named: those of scenes/ and of $LACUNA_SHARED_SCENES, where that is set.
 import datetime
 import json
 import math
-import os
 import pathlib
 import platform
 import resource
 import statistics
 import subprocess
 import sys
+
+import scenes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OURS = ("blender-still-life", "court", "cornell-box", "light-environment", "classroom-windows",
@@ -41,14 +42,6 @@ COST_ITERATIONS = 16
 COST_ROUNDS = 3
 
 
-def scenes(names):
-    shared = os.environ.get("LACUNA_SHARED_SCENES")
-    folders = [(ROOT / "scenes", OURS)] + ([(pathlib.Path(shared), SHARED)] if shared else [])
-    found = {path.stem if folder == ROOT / "scenes" else path.stem + " (shared)": path
-             for folder, stems in folders for path in (folder / f"{s}.glb" for s in stems)}
-    return {n: p for n, p in found.items() if not names or p.stem in names}
-
-
 def render(program, arguments):
     subprocess.run([program, *map(str, arguments), "--quiet"], check=True,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -58,7 +51,7 @@ def reference(program, directory, name, scene):
     target = directory / "references" / f"{name}.exr"
     if not target.exists():
         target.parent.mkdir(parents=True, exist_ok=True)
-        render(program, [scene, "-o", target, *SIZE, *REFERENCE, "--cache", directory / "caches" / name])
+        render(program, [*scene, "-o", target, *SIZE, *REFERENCE, "--cache", directory / "caches" / name])
         print(f"{name}: reference", file=sys.stderr, flush=True)
     return target
 
@@ -69,7 +62,7 @@ def errors(program, directory, name, scene, row, sampler, iterations, seed):
     if not report.exists():
         report.parent.mkdir(parents=True, exist_ok=True)
         partial = report.with_suffix(".part")
-        render(program, [scene, "-o", directory / "out.exr", *SIZE, "--method", row, *ROWS[row],
+        render(program, [*scene, "-o", directory / "out.exr", *SIZE, "--method", row, *ROWS[row],
                          "--cache", directory / "caches" / name, "--sampler", sampler, "--iterations", iterations,
                          "--seed", seed, "--reference", reference(program, directory, name, scene),
                          "--json", partial])
@@ -121,7 +114,7 @@ def costs(program, directory, chosen):
             while len(ratios) < COST_ROUNDS:
                 spent = {}
                 for sampler in SAMPLERS if len(ratios) % 2 else reversed(SAMPLERS):
-                    common = [chosen[name], "-o", directory / "out.exr", "--width", 128, "--height", 72,
+                    common = [*chosen[name], "-o", directory / "out.exr", "--width", 128, "--height", 72,
                               "--method", row, *ROWS[row], "--cache", directory / "caches" / name,
                               "--sampler", sampler, "--iterations"]
                     spent[sampler] = (seconds(program, [*common, COST_ITERATIONS + 1]) -
@@ -195,7 +188,7 @@ def main():
     program, directory, target, *names = sys.argv[1:]
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    chosen = scenes(names)
+    chosen = scenes.of(OURS, SHARED, names)
     found = measure(program, directory, chosen)
     spent = costs(program, directory, chosen)
     command = " ".join(["python3 tests/calibration/sampler.py", program, "DIRECTORY PAGE", *names])
