@@ -1,4 +1,4 @@
-"""Eleven small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+"""Thirteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
 
 import math
 
@@ -333,6 +333,72 @@ def ray_visibility():
     camera()
 
 
+def sky_texture():
+    """Blender's own sky, its sun from beside through a gap, in a world that is turned, tinted and mixed."""
+    stage()
+    for x in (-1.9, 1.9):
+        cube(diffuse(f"beside {x}", 0.7, 0.7, 0.7), location=(x, -1, 1.5), scale=(0.1, 3, 3))
+    cube(diffuse("white", 0.8, 0.8, 0.8), location=(0, 0.5, 0.4), rotation=(0, 0, 0.5), scale=(0.8,) * 3)
+    tree = world(strength=0.2).node_tree
+    sky = tree.nodes.new("ShaderNodeTexSky")
+    sky.sky_type, sky.sun_elevation, sky.sun_rotation = "NISHITA", math.radians(50), math.radians(160)
+    tint = tree.nodes.new("ShaderNodeHueSaturation")
+    tint.inputs["Saturation"].default_value = 0.6
+    tree.links.new(sky.outputs["Color"], tint.inputs["Color"])
+    tree.links.new(tint.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    camera()
+
+
+def node(tree, kind, source, input_, **inputs):
+    """A node of that kind with these inputs, and that output linked to its `input_`."""
+    made = tree.nodes.new(kind)
+    for key, value in inputs.items():
+        made.inputs[key].default_value = value
+    tree.links.new(source, made.inputs[input_])
+    return made
+
+
+def images_through_nodes():
+    """Images that go through other nodes, in groups too; a lamp by its temperature; a pane that only the camera sees."""
+    greys = quarters("grey steps", [(.1,) * 3, (.4,) * 3, (.7,) * 3, (.9,) * 3])
+    made, tree, place = textured("ramp", greys)
+    ramp = node(tree, "ShaderNodeValToRGB", place.outputs["Color"], "Fac").color_ramp
+    ramp.elements[0].color, ramp.elements[1].color = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
+    tree.links.new(tree.nodes["ColorRamp"].outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    plane(made, 4, location=(-1, 2, 2), rotation=(math.pi / 2, 0, 0))
+    made, tree, place = textured("grouped", quarters("warm", [(.9, .2, .2), (.2, .9, .2), (.2, .2, .9), (.9, .9, .2)]))
+    inside = bpy.data.node_groups.new("duller", "ShaderNodeTree")
+    inside.inputs.new("NodeSocketColor", "Color")
+    inside.outputs.new("NodeSocketColor", "Color")
+    ends = inside.nodes.new("NodeGroupInput"), inside.nodes.new("NodeGroupOutput")
+    duller = node(inside, "ShaderNodeHueSaturation", ends[0].outputs[0], "Color", Saturation=0.4, Value=0.7)
+    inside.links.new(duller.outputs[0], ends[1].inputs[0])
+    group = tree.nodes.new("ShaderNodeGroup")
+    group.node_tree = inside
+    tree.links.new(place.outputs["Color"], group.inputs[0])
+    tree.links.new(group.outputs[0], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    plane(made, 6)
+    made, tree, place = textured("polished", greys, "ShaderNodeBsdfGlossy")
+    tree.nodes["Glossy BSDF"].inputs["Color"].default_value = (0.9, 0.8, 0.6, 1)
+    tree.links.remove(tree.nodes["Glossy BSDF"].inputs["Color"].links[0])
+    tree.links.new(node(tree, "ShaderNodeInvert", place.outputs["Color"], "Color").outputs[0], tree.nodes["Glossy BSDF"].inputs["Roughness"])
+    plane(made, 2, location=(2, 1, 1), rotation=(math.pi / 2, 0, -0.6))
+    made, tree, mix = material("pane", "ShaderNodeMixShader")
+    for i, kind in enumerate(("ShaderNodeBsdfDiffuse", "ShaderNodeBsdfTransparent")):
+        tree.links.new(tree.nodes.new(kind).outputs[0], mix.inputs[1 + i])
+    tree.links.new(tree.nodes.new("ShaderNodeLightPath").outputs["Is Shadow Ray"], mix.inputs["Fac"])
+    cube(made, location=(0.4, -0.5, 0.4), scale=(0.8,) * 3)
+    bulb = lamp("POINT", (-1, -3, 3), (0, 0, 0), 1, shadow_soft_size=0.3)
+    bulb.data.use_nodes = True
+    tree = bulb.data.node_tree
+    warm = tree.nodes.new("ShaderNodeBlackbody")
+    warm.inputs[0].default_value = 3200
+    tree.links.new(warm.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    tree.nodes["Emission"].inputs["Strength"].default_value = 300
+    world((0.2, 0.2, 0.2))
+    camera()
+
+
 # Allowed difference of a region's mean from Cycles', as a share of it, and why it is more than noise.
 SCENES = {
     "area-lamps": (area_lamps, 0.04, ""), "bulbs": (bulbs, 0.04, ""),
@@ -342,4 +408,5 @@ SCENES = {
     "shaders": (shaders, 0.15, "what is diffuse under a glossy layer is darker"),
     "brushed-cloth-and-lacquer": (brushed_cloth_and_lacquer, 0.06, ""),
     "images-on-surfaces": (images_on_surfaces, 0.08, "normal maps end at the surface's own horizon"),
-    "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, "")}
+    "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, ""),
+    "sky-texture": (sky_texture, 0.05, ""), "images-through-nodes": (images_through_nodes, 0.05, "")}

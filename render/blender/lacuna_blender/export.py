@@ -5,6 +5,7 @@ worlds, which that exporter leaves out, are in the same place."""
 import os
 
 from . import camera, lights, materials, meshes, textures, world
+from .cycles import Cycles
 from .glb import Glb
 
 # Blender's z is up, glTF's y.
@@ -21,9 +22,18 @@ def write(depsgraph, view, folder, notes):
     glb = Glb()
     root = glb.node(None, "Blender", _UP)
     arguments = camera.add(glb, root, view.evaluated_get(depsgraph), scene.render, notes)
-    made = materials.Materials(glb, textures.Textures(glb), notes)
+    with Cycles(folder, scene.frame_current) as cycles:
+        _add_objects(glb, root, depsgraph, notes, cycles)
+        _say_what_the_scene_loses(scene, notes)
+        path = os.path.join(folder, "scene.glb")
+        glb.write(path)
+        return [path, *arguments, *world.options(depsgraph.scene_eval.world, folder, notes, cycles)]
+
+
+def _add_objects(glb, root, depsgraph, notes, cycles):
+    made = materials.Materials(glb, textures.Textures(glb), notes, cycles)
     bodies = meshes.Meshes(glb, made, notes)
-    lamps = lights.Lights(glb, root, made, notes)
+    lamps = lights.Lights(glb, root, made, notes, cycles)
     for instance in depsgraph.object_instances:
         thing = instance.object
         _say_what_is_lost(thing, notes)
@@ -37,10 +47,6 @@ def write(depsgraph, view, folder, notes):
                 glb.node(root, thing.name, [float(v) for c in instance.matrix_world.col for v in c], mesh=mesh)
         elif thing.type not in _NO_BODY:
             notes.add(thing.name, f"objects of type {thing.type.title()} are left out")
-    _say_what_the_scene_loses(scene, notes)
-    path = os.path.join(folder, "scene.glb")
-    glb.write(path)
-    return [path, *arguments, *world.options(depsgraph.scene_eval.world, folder, notes)]
 
 
 def _hidden(thing, depsgraph):

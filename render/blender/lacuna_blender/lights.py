@@ -13,8 +13,8 @@ SPOT_RAMP = 0.75  # of Blender's, in the cosine: glTF's squared ramp then passes
 class Lights:
     """Writes lamps below a root node whose coordinates are Blender's."""
 
-    def __init__(self, glb, root, materials, notes):
-        self._glb, self._root, self._materials, self._notes, self._meshes = glb, root, materials, notes, {}
+    def __init__(self, glb, root, materials, notes, cycles):
+        self._glb, self._root, self._materials, self._notes, self._cycles = glb, root, materials, notes, cycles
 
     def add(self, thing, matrix):
         """A lamp object, evaluated, and its place in the world (mathutils.Matrix)."""
@@ -34,7 +34,7 @@ class Lights:
             output = lamp.node_tree.get_output_node("CYCLES")
             found = output and source_of(output.inputs["Surface"])
             if found and found.node and found.node.type == "EMISSION":
-                sockets = Sockets(name, self._notes)
+                sockets = Sockets(lamp, self._notes, self._cycles)
                 node = sockets.color(found.node.inputs["Color"], found.groups)
                 factor *= sockets.scalar(found.node.inputs["Strength"], found.groups).factor
                 color = [a * b for a, b in zip(color, node.factor)]

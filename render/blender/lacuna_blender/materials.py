@@ -17,8 +17,8 @@ class Written:
 
 
 class Materials:
-    def __init__(self, glb, textures, notes):
-        self._glb, self._textures, self._notes, self._made = glb, textures, notes, {}
+    def __init__(self, glb, textures, notes, cycles):
+        self._glb, self._textures, self._notes, self._cycles, self._made = glb, textures, notes, cycles, {}
 
     def of(self, material, hidden):
         """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera."""
@@ -45,7 +45,7 @@ class Materials:
             self._notes.add(name, "the volume is left out")
         if output.inputs["Displacement"].is_linked:
             self._notes.add(name, "the displacement is left out")
-        return SurfaceReader(name, self._notes).read(output.inputs["Surface"])
+        return SurfaceReader(material, self._notes, self._cycles).read(output.inputs["Surface"])
 
     def _write(self, name, s, hidden, two_sided=True):
         uv_maps = []

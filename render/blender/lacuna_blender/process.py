@@ -27,7 +27,7 @@ def find(preferred):
     return found
 
 
-def _mortal(command):
+def mortal(command):
     """Ends when Blender does, however that ends; where util-linux is not there, it renders on to its limit."""
     keeper = shutil.which("setpriv")
     return [keeper, "--pdeathsig", "INT", *command] if keeper else command
@@ -40,7 +40,7 @@ class Child:
         self.lines = []
         self._said = said
         # A group of its own: Ctrl-C in Blender's terminal ends it through stop(), once.
-        self._process = subprocess.Popen(_mortal(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        self._process = subprocess.Popen(mortal(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                          stderr=subprocess.PIPE, start_new_session=True)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

@@ -1,10 +1,16 @@
-"""Follows the links of a shader tree: through reroutes and groups, to constants, images and vertex colours."""
+"""Follows the links of a shader tree: through reroutes and groups, to constants, images, vertex colours, and to what
+Cycles makes of images and constants."""
 
 import math
 from dataclasses import dataclass, replace
 
-from .textures import Use
+from .textures import Picture, Use
 
+# Nodes whose outputs are functions of their inputs at the same place.
+_POINTWISE = frozenset((
+    "BLACKBODY", "BRIGHTCONTRAST", "CLAMP", "COMBHSV", "COMBINE_COLOR", "COMBRGB", "COMBXYZ", "CURVE_FLOAT", "CURVE_RGB", "CURVE_VEC",
+    "GAMMA", "HUE_SAT", "INVERT", "LIGHT_PATH", "MAP_RANGE", "MATH", "MIX", "MIX_RGB", "RGB", "RGBTOBW", "SEPARATE_COLOR", "SEPHSV",
+    "SEPRGB", "SEPXYZ", "SQUEEZE", "VALTORGB", "VALUE", "VECT_MATH", "WAVELENGTH"))
 
 
 @dataclass(frozen=True)
@@ -36,6 +42,11 @@ def source_of(socket, groups=()):
         node, output = link.from_node, link.from_socket
         if node.type == "REROUTE":
             socket = node.inputs[0]
+        elif node.mute:
+            through = next((l.from_socket for l in node.internal_links if l.to_socket == output), None)
+            if through is None:
+                return None
+            socket = through
         elif node.type == "GROUP" and node.node_tree:
             inside = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
             if inside is None:
@@ -51,16 +62,33 @@ def source_of(socket, groups=()):
             return Source(node, output, groups)
 
 
+def made_of(found):
+    """The nodes at the ends of all links behind an output, each once, where nothing but their place matters; else None."""
+    ends, asked = {}, [found]
+    while asked:
+        source = asked.pop()
+        key = (source.node.name, tuple(g.name for g in source.groups))
+        if key in ends:
+            continue
+        if source.node.type != "TEX_IMAGE":
+            if source.node.type not in _POINTWISE:
+                return None
+            behind = [source_of(s, source.groups) for s in source.node.inputs if s.enabled]
+            asked += [b for b in behind if b and b.node]
+        ends[key] = source
+    return list(ends.values())
+
+
 def constant(socket):
     value = socket.default_value
     return tuple(value[:3]) if hasattr(value, "__len__") else float(value)
 
 
 class Sockets:
-    """Reads inputs of one material; what it cannot follow goes into `notes` by the material's name."""
+    """Reads inputs of one material, lamp or world; what it cannot follow goes into `notes` by its name."""
 
-    def __init__(self, name, notes):
-        self._name, self._notes = name, notes
+    def __init__(self, owner, notes, cycles):
+        self._owner, self._name, self._notes, self._cycles = owner, owner.name, notes, cycles
 
     def color(self, socket, groups=()):
         found = source_of(socket, groups)
@@ -77,10 +105,7 @@ class Sockets:
             return Value((1.0, 1.0, 1.0), None, node.layer_name)
         if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY":
             return Value((1.0, 1.0, 1.0), None, node.attribute_name)
-        product = self._product(node, found.groups)
-        if product:
-            return product
-        return Value(_three(self._unknown(found, socket)))
+        return self._product(node, found.groups) or self._evaluated(found) or Value(_three(self._unknown(found, socket)))
 
     def scalar(self, socket, groups=()):
         found = source_of(socket, groups)
@@ -100,7 +125,8 @@ class Sockets:
             a, b = self.scalar(node.inputs[0], found.groups), self.scalar(node.inputs[1], found.groups)
             if not (a.texture and b.texture):
                 return Value(a.factor * b.factor, a.texture or b.texture)
-        return Value(luminance(self._unknown(found, socket)))
+        value = self._evaluated(found)
+        return Value(luminance(value.factor), value.texture) if value else Value(luminance(self._unknown(found, socket)))
 
     def normal(self, socket, groups=()):
         """A normal map and its strength, or None."""
@@ -159,6 +185,30 @@ class Sockets:
             return None
         colors = a.vertex_colors if a.vertex_colors is not None else b.vertex_colors
         return Value(tuple(p * q for p, q in zip(a.factor, b.factor)), a.texture or b.texture, colors)
+
+    def _evaluated(self, found):
+        """What Cycles makes of images and constants, or None."""
+        behind = made_of(found)
+        if behind is None:
+            return None
+        images = [source for source in behind if source.node.type == "TEX_IMAGE"]
+        if not all(self._usable(source.node) for source in images):
+            return None
+        size = [max((source.node.image.size[i] for source in images), default=1) for i in (0, 1)]
+        texels = self._cycles.output(self._owner, found, size)
+        if texels is None:
+            return None
+        if any(source.node.type == "LIGHT_PATH" for source in behind):
+            self._notes.add(self._name, "Light Path: all light meets what the camera sees")
+        if not images:
+            return Value(tuple(float(c) for c in texels[0, 0]))
+        uses = [self.image(source.node, source.groups) for source in images]
+        for use in uses[1:]:
+            if replace(use, image=None) != replace(uses[0], image=None):
+                self._notes.add(self._name, f"the image {use.image.name} lies as {uses[0].image.name} does, with which it is mixed")
+        most = max(float(texels.max()), 1.0)
+        name = ", ".join([self._name, *(g.name for g in found.groups), found.node.name, found.output.identifier])
+        return Value((most,) * 3, replace(uses[0], image=Picture(name, texels / most)))
 
     def _usable(self, node):
         image = node.image

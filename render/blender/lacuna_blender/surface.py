@@ -36,9 +36,9 @@ class Surface:
 class SurfaceReader:
     """Of one material."""
 
-    def __init__(self, name, notes):
-        self._name, self._notes = name, notes
-        self._sockets = Sockets(name, notes)
+    def __init__(self, material, notes, cycles):
+        self._name, self._notes = material.name, notes
+        self._sockets = Sockets(material, notes, cycles)
         self._readers = {
             "BSDF_PRINCIPLED": self._principled, "EMISSION": self._emission, "BSDF_DIFFUSE": self._diffuse,
             "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_GLASS": self._glass,

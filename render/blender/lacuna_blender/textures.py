@@ -11,11 +11,21 @@ REPEAT, CLAMP, MIRROR = 10497, 33071, 33648
 _WRAPS = {"REPEAT": REPEAT, "EXTEND": CLAMP, "CLIP": CLAMP, "MIRROR": MIRROR}
 
 
+class Picture:
+    """Texels that no image of Blender's has: height x width x 3, linear, row 0 at the top."""
+
+    source = "GENERATED"
+
+    def __init__(self, name, rgb):
+        self.name = name
+        self.texels = numpy.concatenate([rgb, numpy.ones_like(rgb[..., :1])], axis=-1)
+
+
 @dataclass(frozen=True)
 class Use:
     """An image on a surface. `place`: offset, rotation and scale of KHR_texture_transform, or None."""
 
-    image: object  # bpy.types.Image
+    image: object  # bpy.types.Image or Picture
     uv_map: str = ""  # "" is the one that is active for rendering
     place: tuple = None
     wrap: str = "REPEAT"
@@ -46,6 +56,8 @@ def to_linear(coded):
 
 def stored(image):
     """Height x width x 4 floats as the image holds them, row 0 at the top."""
+    if isinstance(image, Picture):
+        return image.texels
     width, height = image.size
     values = numpy.empty(width * height * 4, numpy.float32)
     image.pixels.foreach_get(values)
@@ -54,7 +66,7 @@ def stored(image):
 
 def is_coded(image):
     """Whether its colours are sRGB's and not linear. Blender keeps those of float images linear."""
-    return not image.is_float and image.colorspace_settings.name not in ("Non-Color", "Raw", "Linear", "Linear Rec.709")
+    return not isinstance(image, Picture) and not image.is_float and image.colorspace_settings.name not in ("Non-Color", "Raw", "Linear", "Linear Rec.709")
 
 
 def linear(image):

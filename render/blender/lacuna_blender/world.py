@@ -1,4 +1,5 @@
-"""The world: one colour, or a latitude-longitude image, turned as Blender turns it."""
+"""The world: one colour, or a latitude-longitude image, turned as Blender turns it. What is neither, Cycles makes an
+image of."""
 
 import math
 import os
@@ -6,14 +7,14 @@ import os
 import numpy
 
 from . import exr
-from .sockets import Sockets, source_of
+from .sockets import constant, source_of
 from .textures import linear
 
 # The middle of an image is +X in Blender, and -Z (Blender's +Y) in Lacuna.
 BETWEEN = 90.0
 
 
-def options(world, folder, notes):
+def options(world, folder, notes, cycles):
     """What lacuna-render is told; an image is written into `folder`."""
     if world is None:
         return []
@@ -27,15 +28,51 @@ def options(world, folder, notes):
     found = source_of(output.inputs["Surface"])
     if found is None or found.node is None:
         return []
+    plain = _plain(found, folder)
+    return _panorama(world, folder, notes, cycles) if plain is None else plain
+
+
+def _plain(found, folder):
+    """Of a Background of constants, or of an image and a Mapping node; None for all others."""
     if found.node.type != "BACKGROUND":
-        notes.add(world.name, f"the world's {found.node.bl_label} is left out, and with it the world: a Background node is expected")
-        return []
-    sockets = Sockets(world.name, notes)
-    strength = sockets.scalar(found.node.inputs["Strength"], found.groups).factor
+        return None
+    strength = _constant(found.node.inputs["Strength"], found.groups)
+    colour = _constant(found.node.inputs["Color"], found.groups)
+    if strength is None:
+        return None
+    if colour is not None:
+        return _colour([strength * c for c in colour])
     picture = source_of(found.node.inputs["Color"], found.groups)
-    if picture and picture.node and picture.node.type == "TEX_ENVIRONMENT":
-        return _image(world, picture, strength, folder, notes)
-    return _colour([strength * c for c in sockets.color(found.node.inputs["Color"], found.groups).factor])
+    return _image(picture, strength, folder) if picture.node.type == "TEX_ENVIRONMENT" else None
+
+
+def _constant(socket, groups):
+    """The value of an input without nodes, or None."""
+    found = source_of(socket, groups)
+    if found is None:
+        return constant(socket)
+    return constant(found.output) if found.node is None or found.node.type in ("RGB", "VALUE") else None
+
+
+def _panorama(world, folder, notes, cycles):
+    nodes = list(_nodes(world.node_tree))
+    values = cycles.panorama(world, max((n.image.size[0] for n in nodes if n.type == "TEX_ENVIRONMENT" and n.image), default=0))
+    if values is None:
+        notes.add(world.name, "the world's nodes cannot be followed: it is black")
+        return []
+    if any(n.type == "LIGHT_PATH" for n in nodes):
+        notes.add(world.name, "Light Path: all light is that of the world that the camera sees")
+    if (values == values[0, 0]).all():
+        return _colour([float(c) for c in values[0, 0]])
+    return _map(values, BETWEEN, 1.0, folder)
+
+
+def _nodes(tree):
+    """All, those of groups too."""
+    for node in tree.nodes:
+        yield node
+        if node.type == "GROUP" and node.node_tree:
+            yield from _nodes(node.node_tree)
 
 
 def _colour(colour):
@@ -43,59 +80,37 @@ def _colour(colour):
     return ["--env-colour", "%.9g,%.9g,%.9g" % tuple(colour)] if max(colour) > 0 else []
 
 
-def _image(world, found, strength, folder, notes):
+def _image(found, strength, folder):
+    """An image in all its texels, where it is turned about Z at most; else None."""
     node = found.node
     if node.image is None or node.image.size[0] == 0 or node.projection != "EQUIRECTANGULAR":
-        notes.add(world.name, "the world's image cannot be read, or is no latitude-longitude map: the world is black")
-        return []
-    values = linear(node.image)[..., :3]
-    turn = BETWEEN
-    mapping = source_of(node.inputs["Vector"], found.groups)
-    if mapping and mapping.node and mapping.node.type == "MAPPING":
-        matrix = _matrix(mapping.node, world, notes)
-        if _turns_about_z(matrix):
-            turn += math.degrees(math.atan2(matrix[1, 0], matrix[0, 0]))
-        else:
-            values = _resampled(values, matrix)
+        return None
+    turn = _turn(source_of(node.inputs["Vector"], found.groups))
+    if turn is None:
+        return None
+    return _map(linear(node.image)[..., :3], BETWEEN + math.degrees(turn), strength, folder)
+
+
+def _turn(found):
+    """By which angle what feeds an image's Vector turns it about Z; None where it does something else."""
+    if found is None or _is_direction(found):
+        return 0.0
+    if found.node is None or found.node.type != "MAPPING" or found.node.vector_type == "TEXTURE":
+        return None
+    inputs = found.node.inputs
+    if any(s.is_linked for s in inputs[1:] if s.enabled) or not _is_direction(source_of(inputs["Vector"], found.groups)):
+        return None
+    moved = any(inputs["Location"].default_value) if inputs["Location"].enabled else False
+    x, y, z = inputs["Rotation"].default_value
+    plain = not moved and abs(x) + abs(y) < 1e-6 and all(abs(s - 1) < 1e-6 for s in inputs["Scale"].default_value)
+    return z if plain else None
+
+
+def _is_direction(found):
+    return bool(found and found.node and found.node.type == "TEX_COORD" and found.output.name == "Generated")
+
+
+def _map(values, turn, strength, folder):
     path = os.path.join(folder, "world.exr")
     exr.write(path, numpy.maximum(numpy.nan_to_num(values, posinf=0), 0))
     return ["--env", path, "--env-rotate", "%.9g" % (turn % 360), "--env-scale", "%.9g" % max(strength, 0.0)]
-
-
-def _matrix(node, world, notes):
-    """From the direction of a ray to that which is looked up."""
-    from mathutils import Euler
-    if any(s.is_linked for s in list(node.inputs)[1:] if s.enabled) or any(
-            node.inputs["Location"].default_value if "Location" in node.inputs and node.inputs["Location"].enabled else ()):
-        notes.add(world.name, "Location and links of the world's Mapping node are left out")
-    turn = numpy.array(Euler(node.inputs["Rotation"].default_value).to_matrix())
-    scale = numpy.diag(numpy.array(node.inputs["Scale"].default_value))
-    matrix = turn @ scale
-    return numpy.linalg.pinv(matrix) if node.vector_type == "TEXTURE" else matrix
-
-
-def _turns_about_z(matrix):
-    turn = math.atan2(matrix[1, 0], matrix[0, 0])
-    c, s = math.cos(turn), math.sin(turn)
-    return numpy.allclose(matrix, [[c, -s, 0], [s, c, 0], [0, 0, 1]], atol=1e-6)
-
-
-def _resampled(values, matrix):
-    """The map as it would have to be without the Mapping node; linear between texels."""
-    height, width, _ = values.shape
-    longitude = (0.5 - (numpy.arange(width) + 0.5) / width) * 2 * math.pi
-    latitude = (0.5 - (numpy.arange(height) + 0.5) / height) * math.pi
-    x = numpy.cos(latitude)[:, None] * numpy.cos(longitude)
-    y = numpy.cos(latitude)[:, None] * numpy.sin(longitude)
-    z = numpy.sin(latitude)[:, None] * numpy.ones(width)
-    x, y, z = numpy.moveaxis(numpy.stack([x, y, z], axis=-1) @ matrix.T, -1, 0)
-    u = (0.5 - numpy.arctan2(y, x) / (2 * math.pi)) * width - 0.5
-    v = (0.5 - numpy.arctan2(z, numpy.hypot(x, y)) / math.pi) * height - 0.5
-    column, row = numpy.floor(u).astype(int), numpy.floor(v).astype(int)
-    fu, fv = (u - column)[..., None], (v - row)[..., None]
-
-    def texel(r, c):
-        return values[numpy.clip(r, 0, height - 1), c % width]
-
-    return (texel(row, column) * (1 - fu) + texel(row, column + 1) * fu) * (1 - fv) + \
-        (texel(row + 1, column) * (1 - fu) + texel(row + 1, column + 1) * fu) * fv

@@ -1,0 +1,145 @@
+"""What Cycles has for shader nodes. Run by cycles.py in a Blender of its own, without a window:
+
+  blender -b --factory-startup -P cycles_child.py
+
+Each line of stdin is a request, as JSON. A picture goes to its `out` as .exr, linear. The answer is a line of stdout that
+begins with _ANSWER: "done", or what went wrong."""
+
+import json
+import math
+import sys
+
+import bpy
+
+_ANSWER = "LACUNA "
+_EXACT = 0.01  # pixels: a sample of a texel's middle
+_PANORAMA = 1 << 24  # samples
+
+
+def load(request):
+    """An empty scene, and the data-block that is asked about."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(request["file"]) as (_, wanted):
+        setattr(wanted, request["kind"], [request["name"]])
+    scene = bpy.context.scene
+    scene.frame_set(request["frame"])
+    return scene, getattr(wanted, request["kind"])[0]
+
+
+def panorama(request):
+    """A world all around, as a latitude-longitude picture whose middle is +X, as Blender's are."""
+    scene, scene.world = load(request)
+    camera = add_camera(scene, "PANO", (0, 0, 0), (math.pi / 2, 0, -math.pi / 2))
+    (camera.cycles if hasattr(camera.cycles, "panorama_type") else camera).panorama_type = "EQUIRECTANGULAR"
+    # A sun is a few texels, and has to be met by enough samples.
+    render(scene, request, max(_PANORAMA // (request["width"] * request["height"]), 1), width_of_filter=1)
+
+
+def flat(request):
+    """An output of a material's node, over the square of the texture coordinates."""
+    scene, material = load(request)
+    shine(material.node_tree, request)
+    add_floor(scene, request, material)
+    render(scene, request, samples=1, width_of_filter=_EXACT)
+
+
+def lamp(request):
+    """An output of a lamp's node, which has one colour: what a white floor gets from a sun of that colour."""
+    scene, sun = load(request)
+    shine(sun.node_tree, request)
+    sun.type = "SUN"
+    sun = bpy.data.lights[sun.name]  # with a sun's members
+    sun.energy, sun.angle, sun.color = math.pi, 0, (1, 1, 1)
+    scene.collection.objects.link(bpy.data.objects.new("sun", sun))
+    white = bpy.data.materials.new("white")
+    white.diffuse_color = (1, 1, 1, 1)  # without nodes: Lambert's
+    add_floor(scene, request, white)
+    render(scene, request, samples=1, width_of_filter=_EXACT)
+
+
+def add_camera(scene, kind, location, rotation):
+    camera = bpy.data.cameras.new("camera")
+    camera.type, camera.ortho_scale = kind, 1
+    scene.camera = bpy.data.objects.new("camera", camera)
+    scene.collection.objects.link(scene.camera)
+    scene.camera.location, scene.camera.rotation_euler = location, rotation
+    return camera
+
+
+def add_floor(scene, request, material):
+    """Fills the picture, seen from above."""
+    bpy.ops.mesh.primitive_plane_add(size=1)
+    floor = bpy.context.object
+    side = max(request["width"], request["height"])
+    floor.scale = (request["width"] / side, request["height"] / side, 1)
+    floor.data.materials.append(material)
+    add_camera(scene, "ORTHO", (0, 0, 1), (0, 0, 0))
+
+
+def shine(tree, request):
+    """Makes the tree an emission of the output that is asked for, which may lie within groups."""
+    trees = [tree]
+    for name in request["groups"]:
+        trees.append(trees[-1].nodes[name].node_tree)
+    lie_flat(tree)
+    output = by_identifier(trees[-1].nodes[request["node"]].outputs, request["output"])
+    for inner, outer, name in zip(trees[:0:-1], trees[-2::-1], request["groups"][::-1]):
+        output = lead_out(inner, output, outer.nodes[name])
+    emission = tree.nodes.new("ShaderNodeEmission")
+    tree.links.new(output, emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+
+
+def lie_flat(tree):
+    """Images as they are: the document places them."""
+    for node in tree.nodes:
+        if node.type == "TEX_IMAGE":
+            node.projection = "FLAT"
+            for link in list(node.inputs["Vector"].links):
+                tree.links.remove(link)
+        elif node.type == "GROUP" and node.node_tree:
+            lie_flat(node.node_tree)
+
+
+def lead_out(tree, output, group):
+    """The same value as an output of the group's node."""
+    if hasattr(tree, "interface"):  # Blender 4
+        made = tree.interface.new_socket("lacuna", in_out="OUTPUT", socket_type="NodeSocketColor")
+    else:
+        made = tree.outputs.new("NodeSocketColor", "lacuna")
+    end = next(n for n in tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output)
+    tree.links.new(output, by_identifier(end.inputs, made.identifier))
+    return by_identifier(group.outputs, made.identifier)
+
+
+def by_identifier(sockets, identifier):
+    return next(s for s in sockets if s.identifier == identifier)
+
+
+def render(scene, request, samples, width_of_filter):
+    render, cycles = scene.render, scene.cycles
+    render.engine = "CYCLES"
+    render.resolution_x, render.resolution_y = request["width"], request["height"]
+    render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
+    render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
+    render.use_file_extension = False
+    render.filepath = request["out"]
+    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = samples, False, False
+    cycles.max_bounces, cycles.sample_clamp_direct = 0, 0
+    cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", width_of_filter
+    bpy.ops.render.render(write_still=True)
+
+
+def main():
+    makers = {"panorama": panorama, "flat": flat, "lamp": lamp}
+    for line in sys.stdin:
+        try:
+            request = json.loads(line)
+            makers[request["what"]](request)
+            said = "done"
+        except Exception as error:  # the parent says it, and goes on without
+            said = f"{type(error).__name__}: {error}".replace("\n", " ")
+        print(_ANSWER + said, flush=True)
+
+
+main()
