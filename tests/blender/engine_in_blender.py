@@ -118,10 +118,32 @@ class Engine(unittest.TestCase):
         scenes.lamp("AREA", (0, -2, 4), (0, 0, 0), 10, spread=0.5).name = "softbox"
         scenes.cube(scenes.principled("skin", (0.5, 0.5, 0.5), Subsurface=0.3))
         self.scene.render.use_motion_blur = True
+        self.scene.lacuna.baked = 0
         self.render()
         text = "\n".join(engine.last_notes)
         for what in ("marble: the node Noise Texture", "softbox: the Spread", "skin: Subsurface", "Scene: motion blur"):
             self.assertIn(what, text)
+        self.scene.lacuna.baked = 64
+        self.render()
+        self.assertNotIn("Noise Texture", "\n".join(engine.last_notes))
+
+    def test_without_an_answer_of_cycles_the_render_goes_on(self):
+        from lacuna_blender import cycles, engine
+        scenes.camera()
+        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
+        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
+        scenes.cube(made)
+        tree = scenes.world().node_tree
+        tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs[0], tree.nodes["Background"].inputs["Color"])
+        start, cycles.Cycles._start = cycles.Cycles._start, staticmethod(lambda: cycles.subprocess.Popen(
+            ["true"], text=True, stdin=cycles.subprocess.PIPE, stdout=cycles.subprocess.PIPE))
+        try:
+            self.assertGreater(next(p for n, p in self.render().channels.items() if n.endswith("Combined.G")).mean(), 0)
+        finally:
+            cycles.Cycles._start = start
+        text = "\n".join(engine.last_notes)
+        self.assertIn("marble: the node Noise Texture", text)
+        self.assertIn("World: the world's nodes cannot be followed", text)
 
     def test_no_camera_is_said(self):
         with self.assertRaisesRegex(RuntimeError, "camera"):

@@ -1,4 +1,4 @@
-"""Thirteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+"""Fifteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
 
 import math
 
@@ -399,6 +399,89 @@ def images_through_nodes():
     camera()
 
 
+def hills(name):
+    """Heights: a bump in the middle of each quarter."""
+    x = numpy.sin(numpy.linspace(0, 4 * math.pi, 128)) ** 2
+    return image(name, numpy.dstack([numpy.outer(x, x)] * 3), color=False)
+
+
+def masks_and_bumps():
+    """Two shaders by an image, heights as a Bump, a cut by an image without a coloured one, a screen that shines by one."""
+    stage()
+    mask = quarters("mask", [(0,) * 3, (1,) * 3, (1,) * 3, (.3,) * 3])
+    made, tree, place = textured("painted steel", mask)
+    paint = tree.nodes["Diffuse BSDF"]
+    tree.links.remove(paint.inputs["Color"].links[0])
+    paint.inputs["Color"].default_value = (0.7, 0.1, 0.1, 1)
+    steel = tree.nodes.new("ShaderNodeBsdfGlossy")
+    steel.inputs["Color"].default_value, steel.inputs["Roughness"].default_value = (0.8, 0.8, 0.8, 1), 0.5
+    mix = node(tree, "ShaderNodeMixShader", place.outputs["Color"], "Fac")
+    tree.links.new(paint.outputs[0], mix.inputs[1])
+    tree.links.new(steel.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    plane(made, 2, location=(-2, 1.5, 1), rotation=(math.pi / 2, 0, 0.3))
+    made, tree, place = textured("hilly", hills("hills"))
+    shader = tree.nodes["Diffuse BSDF"]
+    tree.links.remove(shader.inputs["Color"].links[0])
+    shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
+    bump = node(tree, "ShaderNodeBump", place.outputs["Color"], "Height", Distance=0.3, Strength=0.8)
+    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    plane(made, 3, location=(0.6, 2, 1.5), rotation=(math.pi / 2, 0, 0))
+    made, tree, place = textured("cut", mask)
+    shader = tree.nodes["Diffuse BSDF"]
+    tree.links.remove(shader.inputs["Color"].links[0])
+    mix = node(tree, "ShaderNodeMixShader", place.outputs["Color"], "Fac")
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+    tree.links.new(shader.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    plane(made, 1.2, location=(-0.6, -0.5, 0.6), rotation=(math.pi / 2, 0, 0))
+    made, tree, shader = material("screen", "ShaderNodeEmission", Color=(0.4, 0.7, 1, 1))
+    place = tree.nodes.new("ShaderNodeTexImage")
+    place.image = mask
+    tree.links.new(node(tree, "ShaderNodeMath", place.outputs["Color"], 0).outputs[0], shader.inputs["Strength"])
+    tree.nodes["Math"].operation, tree.nodes["Math"].inputs[1].default_value = "MULTIPLY", 4
+    plane(made, 1, location=(2.4, 0.5, 0.8), rotation=(math.pi / 2, 0, -0.6))
+    lamp("SUN", (0, 0, 5), (2.5, 2.5, 1.5), 3, angle=0)
+    lamp("AREA", (2, -3, 3), (-1, 1, 1), 100, size=1)
+    world((0.2, 0.2, 0.2))
+    camera()
+
+
+def procedural():
+    """Textures that are functions of place: by the object's box, its coordinates, UV; as colour, roughness and bump."""
+    made, tree, shader = material("tiles", "ShaderNodeBsdfDiffuse")
+    place = tree.nodes.new("ShaderNodeTexCoord")
+    node(tree, "ShaderNodeTexChecker", place.outputs["UV"], "Vector", Scale=16, Color1=(.7, .6, .5, 1), Color2=(.2, .2, .3, 1))
+    tree.links.new(tree.nodes["Checker Texture"].outputs["Color"], shader.inputs["Color"])
+    plane(made, 12)
+    made, tree, shader = material("bricks", "ShaderNodeBsdfDiffuse")
+    bricks = node(tree, "ShaderNodeTexBrick", tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], "Vector", Scale=1.0)
+    tree.links.new(bricks.outputs["Color"], shader.inputs["Color"])
+    plane(made, 12, location=(0, 3, 0), rotation=(math.pi / 2, 0, 0))
+    made, tree, shader = material("marble", "ShaderNodeBsdfDiffuse")
+    noise = tree.nodes.new("ShaderNodeTexNoise")  # by the object's box
+    ramp = node(tree, "ShaderNodeValToRGB", noise.outputs["Fac"], "Fac")
+    ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = 0.4, 0.6
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.05, 0.1, 0.3, 1), (0.9, 0.8, 0.7, 1)
+    tree.links.new(ramp.outputs["Color"], shader.inputs["Color"])
+    ball(made, 0.8, location=(-1.3, 0.3, 0.8))
+    made, tree, shader = material("worn", "ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.5, 1))
+    wave = node(tree, "ShaderNodeTexWave", tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], "Vector", Scale=1.5)
+    half = node(tree, "ShaderNodeMath", wave.outputs["Fac"], 0)
+    half.operation, half.inputs[1].default_value = "MULTIPLY", 0.6
+    tree.links.new(half.outputs[0], shader.inputs["Roughness"])
+    cube(made, 1.2, location=(0.5, 0.3, 0.6), rotation=(0, 0, 0.5))
+    made, tree, shader = material("rough", "ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7, 1))
+    noise = tree.nodes.new("ShaderNodeTexVoronoi")
+    noise.inputs["Scale"].default_value = 4
+    bump = node(tree, "ShaderNodeBump", noise.outputs["Distance"], "Height", Distance=0.4, Strength=1.0)
+    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+    ball(made, 0.8, location=(2.2, 0.3, 0.8))
+    lamp("SUN", (0, 0, 5), (2.5, 2.5, 1.5), 3, angle=0)
+    world((0.3, 0.3, 0.3))
+    camera()
+
+
 # Allowed difference of a region's mean from Cycles', as a share of it, and why it is more than noise.
 SCENES = {
     "area-lamps": (area_lamps, 0.04, ""), "bulbs": (bulbs, 0.04, ""),
@@ -409,4 +492,5 @@ SCENES = {
     "brushed-cloth-and-lacquer": (brushed_cloth_and_lacquer, 0.06, ""),
     "images-on-surfaces": (images_on_surfaces, 0.08, "normal maps end at the surface's own horizon"),
     "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, ""),
-    "sky-texture": (sky_texture, 0.05, ""), "images-through-nodes": (images_through_nodes, 0.05, "")}
+    "sky-texture": (sky_texture, 0.05, ""), "images-through-nodes": (images_through_nodes, 0.05, ""),
+    "masks-and-bumps": (masks_and_bumps, 0.06, ""), "procedural": (procedural, 0.06, "")}

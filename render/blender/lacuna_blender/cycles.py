@@ -6,6 +6,7 @@ import subprocess
 import threading
 
 import bpy
+import numpy
 
 from . import exr, process
 
@@ -15,51 +16,80 @@ _SKY, _LARGEST = 2048, 4096  # texels along the longer side
 
 class Cycles:
     """A context; the other Blender begins with the first question. Answers are height x width x 3 floats, row 0 at the
-    top, or None where there is none."""
+    top, or None where there is none. `side`: texels of what is baked; 0: nothing is. `asking` is told whom each question is
+    about, and may raise what ends the export."""
 
-    def __init__(self, folder, frame):
-        self._folder, self._frame, self._child, self._asked, self._known = folder, frame, None, 0, {}
+    def __init__(self, folder, frame, side, asking):
+        self.side = side
+        self._folder, self._frame, self._asking, self._child, self._asked, self._known = folder, frame, asking, None, 0, {}
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        if self._child:
-            self._child.kill()
-            self._child.communicate()
+        self._end()
 
     def panorama(self, world, width):
         """A world as a latitude-longitude picture, the middle of it +X; `width`: of the images that it has, in texels."""
         width = min(max(width, _SKY), _LARGEST)
         return self._ask("panorama", "worlds", world, (width, width // 2))
 
-    def output(self, owner, found, size):
+    def flat(self, owner, found, size):
         """`found`: the output of a node (sockets.Source) of a material or a lamp; `size`: width and height, in texels.
         Images lie as they are, the coordinates of the picture are theirs."""
-        place = (owner.name_full, tuple(g.name for g in found.groups), found.node.name, found.output.identifier)
-        if place not in self._known:
-            share = min(_LARGEST / max(size), 1)
-            self._known[place] = self._ask(*("lamp", "lights") if isinstance(owner, bpy.types.Light) else ("flat", "materials"), owner,
-                                           [max(int(s * share), 1) for s in size], groups=place[1], node=place[2], output=place[3])
-        return self._known[place]
+        share = min(_LARGEST / max(size), 1)
+        what = ("lamp", "lights") if isinstance(owner, bpy.types.Light) else ("flat", "materials")
+        return self._ask(*what, owner, [max(int(s * share), 1) for s in size], **_place(found))
 
-    def _ask(self, what, kind, owner, size, **more):
-        self._asked += 1
-        file, out = (os.path.join(self._folder, f"nodes{self._asked}.{end}") for end in ("blend", "exr"))
-        owner = owner.original
+    def unwrapped(self, name, body):
+        """Texture coordinates for the arrays of a meshes.Body, or None."""
+        return self._ask_for(name, "unwrapped", "npy", body=self._written(body))
+
+    def baked(self, owner, found, body, side):
+        """The output of a material's node on a body that has its coordinates; a square of so many texels."""
+        return self._ask("baked", "materials", owner, (side, side), "npy", body=self._written(body), **_place(found))
+
+    def _ask(self, what, kind, owner, size, end="exr", **more):
+        """About a data-block of one of bpy.data's lists; the same question is asked once."""
+        key = (what, owner.name_full, *size, repr(more))
+        if key not in self._known:
+            owner = owner.original
+            file = self._path("blend")
+            try:
+                bpy.data.libraries.write(file, {owner}, path_remap="ABSOLUTE", fake_user=True)
+                self._known[key] = self._ask_for(owner.name, what, end, kind=kind, name=owner.name, file=file, frame=self._frame,
+                                                 width=size[0], height=size[1], **more)
+            except (OSError, RuntimeError) as error:
+                print(f"Lacuna: {owner.name}: Cycles was not asked about its nodes: {error}")
+                self._known[key] = None
+        return self._known[key]
+
+    def _ask_for(self, about, what, end, **request):
+        self._asking(about)
+        out = self._path(end)
         try:
-            bpy.data.libraries.write(file, {owner}, path_remap="ABSOLUTE", fake_user=True)
-            said = self._answer({"what": what, "kind": kind, "name": owner.name, "file": file, "out": out,
-                                 "frame": self._frame, "width": size[0], "height": size[1], **more})
+            said = self._answer({"what": what, "out": out, **request})
             if said == "done":
-                return exr.read(out).stack("R", "G", "B")
-            print(f"Lacuna: {owner.name}: Cycles cannot say what its nodes come to: {said}")
-        except (OSError, RuntimeError, ValueError) as error:
-            print(f"Lacuna: {owner.name}: Cycles was not asked about its nodes: {error}")
+                return numpy.load(out) if end == "npy" else exr.read(out).stack("R", "G", "B")
+        except (OSError, ValueError) as error:
+            said = error
+        print(f"Lacuna: {about}: Cycles cannot say what its nodes come to: {said}")
         return None
+
+    def _written(self, body):
+        key = (body, len(body.arrays))  # once more with coordinates
+        if key not in self._known:
+            self._known[key] = self._path("npz")
+            numpy.savez(self._known[key], **body.arrays)
+        return self._known[key]
+
+    def _path(self, end):
+        self._asked += 1
+        return os.path.join(self._folder, f"asked{self._asked}.{end}")
 
     def _answer(self, request):
         if self._child is None or self._child.poll() is not None:
+            self._end()
             self._child = self._start()
         watch = threading.Timer(_PATIENCE, self._child.kill)
         watch.start()
@@ -73,8 +103,18 @@ class Cycles:
             watch.cancel()
         return "it ended, or took too long"
 
+    def _end(self):
+        if self._child:
+            self._child.kill()
+            self._child.communicate()
+
     @staticmethod
     def _start():
         script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "cycles_child.py")
         return subprocess.Popen(process.mortal([bpy.app.binary_path, "-b", "--factory-startup", "-P", script]), text=True,
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
+
+
+def _place(found):
+    """Where an output is, for the other Blender."""
+    return {"groups": [g.name for g in found.groups], "node": found.node.name, "output": found.output.identifier}

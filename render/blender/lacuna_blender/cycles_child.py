@@ -2,14 +2,15 @@
 
   blender -b --factory-startup -P cycles_child.py
 
-Each line of stdin is a request, as JSON. A picture goes to its `out` as .exr, linear. The answer is a line of stdout that
-begins with _ANSWER: "done", or what went wrong."""
+Each line of stdin is a request, as JSON. What is asked for goes to its `out`: a picture as .exr, linear, or arrays. The
+answer is a line of stdout that begins with _ANSWER: "done", or what went wrong."""
 
 import json
 import math
 import sys
 
 import bpy
+import numpy
 
 _ANSWER = "LACUNA "
 _EXACT = 0.01  # pixels: a sample of a texel's middle
@@ -38,6 +39,7 @@ def panorama(request):
 def flat(request):
     """An output of a material's node, over the square of the texture coordinates."""
     scene, material = load(request)
+    lie_flat(material.node_tree)
     shine(material.node_tree, request)
     add_floor(scene, request, material)
     render(scene, request, samples=1, width_of_filter=_EXACT)
@@ -55,6 +57,62 @@ def lamp(request):
     white.diffuse_color = (1, 1, 1, 1)  # without nodes: Lambert's
     add_floor(scene, request, white)
     render(scene, request, samples=1, width_of_filter=_EXACT)
+
+
+def unwrapped(request):
+    """Texture coordinates of a body's triangles that lie beside each other: 3 n x 2."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    mesh = add_body(bpy.context.scene, request).data
+    mesh.uv_layers.active = mesh.uv_layers.new(name="unwrapped")
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.smart_project(angle_limit=math.radians(66), island_margin=0.01)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    uvs = numpy.empty(2 * len(mesh.loops), numpy.float32)
+    mesh.uv_layers["unwrapped"].data.foreach_get("uv", uvs)
+    numpy.save(request["out"], uvs.reshape(-1, 2))
+
+
+def baked(request):
+    """An output of a material's node on a body, over its unwrapped texture coordinates: height x width x 3, row 0 at the top."""
+    scene, material = load(request)
+    body = add_body(scene, request)
+    shine(material.node_tree, request)
+    body.data.materials.append(material)
+    mesh, (width, height) = body.data, (request["width"], request["height"])
+    image = bpy.data.images.new("baked", width, height, float_buffer=True)
+    target = material.node_tree.nodes.new("ShaderNodeTexImage")
+    target.image, material.node_tree.nodes.active = image, target
+    scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", 1, False
+    scene.render.bake.margin = max(width // 64, 2)
+    bpy.ops.object.bake(type="EMIT", uv_layer="unwrapped")
+    texels = numpy.empty(width * height * 4, numpy.float32)
+    image.pixels.foreach_get(texels)
+    numpy.save(request["out"], texels.reshape(height, width, 4)[::-1, :, :3])
+
+
+def add_body(scene, request):
+    """Of the arrays of meshes.Body: the active object."""
+    arrays = numpy.load(request["body"])
+    mesh = bpy.data.meshes.new("body")
+    mesh.from_pydata(arrays["points"].tolist(), [], arrays["triangles"].tolist())
+    mesh.use_auto_texspace = False
+    mesh.texspace_location, mesh.texspace_size = arrays["texture_space"]
+    mesh.polygons.foreach_set("use_smooth", numpy.full(len(mesh.polygons), bool(arrays["smooth"])))
+    for name in arrays:
+        kind, _, name_of = name.partition(":")
+        if kind == "uv":
+            layer = mesh.uv_layers.new(name=name_of)
+            layer.data.foreach_set("uv", arrays[name].ravel())
+            layer.active_render = name_of == str(arrays["active_uv"])
+        elif kind == "color":
+            mesh.color_attributes.new(name_of, "FLOAT_COLOR", "CORNER").data.foreach_set("color", arrays[name].ravel())
+    body = bpy.data.objects.new("body", mesh)
+    body.matrix_world = arrays["matrix"].tolist()
+    scene.collection.objects.link(body)
+    bpy.context.view_layer.objects.active = body
+    body.select_set(True)
+    return body
 
 
 def add_camera(scene, kind, location, rotation):
@@ -81,7 +139,6 @@ def shine(tree, request):
     trees = [tree]
     for name in request["groups"]:
         trees.append(trees[-1].nodes[name].node_tree)
-    lie_flat(tree)
     output = by_identifier(trees[-1].nodes[request["node"]].outputs, request["output"])
     for inner, outer, name in zip(trees[:0:-1], trees[-2::-1], request["groups"][::-1]):
         output = lead_out(inner, output, outer.nodes[name])
@@ -131,7 +188,7 @@ def render(scene, request, samples, width_of_filter):
 
 
 def main():
-    makers = {"panorama": panorama, "flat": flat, "lamp": lamp}
+    makers = {f.__name__: f for f in (panorama, flat, lamp, unwrapped, baked)}
     for line in sys.stdin:
         try:
             request = json.loads(line)

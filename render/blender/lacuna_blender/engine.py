@@ -15,6 +15,10 @@ _LIVE = "2s"  # between pictures while it renders
 last_notes = []  # what the last render left out, for the panel
 
 
+class _Stopped(Exception):
+    """The user pressed Esc before there was a render."""
+
+
 class LacunaEngine(bpy.types.RenderEngine):
     bl_idname = "LACUNA"
     bl_label = "Lacuna"
@@ -26,6 +30,8 @@ class LacunaEngine(bpy.types.RenderEngine):
         folder = tempfile.mkdtemp(prefix="lacuna-")
         try:
             self._render(depsgraph, folder)
+        except _Stopped:
+            pass
         except (camera.CannotRender, process.NotFound, ValueError, OSError) as error:
             self._fail(str(error))
         finally:
@@ -48,7 +54,7 @@ class LacunaEngine(bpy.types.RenderEngine):
         self.update_stats("", "Lacuna: exporting the scene")
         program = process.find(bpy.path.abspath(_preferred_program()))
         notes = Notes()
-        arguments = export.write(depsgraph, self.camera_override or scene.camera, folder, notes)
+        arguments = export.write(depsgraph, self.camera_override or scene.camera, folder, notes, self._asking)
         self._say(notes)
         image = os.path.join(folder, "picture.exr")
         threads = scene.render.threads if scene.render.threads_mode == "FIXED" else 0
@@ -85,6 +91,12 @@ class LacunaEngine(bpy.types.RenderEngine):
         for warning in child.warnings():
             self.report({"WARNING"}, warning)
         return True
+
+    def _asking(self, name):
+        """While the scene is exported."""
+        if self._stopped():
+            raise _Stopped
+        self.update_stats("", f"Lacuna: asking Cycles about {name}")
 
     def _stopped(self):
         """Whether the user pressed Esc."""

@@ -13,16 +13,16 @@ _UP = [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1]
 _NO_BODY = ("CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
 
 
-def write(depsgraph, view, folder, notes):
+def write(depsgraph, view, folder, notes, asking):
     """Writes scene.glb, and what it needs, into `folder`; returns the command line's arguments of the scene. `view`: the
-    camera object. Raises camera.CannotRender."""
+    camera object; `asking`: as cycles.Cycles wants it. Raises camera.CannotRender."""
     scene = depsgraph.scene
     if view is None:
         raise camera.CannotRender("expected a camera, found none; add one, or choose it in the scene's properties")
     glb = Glb()
     root = glb.node(None, "Blender", _UP)
     arguments = camera.add(glb, root, view.evaluated_get(depsgraph), scene.render, notes)
-    with Cycles(folder, scene.frame_current) as cycles:
+    with Cycles(folder, scene.frame_current, scene.lacuna.baked, asking) as cycles:
         _add_objects(glb, root, depsgraph, notes, cycles)
         _say_what_the_scene_loses(scene, notes)
         path = os.path.join(folder, "scene.glb")
@@ -32,7 +32,7 @@ def write(depsgraph, view, folder, notes):
 
 def _add_objects(glb, root, depsgraph, notes, cycles):
     made = materials.Materials(glb, textures.Textures(glb), notes, cycles)
-    bodies = meshes.Meshes(glb, made, notes)
+    bodies = meshes.Meshes(glb, made, notes, cycles)
     lamps = lights.Lights(glb, root, made, notes, cycles)
     for instance in depsgraph.object_instances:
         thing = instance.object

@@ -1,7 +1,9 @@
 """Materials of the .glb."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
+from .blend import placed_alike, white
 from .surface import Surface, SurfaceReader
 from .sockets import Value
 
@@ -20,20 +22,24 @@ class Materials:
     def __init__(self, glb, textures, notes, cycles):
         self._glb, self._textures, self._notes, self._cycles, self._made = glb, textures, notes, cycles, {}
 
-    def of(self, material, hidden):
-        """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera."""
-        key = (material and material.name_full, hidden)
-        if key not in self._made:
+    def of(self, material, hidden, body):
+        """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera. `body`: what it is
+        on (body.Body), which matters where it has bumps or is baked."""
+        metres = _rounded(body.size()) if material and material.use_nodes and _has_bumps(material.node_tree) else 1.0
+        shared = (material and material.name_full, hidden, metres)
+        own = (*shared, *body.key)
+        if shared not in self._made and own not in self._made:
             name = material.name if material else "without a material"
-            self._made[key] = self._write(name, self._surface(material, name), hidden)
-        return self._made[key]
+            written = self._write(name, self._surface(material, name, metres, body), hidden)
+            self._made[own if body.is_baked else shared] = written
+        return self._made[shared] if shared in self._made else self._made[own]
 
     def lamp(self, name, radiance):
         """Black, shines to the front, and the camera does not see it: as Blender's lamps are."""
         surface = Surface(emission=Value(tuple(radiance)), strength=1.0)
         return self._write(name, surface, True, two_sided=False)
 
-    def _surface(self, material, name):
+    def _surface(self, material, name, metres, body):
         if material is None:
             return Surface(base=Value((0.8, 0.8, 0.8)))
         if not material.use_nodes:
@@ -45,7 +51,7 @@ class Materials:
             self._notes.add(name, "the volume is left out")
         if output.inputs["Displacement"].is_linked:
             self._notes.add(name, "the displacement is left out")
-        return SurfaceReader(material, self._notes, self._cycles).read(output.inputs["Surface"])
+        return SurfaceReader(material, body, metres, self._notes, self._cycles).read(output.inputs["Surface"])
 
     def _write(self, name, s, hidden, two_sided=True):
         uv_maps = []
@@ -62,13 +68,13 @@ class Materials:
         entry["pbrMetallicRoughness"] = pbr = {
             "baseColorFactor": [*_shares(s.base.factor), _share(s.alpha.factor)],
             "metallicFactor": _share(s.metallic.factor), "roughnessFactor": _share(s.roughness.factor)}
-        alpha = s.alpha.texture
-        if alpha and not s.base.texture:
-            self._notes.add(name, "alpha by a texture is left out where the colour has none: half is let through")
-            pbr["baseColorFactor"][3] *= 0.5
-            alpha = None
-        if s.base.texture:
-            pbr["baseColorTexture"] = info(self._textures.color(s.base.texture, alpha), s.base.texture)
+        alpha, color = s.alpha.texture, s.base.texture
+        if alpha and color and not placed_alike((color, alpha)):
+            self._notes.add(name, "the alpha's texture lies as that of the colour does")
+        if alpha and not color:
+            color = replace(alpha, image=white(name, alpha), channel="")
+        if color:
+            pbr["baseColorTexture"] = info(self._textures.color(color, alpha), color)
         if s.alpha.texture or s.alpha.factor < 1:
             entry["alphaMode"] = "BLEND"
         rough, metal = s.roughness.texture, s.metallic.texture
@@ -126,6 +132,15 @@ class Materials:
             self._glb.extension(entry, "KHR_materials_emissive_strength", {"emissiveStrength": most})
             if s.emission.texture:
                 entry["emissiveTexture"] = info(self._textures.color(s.emission.texture), s.emission.texture)
+
+
+def _has_bumps(tree):
+    return any(n.type == "BUMP" or n.type == "GROUP" and n.node_tree and _has_bumps(n.node_tree) for n in tree.nodes)
+
+
+def _rounded(size):
+    """In quarters of an octave, so that meshes of about one size share a material."""
+    return 2 ** (round(4 * math.log2(size)) / 4) if size > 0 else 1.0
 
 
 def _share(value):

@@ -3,21 +3,16 @@
 import numpy
 
 from . import brushing
+from .body import UNWRAPPED, Body, is_smooth, read, uv_layer
 
 GEOMETRY = ("MESH", "CURVE", "SURFACE", "META", "FONT")
-
-
-def _read(collection, attribute, width, kind=numpy.float32):
-    values = numpy.empty(len(collection) * width, kind)
-    collection.foreach_get(attribute, values)
-    return values.reshape(-1, width) if width > 1 else values
 
 
 class Meshes:
     """Objects that share a mesh and materials share one here as well."""
 
-    def __init__(self, glb, materials, notes):
-        self._glb, self._materials, self._notes, self._made = glb, materials, notes, {}
+    def __init__(self, glb, materials, notes, cycles):
+        self._glb, self._materials, self._notes, self._cycles, self._made = glb, materials, notes, cycles, {}
 
     def of(self, thing, hidden):
         """The mesh of an evaluated object, or None where it has no faces."""
@@ -29,19 +24,21 @@ class Meshes:
                 mesh = thing.to_mesh()
             except RuntimeError:  # of a curve without a body, say
                 mesh = None
-            self._made[key] = self._write(thing.name, mesh, slots, hidden) if mesh else None
+            self._made[key] = self._write(thing, mesh, slots, hidden) if mesh else None
             thing.to_mesh_clear()
         return self._made[key]
 
-    def _write(self, name, mesh, slots, hidden):
+    def _write(self, thing, mesh, slots, hidden):
+        name = thing.name
         mesh.calc_loop_triangles()
         if not mesh.loop_triangles:
             return None
-        corners = _read(mesh.loop_triangles, "loops", 3, numpy.int32)
-        slot_of = numpy.minimum(_read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
-        points = _read(mesh.vertices, "co", 3)[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
-        materials = {slot: self._materials.of(slots[slot], hidden) for slot in numpy.unique(slot_of)}
-        smooth = _is_smooth(mesh)
+        corners = read(mesh.loop_triangles, "loops", 3, numpy.int32)
+        slot_of = numpy.minimum(read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
+        points = read(mesh.vertices, "co", 3)[read(mesh.loops, "vertex_index", 1, numpy.int32)]
+        bodies = {slot: Body(thing, mesh, corners[slot_of == slot], self._cycles) for slot in numpy.unique(slot_of)}
+        materials = {slot: self._materials.of(slots[slot], hidden, body) for slot, body in bodies.items()}
+        smooth = is_smooth(mesh)
         normals = _corner_normals(mesh) if smooth or any(m.tangent for m in materials.values()) else None
         primitives = []
         for slot, material in materials.items():
@@ -51,32 +48,35 @@ class Meshes:
             if material.tangent:
                 attributes["TANGENT"] = self._tangents(name, mesh, material.tangent, points, normals)
             for i, uv_map in enumerate(material.uv_maps):
-                uvs = self._uvs(name, mesh, uv_map)
+                uvs = self._uvs(name, mesh, uv_map) if uv_map != UNWRAPPED else None
                 if uvs is not None:
                     attributes[f"TEXCOORD_{i}"] = uvs
             if material.vertex_colors is not None:
                 colors = self._colors(name, mesh, material.vertex_colors)
                 if colors is not None:
                     attributes["COLOR_0"] = colors
-            primitives.append((*_compact(attributes, corners[slot_of == slot].ravel()), material.index))
+            by_corner = {key: values[bodies[slot].corners.ravel()] for key, values in attributes.items()}
+            if UNWRAPPED in material.uv_maps:
+                by_corner[f"TEXCOORD_{material.uv_maps.index(UNWRAPPED)}"] = bodies[slot].unwrapped()
+            primitives.append((*_compact(by_corner), material.index))
         return self._glb.mesh(name, primitives)
 
     def _uvs(self, name, mesh, uv_map):
-        layer = _uv_layer(mesh, uv_map)
+        layer = uv_layer(mesh, uv_map)
         if layer is None:
             if uv_map:
                 self._notes.add(name, f"there is no UV map {uv_map}: its texture has one colour")
             return None
-        uvs = _read(layer.data, "uv", 2)
+        uvs = read(layer.data, "uv", 2)
         uvs[:, 1] = 1 - uvs[:, 1]
         return uvs
 
     def _tangents(self, name, mesh, tangent, points, normals):
         if tangent.uv_map is not None:
-            layer = _uv_layer(mesh, tangent.uv_map)
+            layer = uv_layer(mesh, tangent.uv_map)
             try:
                 mesh.calc_tangents(uvmap=layer.name if layer else "")
-                return brushing.across_normals(_read(mesh.loops, "tangent", 3), normals)
+                return brushing.across_normals(read(mesh.loops, "tangent", 3), normals)
             except (RuntimeError, TypeError):  # no such map, or faces of more than four corners
                 self._notes.add(name, f"tangents by the UV map {tangent.uv_map} cannot be made: brushed around Z")
         return brushing.around(tangent.axis, points, normals)
@@ -88,37 +88,24 @@ class Meshes:
         if colors is None:
             self._notes.add(name, f"there are no vertex colours {wanted}: white is used")
             return None
-        values = _read(colors.data, "color", 4)  # linear, whatever their kind
+        values = read(colors.data, "color", 4)  # linear, whatever their kind
         values[:, 3] = 1
         if colors.domain == "POINT":
-            values = values[_read(mesh.loops, "vertex_index", 1, numpy.int32)]
+            values = values[read(mesh.loops, "vertex_index", 1, numpy.int32)]
         return values
-
-
-def _uv_layer(mesh, wanted):
-    """The UV map of that name, the one for renders where there is none; or None."""
-    layers = mesh.uv_layers
-    return layers.get(wanted) if wanted else next((l for l in layers if l.active_render), None)
-
-
-def _is_smooth(mesh):
-    """Whether a face has other normals than its own; glTF says that none has by leaving them out."""
-    return mesh.has_custom_normals or bool(_read(mesh.polygons, "use_smooth", 1, bool).any())
 
 
 def _corner_normals(mesh):
     """By corner."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
-        return _read(mesh.corner_normals, "vector", 3)
+        return read(mesh.corner_normals, "vector", 3)
     mesh.calc_normals_split()
-    return _read(mesh.loops, "normal", 3)
+    return read(mesh.loops, "normal", 3)
 
 
-def _compact(attributes, corners):
+def _compact(attributes):
     """The corners' values, equal ones once, and the indices of those."""
-    rows = numpy.ascontiguousarray(numpy.concatenate([a[corners] for a in attributes.values()], axis=1), numpy.float32)
+    rows = numpy.ascontiguousarray(numpy.concatenate(list(attributes.values()), axis=1), numpy.float32)
     keys = rows.view(numpy.dtype((numpy.void, rows.shape[1] * 4))).ravel()
     _, first, indices = numpy.unique(keys, return_index=True, return_inverse=True)
-    kept = corners[first]
-    return ({name: numpy.ascontiguousarray(a[kept], numpy.float32) for name, a in attributes.items()},
-            indices.astype(numpy.uint32))
+    return ({name: numpy.ascontiguousarray(a[first], numpy.float32) for name, a in attributes.items()}, indices.astype(numpy.uint32))

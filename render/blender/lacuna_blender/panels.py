@@ -33,6 +33,7 @@ class LACUNA_PT_sampling(_Panel, bpy.types.Panel):
         layout.prop(settings, "depth")
         layout.prop(settings, "seed")
         layout.prop(settings, "animate_seed")
+        layout.prop(settings, "baked")
 
 
 class LACUNA_PT_film(_Panel, bpy.types.Panel):

@@ -27,6 +27,9 @@ class LacunaScene(bpy.types.PropertyGroup):
     depth: IntProperty(name="Depth", min=1, max=254, default=12,
                        description="Longest path, in edges: 1 is light seen directly, 2 is direct lighting")
     seed: IntProperty(name="Seed", min=0, default=1, description="Another seed, another noise")
+    baked: IntProperty(name="Baked textures", min=0, max=8192, default=1024,
+                       description="Texels along a side of the pictures that procedural textures become, one for each input and "
+                                   "object. 0: the colour beside the input is taken")
     animate_seed: BoolProperty(name="Other noise in each frame", default=True,
                                description="Adds the number of the frame to the seed")
 

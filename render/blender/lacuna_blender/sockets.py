@@ -4,6 +4,7 @@ Cycles makes of images and constants."""
 import math
 from dataclasses import dataclass, replace
 
+from .body import UNWRAPPED
 from .textures import Picture, Use
 
 # Nodes whose outputs are functions of their inputs at the same place.
@@ -11,6 +12,10 @@ _POINTWISE = frozenset((
     "BLACKBODY", "BRIGHTCONTRAST", "CLAMP", "COMBHSV", "COMBINE_COLOR", "COMBRGB", "COMBXYZ", "CURVE_FLOAT", "CURVE_RGB", "CURVE_VEC",
     "GAMMA", "HUE_SAT", "INVERT", "LIGHT_PATH", "MAP_RANGE", "MATH", "MIX", "MIX_RGB", "RGB", "RGBTOBW", "SEPARATE_COLOR", "SEPHSV",
     "SEPRGB", "SEPXYZ", "SQUEEZE", "VALTORGB", "VALUE", "VECT_MATH", "WAVELENGTH"))
+# Those that depend on more than a place of a surface.
+_ELSEWHERE = frozenset((
+    "AMBIENT_OCCLUSION", "BEVEL", "CAMERA", "FRESNEL", "HAIR_INFO", "LAYER_WEIGHT", "OBJECT_INFO", "PARTICLE_INFO", "POINT_INFO",
+    "VOLUME_INFO", "WIREFRAME"))
 
 
 @dataclass(frozen=True)
@@ -63,20 +68,37 @@ def source_of(socket, groups=()):
 
 
 def made_of(found):
-    """The nodes at the ends of all links behind an output, each once, where nothing but their place matters; else None."""
-    ends, asked = {}, [found]
+    """All that is behind an output, each node once, but for what is behind images that lie by UV."""
+    known, asked = {}, [found]
     while asked:
         source = asked.pop()
-        key = (source.node.name, tuple(g.name for g in source.groups))
-        if key in ends:
+        key = (source.node.name, source.output.name, tuple(g.name for g in source.groups))
+        if key in known:
             continue
-        if source.node.type != "TEX_IMAGE":
-            if source.node.type not in _POINTWISE:
-                return None
+        known[key] = source
+        if not _lies_by_uv(source):
             behind = [source_of(s, source.groups) for s in source.node.inputs if s.enabled]
             asked += [b for b in behind if b and b.node]
-        ends[key] = source
-    return list(ends.values())
+    return list(known.values())
+
+
+def _lies_by_uv(source):
+    """Whether this is an image on the surface by a UV map, and a Mapping node at most."""
+    if source.node.type != "TEX_IMAGE" or source.node.projection != "FLAT":
+        return False
+    found = source_of(source.node.inputs["Vector"], source.groups)
+    if found and found.node and found.node.type == "MAPPING":
+        found = source_of(found.node.inputs["Vector"], found.groups)
+    return found is None or found.node is not None and (
+        found.node.type == "UVMAP" or found.node.type == "TEX_COORD" and found.output.name == "UV")
+
+
+def _depends_on_more(source):
+    """Than on a place of a surface: on the eye, on other objects, on which copy it is."""
+    node, output = source.node, source.output.name
+    return node.type in _ELSEWHERE or node.type == "TEX_COORD" and output in ("Camera", "Window", "Reflection") or \
+        node.type == "NEW_GEOMETRY" and output in ("Incoming", "Backfacing") or \
+        node.type == "ATTRIBUTE" and node.attribute_type != "GEOMETRY"
 
 
 def constant(socket):
@@ -87,15 +109,15 @@ def constant(socket):
 class Sockets:
     """Reads inputs of one material, lamp or world; what it cannot follow goes into `notes` by its name."""
 
-    def __init__(self, owner, notes, cycles):
-        self._owner, self._name, self._notes, self._cycles = owner, owner.name, notes, cycles
+    def __init__(self, owner, notes, cycles, body=None):
+        self._owner, self._name, self._notes, self._cycles, self._body = owner, owner.name, notes, cycles, body
 
     def color(self, socket, groups=()):
         found = source_of(socket, groups)
         if found is None or found.node is None:
             return Value(_three(constant(found.output if found else socket)))
         node = found.node
-        if node.type == "TEX_IMAGE" and found.output.name == "Color":
+        if _lies_by_uv(found) and found.output.name == "Color":
             return Value((1.0, 1.0, 1.0), self.image(node, found.groups)) if self._usable(node) else Value((0.8, 0.8, 0.8))
         if node.type == "RGB":
             return Value(tuple(node.outputs[0].default_value[:3]))
@@ -112,7 +134,7 @@ class Sockets:
         if found is None or found.node is None:
             return Value(luminance(constant(found.output if found else socket)))
         node = found.node
-        if node.type == "TEX_IMAGE" and self._usable(node):
+        if _lies_by_uv(found) and self._usable(node):
             channel = "A" if found.output.name == "Alpha" else ""
             return Value(1.0, replace(self.image(node, found.groups), channel=channel))
         if node.type == "VALUE":
@@ -151,9 +173,6 @@ class Sockets:
         if found and found.node:
             if found.node.type == "UVMAP":
                 uv_map = found.node.uv_map
-            elif not (found.node.type == "TEX_COORD" and found.output.name == "UV"):
-                self._notes.add(self._name, f"the image {node.image.name} lies by UV and not by "
-                                f"{found.node.bl_label}, {found.output.name}")
         if node.extension == "CLIP":
             self._notes.add(self._name, f"the image {node.image.name} ends in its rim's colour, not in black")
         return Use(node.image, uv_map, place, node.extension)
@@ -187,28 +206,46 @@ class Sockets:
         return Value(tuple(p * q for p, q in zip(a.factor, b.factor)), a.texture or b.texture, colors)
 
     def _evaluated(self, found):
-        """What Cycles makes of images and constants, or None."""
+        """What Cycles makes of the nodes behind an output: on the square of their images where they have nothing else, on the
+        body where its place matters. None where that cannot be had."""
         behind = made_of(found)
-        if behind is None:
+        if any(map(_depends_on_more, behind)) or not all(self._usable(s.node) for s in behind if s.node.type == "TEX_IMAGE"):
             return None
-        images = [source for source in behind if source.node.type == "TEX_IMAGE"]
-        if not all(self._usable(source.node) for source in images):
-            return None
-        size = [max((source.node.image.size[i] for source in images), default=1) for i in (0, 1)]
-        texels = self._cycles.output(self._owner, found, size)
+        flat = all(_lies_by_uv(source) or source.node.type in _POINTWISE for source in behind)
+        value = self._flat(found, [s for s in behind if s.node.type == "TEX_IMAGE"]) if flat else self._baked(found)
+        if value and any(source.node.type == "LIGHT_PATH" for source in behind):
+            self._notes.add(self._name, "Light Path: all light meets what the camera sees")
+        return value
+
+    def _baked(self, found):
+        texels, size = self._body.texels(self._owner, found, self._cycles.side) if self._body and self._cycles.side else (None, 0.0)
         if texels is None:
             return None
-        if any(source.node.type == "LIGHT_PATH" for source in behind):
-            self._notes.add(self._name, "Light Path: all light meets what the camera sees")
+        use = Use(Picture(", ".join(self._body.key + self._path(found)), texels), UNWRAPPED, None, "EXTEND", "", size)
+        return self._scaled(use)
+
+    def _path(self, found):
+        return (self._name, *(g.name for g in found.groups), found.node.name, found.output.identifier)
+
+    @staticmethod
+    def _scaled(use):
+        """What is brighter than one goes into the factor."""
+        most = max(float(use.image.texels.max()), 1.0)
+        use.image.texels[..., :3] /= most
+        return Value((most,) * 3, use)
+
+    def _flat(self, found, images):
+        size = [max((source.node.image.size[i] for source in images), default=1) for i in (0, 1)]
+        texels = self._cycles.flat(self._owner, found, size)
+        if texels is None:
+            return None
         if not images:
             return Value(tuple(float(c) for c in texels[0, 0]))
         uses = [self.image(source.node, source.groups) for source in images]
         for use in uses[1:]:
             if replace(use, image=None) != replace(uses[0], image=None):
                 self._notes.add(self._name, f"the image {use.image.name} lies as {uses[0].image.name} does, with which it is mixed")
-        most = max(float(texels.max()), 1.0)
-        name = ", ".join([self._name, *(g.name for g in found.groups), found.node.name, found.output.identifier])
-        return Value((most,) * 3, replace(uses[0], image=Picture(name, texels / most)))
+        return self._scaled(replace(uses[0], image=Picture(", ".join(self._path(found)), texels)))
 
     def _usable(self, node):
         image = node.image

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass, replace
 
+from . import blend
 from .brushing import Brushing, anisotropic_widths, brushed, principled_widths, tangent_of
 from .sockets import Sockets, Value, luminance, source_of
+from .textures import scalar
 
 BLACK = Value((0.0, 0.0, 0.0))
 # Disney's coat of 1, Blender 3's, reflects a quarter of what Fresnel has for it.
@@ -34,11 +36,11 @@ class Surface:
 
 
 class SurfaceReader:
-    """Of one material."""
+    """Of one material, on a body whose square of texture coordinates has sides of `size` metres."""
 
-    def __init__(self, material, notes, cycles):
-        self._name, self._notes = material.name, notes
-        self._sockets = Sockets(material, notes, cycles)
+    def __init__(self, material, body, size, notes, cycles):
+        self._name, self._size, self._notes = material.name, size, notes
+        self._sockets = Sockets(material, notes, cycles, body)
         self._readers = {
             "BSDF_PRINCIPLED": self._principled, "EMISSION": self._emission, "BSDF_DIFFUSE": self._diffuse,
             "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_GLASS": self._glass,
@@ -72,8 +74,25 @@ class SurfaceReader:
         return value.factor
 
     def _normal(self, node, groups, *names):
+        """A normal map and its strength, or None."""
         socket = _input(node, *(names or ("Normal",)))
+        found = socket and source_of(socket, groups)
+        if found and found.node and found.node.type == "BUMP":
+            return self._bump(found.node, found.groups)
         return self._sockets.normal(socket, groups) if socket else None
+
+    def _bump(self, node, groups):
+        under = source_of(node.inputs["Normal"], groups)
+        if under and under.node:
+            self._note("of a Bump node upon other normals the others are left out")
+        heights = self._scalar(node, groups, "Height")
+        if not heights.texture:
+            return None  # even
+        distance = self._number(node, groups, "Distance") * heights.factor * (-1 if node.invert else 1)
+        strength = min(max(self._number(node, groups, "Strength"), 0.0), 1.0)
+        size = heights.texture.size or self._size
+        name = f"{heights.texture.image.name}, {node.name}, {size:.3g} m"
+        return blend.normals_of_heights(name, heights.texture, distance, strength, size), 1.0
 
     def _sheen(self, node, groups, base):
         """Colour and roughness."""
@@ -126,12 +145,22 @@ class SurfaceReader:
         if s.coat > 0:
             s.coat_normal = self._normal(node, groups, "Clearcoat Normal", "Coat Normal")
         s.sheen, s.sheen_roughness = self._sheen(node, groups, s.base)
-        s.emission = self._color(node, groups, "Emission", "Emission Color")
-        s.strength = self._number(node, groups, "Emission Strength")
+        s = self._shining(s, node, groups, "Emission", "Emission Color")
         return self._brush(s, node, groups, principled_widths)
 
     def _emission(self, node, groups):
-        return Surface(emission=self._color(node, groups, "Color"), strength=self._number(node, groups, "Strength"))
+        return self._shining(Surface(), node, groups, "Color")
+
+    def _shining(self, s, node, groups, *colors):
+        """With an emission of that input, by one of two that has a texture."""
+        s.emission, strength = self._color(node, groups, *colors), self._scalar(node, groups, "Emission Strength", "Strength")
+        s.strength = strength.factor
+        if strength.texture and not s.emission.texture and not strength.texture.channel:
+            s.emission = replace(s.emission, texture=strength.texture)
+        elif strength.texture:
+            self._note("the texture of the emission's strength is left out: half of it is used")
+            s.strength *= 0.5
+        return s
 
     def _diffuse(self, node, groups):
         if _input(node, "Roughness").is_linked or _input(node, "Roughness").default_value > 0:
@@ -178,8 +207,8 @@ class SurfaceReader:
             return self._layered(a, b)
         share = self._scalar(node, groups, "Fac", "Factor")
         if share.texture:
-            self._note("a Mix Shader by a texture is rendered as half of each")
-        f = min(max(0.5 if share.texture else share.factor, 0.0), 1.0)
+            return self._masked(a, b, share, node.name)
+        f = min(max(share.factor, 0.0), 1.0)
         if 0 < f < 1:
             self._note("a Mix Shader is rendered as one surface with the mean of both")
         return self._mean(a, b, f)
@@ -196,6 +225,27 @@ class SurfaceReader:
     def _layered(self, under, over):
         self._note("a mixture by Fresnel or Layer Weight is rendered as a glossy layer over the first shader")
         return replace(under, roughness=over.roughness, reflectance=0.04)
+
+    def _masked(self, a, b, share, node):
+        """A mixture by an image: what differs and can have a texture gets one, the rest is the mean of both."""
+        made = self._mean(a, b, min(max(share.factor * float(scalar(share.texture).mean()), 0.0), 1.0))
+        lost = [word for word, p, q in (("coats", a.coat, b.coat), ("sheen", a.sheen, b.sheen), ("normals", a.normal, b.normal),
+                                        ("reflectances", a.reflectance, b.reflectance)) if p != q]
+        for field in ("base", "metallic", "roughness", "transmission", "alpha", "emission"):
+            p, q = getattr(a, field), getattr(b, field)
+            if field == "emission":  # by its strength
+                p, q = (Value(tuple(s.strength * c for c in s.emission.factor), s.emission.texture) for s in (a, b))
+            if p == q:
+                continue
+            uses = [use for use in (share.texture, p.texture, q.texture) if use]
+            if p.vertex_colors is not None or q.vertex_colors is not None or not blend.placed_alike(uses):
+                lost.append(field)
+                continue
+            name = f"{self._name}, {node}, {field}"
+            setattr(made, field, Value(*blend.mixed(name, (p.factor, p.texture), (q.factor, q.texture), (share.factor, share.texture))))
+        if lost:
+            self._note(f"of a Mix Shader by an image {', '.join(lost)} are the mean of both")
+        return made
 
     def _mean(self, a, b, f):
         def mean(p, q):

@@ -30,6 +30,7 @@ class Use:
     place: tuple = None
     wrap: str = "REPEAT"
     channel: str = ""  # of a scalar: R, G, B or A, "" for the luminance
+    size: float = 0.0  # metres of its square on the surface; 0: as large as that of the mesh's UV map
 
 
 def png(texels):
@@ -66,7 +67,8 @@ def stored(image):
 
 def is_coded(image):
     """Whether its colours are sRGB's and not linear. Blender keeps those of float images linear."""
-    return not isinstance(image, Picture) and not image.is_float and image.colorspace_settings.name not in ("Non-Color", "Raw", "Linear", "Linear Rec.709")
+    return not isinstance(image, Picture) and not image.is_float and \
+        image.colorspace_settings.name not in ("Non-Color", "Raw", "Linear", "Linear Rec.709")
 
 
 def linear(image):
@@ -83,7 +85,7 @@ def scalar(use):
     return values[..., :3] @ numpy.array([0.2126, 0.7152, 0.0722], numpy.float32)
 
 
-def _like(values, shape):
+def resized(values, shape):
     """Nearest texels, so many."""
     rows = numpy.arange(shape[0]) * values.shape[0] // shape[0]
     columns = numpy.arange(shape[1]) * values.shape[1] // shape[1]
@@ -113,7 +115,7 @@ class Textures:
             shape = max((p.shape for p in planes.values()), key=lambda s: s[0] * s[1])
             texels = numpy.ones((*shape, 4), numpy.float32)
             for c, plane in planes.items():
-                texels[..., "RGBA".index(c)] = _like(plane, shape)
+                texels[..., "RGBA".index(c)] = resized(plane, shape)
             self._made[key] = self._add(first, png(_bytes(texels)), "image/png")
         return self._made[key]
 
@@ -139,7 +141,7 @@ class Textures:
         values = stored(image) if is_coded(image) else linear(image)
         coded = values[..., :3] if is_coded(image) else to_srgb(values[..., :3])
         coverage = values[..., 3] if alpha is None or (alpha.image == image and alpha.channel == "A") \
-            else _like(scalar(alpha), values.shape)
+            else resized(scalar(alpha), values.shape)
         return png(_bytes(numpy.dstack([coded, coverage if alpha else numpy.ones_like(coverage)])))
 
     def _add(self, use, data, mime):

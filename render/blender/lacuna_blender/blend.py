@@ -1,0 +1,59 @@
+"""Values that differ from texel to texel: mixtures by a mask, and normal maps of heights. Knows nothing of Blender's nodes."""
+
+import math
+from dataclasses import replace
+
+import numpy
+
+from .textures import Picture, linear, resized, scalar
+
+
+def placed_alike(uses):
+    """Whether images lie on a surface in the same way, so that their texels may be mixed."""
+    return all(replace(use, image=None, channel="") == replace(uses[0], image=None, channel="") for use in uses[1:])
+
+
+def white(name, use):
+    """A Picture of as many texels."""
+    return Picture(f"{name}, white", numpy.ones((*scalar(use).shape, 3)))
+
+
+def mixed(name, a, b, mask):
+    """(1 - mask) a + mask b, texel by texel: a factor and the Use of what is made, which is called `name`. `a`, `b`: pairs of
+    a factor (a number, or three) and a Use or None; `mask`: such a pair with a number and a Use. All uses are placed alike."""
+    share = numpy.clip(mask[0] * scalar(mask[1]), 0, 1)[..., None]
+    sides = [_texels(*side) for side in (a, b)]
+    shape = max((share.shape, *(s.shape for s in sides)), key=lambda s: s[0] * s[1])
+    share, first, second = (resized(values, shape) for values in (share, *sides))
+    made = numpy.broadcast_to((1 - share) * first + share * second, (*shape[:2], first.shape[2]))
+    most = max(float(made.max()), 1.0)
+    rgb = numpy.broadcast_to(made / most, (*shape[:2], 3))
+    factor = most if isinstance(a[0], float) else (most,) * 3
+    return factor, replace(mask[1], image=Picture(name, rgb), channel="")
+
+
+def _texels(factor, use):
+    """Height x width x 1 or 3."""
+    if isinstance(factor, float):
+        return numpy.full((1, 1, 1), factor) if use is None else factor * scalar(use)[..., None]
+    return numpy.array(factor, numpy.float32) * (numpy.ones((1, 1, 3)) if use is None else linear(use.image)[..., :3])
+
+
+def normals_of_heights(name, use, distance, strength, size):
+    """The normal map of a bump, as a Use. `distance`: of heights 0 and 1, and `size`: of the square of texture coordinates,
+    both in metres; `strength`: how much of the bump there is."""
+    heights = scalar(use) * (distance / size)
+    rows, columns = heights.shape
+    wrapped = use.wrap == "REPEAT"
+    padded = numpy.pad(heights, 1, mode="wrap" if wrapped else "edge")
+    across = (padded[1:-1, 2:] - padded[1:-1, :-2]) * (columns / 2)
+    up = (padded[:-2, 1:-1] - padded[2:, 1:-1]) * (rows / 2)
+    if use.place:
+        _, turn, (sx, sy) = use.place
+        c, s = math.cos(turn), math.sin(turn)
+        across, up = sx * (c * across + s * up), sy * (c * up - s * across)
+    bumped = numpy.dstack([-across, -up, numpy.ones_like(up)])
+    bumped /= numpy.linalg.norm(bumped, axis=2, keepdims=True)
+    normal = strength * bumped + (1 - strength) * numpy.array([0, 0, 1])
+    normal /= numpy.linalg.norm(normal, axis=2, keepdims=True)
+    return replace(use, image=Picture(name, 0.5 * normal + 0.5), channel="")

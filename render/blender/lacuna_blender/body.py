@@ -1,0 +1,103 @@
+"""The part of a mesh that has one material, as far as that material has to know it."""
+
+import math
+
+import numpy
+
+UNWRAPPED = "lacuna:unwrapped"  # the name of texture coordinates that no UV map of Blender's has
+MOST_TRIANGLES = 200000  # that are unwrapped: about ten seconds
+
+
+def read(collection, attribute, width, kind=numpy.float32):
+    """An attribute of all members of one of Blender's collections: so many values each."""
+    values = numpy.empty(len(collection) * width, kind)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def uv_layer(mesh, wanted):
+    """The UV map of that name, the one for renders where there is none; or None."""
+    layers = mesh.uv_layers
+    return layers.get(wanted) if wanted else next((l for l in layers if l.active_render), None)
+
+
+def is_smooth(mesh):
+    """Whether a face has other normals than its own; glTF says that none has by leaving them out."""
+    return mesh.has_custom_normals or bool(read(mesh.polygons, "use_smooth", 1, bool).any())
+
+
+class Body:
+    """`corners`: the loops of its triangles, n x 3. Valid as long as the mesh is."""
+
+    def __init__(self, thing, mesh, corners, cycles):
+        self.corners, self.arrays = corners, None
+        self._thing, self._mesh, self._cycles, self._tried = thing, mesh, cycles, False
+
+    @property
+    def key(self):
+        """Equal for bodies of equal textures."""
+        return self._mesh.name_full, self._thing.original.name_full
+
+    @property
+    def is_baked(self):
+        return self.arrays is not None
+
+    def size(self):
+        """The mean side of the square of its texture coordinates, in metres."""
+        layer = uv_layer(self._mesh, "")
+        return self._side(read(layer.data, "uv", 2)[self.corners]) if layer else 1.0
+
+    def texels(self, owner, found, side):
+        """What a material's output (sockets.Source) is on it: side x side x 3, or None; and the size as above, of a square of
+        the unwrapped coordinates."""
+        if not self._tried:
+            self._tried = True
+            self._unwrap()
+        if self.arrays is None:
+            return None, 1.0
+        texels = self._cycles.baked(owner, found, self, side)
+        return texels, self._side(self.arrays["uv:unwrapped"].reshape(-1, 3, 2))
+
+    def unwrapped(self):
+        """Texture coordinates by corner, 3 n x 2, as glTF has them."""
+        u, v = self.arrays["uv:unwrapped"].T
+        return numpy.stack([u, 1 - v], axis=1)
+
+    def _unwrap(self):
+        if len(self.corners) > MOST_TRIANGLES:
+            return
+        self.arrays = self._arrays()
+        uvs = self._cycles.unwrapped(self._thing.name, self)
+        self.arrays = None if uvs is None else {**self.arrays, "uv:unwrapped": uvs}
+
+    def _arrays(self):
+        """What cycles_child.add_body makes it of again."""
+        mesh, loops = self._mesh, self.corners.ravel()
+        used, triangles = numpy.unique(read(mesh.loops, "vertex_index", 1, numpy.int32)[loops], return_inverse=True)
+        points = read(mesh.vertices, "co", 3)
+        low, high = points.min(axis=0), points.max(axis=0)
+        space = getattr(self._thing.original.data, "texspace_location", (low + high) / 2), \
+            getattr(self._thing.original.data, "texspace_size", (high - low) / 2)
+        layer = uv_layer(mesh, "")
+        arrays = {"points": points[used], "triangles": triangles.reshape(-1, 3), "texture_space": numpy.array(space),
+                  "smooth": is_smooth(mesh), "matrix": numpy.array(self._thing.matrix_world), "active_uv": layer.name if layer else ""}
+        for layer in mesh.uv_layers:
+            arrays["uv:" + layer.name] = read(layer.data, "uv", 2)[loops]
+        for colors in mesh.color_attributes:
+            values = read(colors.data, "color", 4)
+            by_corner = loops if colors.domain == "CORNER" else read(mesh.loops, "vertex_index", 1, numpy.int32)[loops]
+            arrays["color:" + colors.name] = values[by_corner]
+        return arrays
+
+    def _side(self, uvs):
+        """`uvs`: n x 3 x 2."""
+        points = read(self._mesh.vertices, "co", 3)[read(self._mesh.loops, "vertex_index", 1, numpy.int32)[self.corners]]
+        scale = abs(self._thing.matrix_world.to_3x3().determinant()) ** (1 / 3)
+        area, of_map = (_area(p).sum() for p in (points, numpy.pad(uvs, ((0, 0), (0, 0), (0, 1)))))
+        return scale * math.sqrt(area / of_map) if of_map > 0 else 1.0
+
+
+def _area(corners):
+    """Twice that of triangles, n x 3 x 3."""
+    a, b, c = numpy.moveaxis(corners, 1, 0)
+    return numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1)
