@@ -192,11 +192,13 @@ TextureUse TextureTable::request(int texture, bool srgb, Warnings& warnings) {
     const tinygltf::Texture& entry = document_.model.textures[std::size_t(texture)];
     const int image = imageOf(texture, warnings);
     if (image < 0) return {};
-    Key key{image, Texture::Wrap::Repeat, Texture::Wrap::Repeat, srgb};
+    Key key{image, Texture::Wrap::Repeat, Texture::Wrap::Repeat, false, srgb};
     if (entry.sampler >= 0) {
         const tinygltf::Sampler& sampler = document_.model.samplers[std::size_t(entry.sampler)];
         key.wrapU = wrap(entry.sampler, sampler.wrapS, "wrapS");
         key.wrapV = wrap(entry.sampler, sampler.wrapT, "wrapT");
+        // minFilter is for mip maps, and there are none.
+        key.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
     const auto [at, isNew] = known_.try_emplace(key, std::int32_t(keys_.size()));
     if (isNew) keys_.push_back(key);
@@ -243,7 +245,7 @@ std::vector<Texture> TextureTable::decode(Document& document) const {
         const bool isLast = --picture.uses == 0;
         textures.push_back({picture.width, picture.height,
                             isLast ? std::move(picture.rgba) : picture.rgba, key.srgb, key.wrapU,
-                            key.wrapV});
+                            key.wrapV, key.nearest});
     }
     return textures;
 }

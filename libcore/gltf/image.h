@@ -12,7 +12,7 @@
 
 namespace lacuna::gltf {
 
-/// Collects which textures the materials need: one per image, wrap modes and coding, however many
+/// Collects which textures the materials need: one per image, wrap modes, filter and coding, however many
 /// materials and glTF textures share it. An image used as colour and as data becomes two.
 class TextureTable {
   public:
@@ -30,7 +30,7 @@ class TextureTable {
     struct Key {
         int image;
         Texture::Wrap wrapU, wrapV;
-        bool srgb;
+        bool nearest, srgb;
         friend auto operator<=>(const Key&, const Key&) = default;
     };
     Texture::Wrap wrap(int sampler, int mode, const char* name) const;

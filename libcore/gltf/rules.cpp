@@ -228,6 +228,7 @@ constexpr Rule kRules[] = {
     {"images/*/bufferView", Shape::Index, 0, "bufferViews"},
     {"samplers", Shape::Array},
     {"samplers/*", Shape::Object},
+    {"samplers/*/magFilter", Shape::Count32},
     {"samplers/*/wrapS", Shape::Count32},
     {"samplers/*/wrapT", Shape::Count32},
 

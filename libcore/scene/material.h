@@ -22,6 +22,7 @@ struct Texture {
     std::vector<std::uint8_t> rgba;
     bool srgb = false;
     Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+    bool nearest = false;  ///< texels are squares of one colour; else linear between their centres
 };
 
 /// A texture as a material uses it: index into SceneDescription::textures, or none, and how it lies

@@ -43,17 +43,19 @@ double texelCoordinate(float u, int n, Texture::Wrap wrap) {
     return x * n - 0.5;
 }
 
-/// The four texels around a point, and how far it is from the first to the second ones.
+/// The four texels around a point, and how far it is from the first to the second ones. Where the
+/// texture is not interpolated, the first one is all.
 struct Footprint {
     int x[2], y[2];
     float fx, fy;
 
     Footprint(const Texture& texture, Vec2 uv) {
-        const double u = texelCoordinate(uv.x, texture.width, texture.wrapU);
-        const double v = texelCoordinate(uv.y, texture.height, texture.wrapV);
+        const double centre = texture.nearest ? 0.5 : 0.0;
+        const double u = texelCoordinate(uv.x, texture.width, texture.wrapU) + centre;
+        const double v = texelCoordinate(uv.y, texture.height, texture.wrapV) + centre;
         const int x0 = int(std::floor(u)), y0 = int(std::floor(v));
-        fx = float(u - x0);
-        fy = float(v - y0);
+        fx = texture.nearest ? 0.0f : float(u - x0);
+        fy = texture.nearest ? 0.0f : float(v - y0);
         for (int i = 0; i < 2; ++i) {
             x[i] = wrapped(x0 + i, texture.width, texture.wrapU);
             y[i] = wrapped(y0 + i, texture.height, texture.wrapV);

@@ -1,4 +1,4 @@
-// Texture look-ups: bilinear, without mip maps, because f must not depend on the strategy that
+// Texture look-ups: bilinear or nearest, without mip maps, because f must not depend on the strategy that
 // asks.
 #pragma once
 

@@ -506,6 +506,18 @@ TEST(Texture, TexelsWrapAndCodingByUse) {
     }
 }
 
+TEST(Texture, SquareTexelsWhereTheFilterSaysSo) {
+    TriangleBuilder b;
+    for (const int filter : {9728, 9729}) {
+        const int t = b.texture(redBlue(), {{"magFilter", filter}, {"minFilter", 9728}});
+        b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", t}}}}}});
+    }
+    const SceneDescription scene = b.load();
+    ASSERT_EQ(scene.textures.size(), 2u);
+    EXPECT_TRUE(scene.textures[0].nearest);
+    EXPECT_FALSE(scene.textures[1].nearest);
+}
+
 TEST(Texture, SharedByImageAndSampler) {
     TriangleBuilder b;
     const int first = b.texture(redBlue());

@@ -62,6 +62,26 @@ TEST(Texture, EverySrgbCodeAndLinearAlpha) {
     }
 }
 
+TEST(Texture, NearestTexelAndNoneBesideIt) {
+    for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
+        Texture t = noise(8, 4, true, wrap, wrap);
+        t.nearest = true;
+        for (int y = 0; y < 4; ++y) {
+            for (int x = 0; x < 8; ++x) {
+                for (const auto& [fx, fy] : {std::pair{0.5, 0.5}, {0.01, 0.99}, {0.99, 0.01}}) {
+                    const Rgba c = sampleTexture(t, {float((x + fx) / 8), float((y + fy) / 4)});
+                    EXPECT_NEAR(c.rgb.r, exactSrgb(code(t, x, y, 0)), 2e-6);
+                    EXPECT_NEAR(c.alpha, code(t, x, y, 3) / 255.0, 2e-6);
+                }
+            }
+        }
+    }
+    Texture t = noise(8, 4);
+    t.nearest = true;
+    expectSame(sampleTexture(t, {1.0f, 1.0f}), sampleTexture(t, {0.01f, 0.01f}), 0.0f);
+    expectSame(sampleTexture(t, {-0.01f, 0.1f}), sampleTexture(t, {0.99f, 0.1f}), 0.0f);
+}
+
 TEST(Texture, BilinearBetweenLinearColours) {
     const Texture t = noise(8, 4, true);
     for (int y = 0; y < 3; ++y) {

@@ -8,11 +8,6 @@ import numpy
 from .textures import Picture, linear, resized, scalar
 
 
-def placed_alike(uses):
-    """Whether images lie on a surface in the same way, so that their texels may be mixed."""
-    return all(replace(use, image=None, channel="") == replace(uses[0], image=None, channel="") for use in uses[1:])
-
-
 def white(name, use):
     """A Picture of as many texels."""
     return Picture(f"{name}, white", numpy.ones((*scalar(use).shape, 3)))
@@ -20,23 +15,25 @@ def white(name, use):
 
 def mixed(name, a, b, mask):
     """(1 - mask) a + mask b, texel by texel: a factor and the Use of what is made, which is called `name`. `a`, `b`: pairs of
-    a factor (a number, or three) and a Use or None; `mask`: such a pair with a number and a Use. All uses are placed alike."""
-    share = numpy.clip(mask[0] * scalar(mask[1]), 0, 1)[..., None]
+    a factor (a number, or three) and a Use or None; `mask`: such a pair with a number. The uses are placed alike."""
+    share = numpy.clip(_texels(*mask), 0, 1)
     sides = [_texels(*side) for side in (a, b)]
     shape = max((share.shape, *(s.shape for s in sides)), key=lambda s: s[0] * s[1])
     share, first, second = (resized(values, shape) for values in (share, *sides))
-    made = numpy.broadcast_to((1 - share) * first + share * second, (*shape[:2], first.shape[2]))
+    made = (1 - share) * first + share * second
+    use = next((use for _, use in (mask, a, b) if use), None)
+    if use is None:
+        return (float(made[0, 0, 0]) if isinstance(a[0], float) else tuple(float(c) for c in made[0, 0])), None
     most = max(float(made.max()), 1.0)
     rgb = numpy.broadcast_to(made / most, (*shape[:2], 3))
-    factor = most if isinstance(a[0], float) else (most,) * 3
-    return factor, replace(mask[1], image=Picture(name, rgb), channel="")
+    return most if isinstance(a[0], float) else (most,) * 3, replace(use, image=Picture(name, rgb), channel="")
 
 
 def _texels(factor, use):
     """Height x width x 1 or 3."""
     if isinstance(factor, float):
         return numpy.full((1, 1, 1), factor) if use is None else factor * scalar(use)[..., None]
-    return numpy.array(factor, numpy.float32) * (numpy.ones((1, 1, 3)) if use is None else linear(use.image)[..., :3])
+    return numpy.array(factor) * (numpy.ones((1, 1, 3)) if use is None else linear(use.image)[..., :3])
 
 
 def normals_of_heights(name, use, distance, strength, size):

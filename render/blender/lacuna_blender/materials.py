@@ -3,9 +3,10 @@
 import math
 from dataclasses import dataclass, replace
 
-from .blend import placed_alike, white
-from .surface import Surface, SurfaceReader
+from .blend import white
+from .surface import LieApart, Surface, SurfaceReader
 from .sockets import Value
+from .textures import placed_alike
 
 
 @dataclass
@@ -51,7 +52,13 @@ class Materials:
             self._notes.add(name, "the volume is left out")
         if output.inputs["Displacement"].is_linked:
             self._notes.add(name, "the displacement is left out")
-        return SurfaceReader(material, body, metres, self._notes, self._cycles).read(output.inputs["Surface"])
+        try:
+            found = SurfaceReader(material, body, metres, self._notes, self._cycles).read(output.inputs["Surface"])
+        except LieApart:
+            found = None
+        if found is None or not _fits(found):
+            found = SurfaceReader(material, body, metres, self._notes, self._cycles, baked=True).read(output.inputs["Surface"])
+        return found
 
     def _write(self, name, s, hidden, two_sided=True):
         uv_maps = []
@@ -132,6 +139,14 @@ class Materials:
             self._glb.extension(entry, "KHR_materials_emissive_strength", {"emissiveStrength": most})
             if s.emission.texture:
                 entry["emissiveTexture"] = info(self._textures.color(s.emission.texture), s.emission.texture)
+
+
+def _fits(s):
+    """Whether glTF can have its textures as they lie: some share an image, and there are two sets of coordinates."""
+    uses = [v.texture for v in (s.base, s.alpha, s.metallic, s.roughness, s.transmission, s.emission)]
+    base, alpha, metallic, roughness = ([use] if use else [] for use in uses[:4])
+    maps = {use.uv_map for use in (*uses, s.normal and s.normal[0], s.coat_normal and s.coat_normal[0]) if use}
+    return placed_alike(base + alpha) and placed_alike(metallic + roughness) and len(maps) <= 2
 
 
 def _has_bumps(tree):

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass, replace
 
 from .body import UNWRAPPED
-from .textures import Picture, Use
+from .textures import Picture, Use, placed_alike
 
 # Nodes whose outputs are functions of their inputs at the same place.
 _POINTWISE = frozenset((
@@ -88,9 +88,18 @@ def _lies_by_uv(source):
         return False
     found = source_of(source.node.inputs["Vector"], source.groups)
     if found and found.node and found.node.type == "MAPPING":
+        if not _moves_flat(found.node):
+            return False
         found = source_of(found.node.inputs["Vector"], found.groups)
     return found is None or found.node is not None and (
         found.node.type == "UVMAP" or found.node.type == "TEX_COORD" and found.output.name == "UV")
+
+
+def _moves_flat(mapping):
+    """Whether a Mapping node moves, turns and scales as KHR_texture_transform does."""
+    inputs = mapping.inputs
+    return mapping.vector_type == "POINT" and not any(s.is_linked for s in inputs[1:] if s.enabled) and \
+        not any(inputs["Rotation"].default_value[:2])
 
 
 def _depends_on_more(source):
@@ -109,11 +118,15 @@ def constant(socket):
 class Sockets:
     """Reads inputs of one material, lamp or world; what it cannot follow goes into `notes` by its name."""
 
-    def __init__(self, owner, notes, cycles, body=None):
-        self._owner, self._name, self._notes, self._cycles, self._body = owner, owner.name, notes, cycles, body
+    def __init__(self, owner, notes, cycles, body=None, baked=False):
+        """`body`: what the material is on; `baked`: whether all textures are baked on it."""
+        self._owner, self._name, self._notes, self._cycles, self._body, self._all = owner, owner.name, notes, cycles, body, baked
 
     def color(self, socket, groups=()):
         found = source_of(socket, groups)
+        return self._baked_if_all(found) or self._color(socket, found)
+
+    def _color(self, socket, found):
         if found is None or found.node is None:
             return Value(_three(constant(found.output if found else socket)))
         node = found.node
@@ -131,6 +144,9 @@ class Sockets:
 
     def scalar(self, socket, groups=()):
         found = source_of(socket, groups)
+        value = self._baked_if_all(found)
+        if value:
+            return Value(luminance(value.factor), value.texture)
         if found is None or found.node is None:
             return Value(luminance(constant(found.output if found else socket)))
         node = found.node
@@ -157,7 +173,8 @@ class Sockets:
             return None
         node = found.node
         if node.type == "NORMAL_MAP" and node.space == "TANGENT":
-            color = self.color(node.inputs["Color"], found.groups)
+            socket = node.inputs["Color"]
+            color = self._color(socket, source_of(socket, found.groups))  # never baked: it is about its own UV map
             if color.texture:
                 use = replace(color.texture, uv_map=node.uv_map or color.texture.uv_map)
                 return use, self.scalar(node.inputs["Strength"], found.groups).factor
@@ -175,17 +192,11 @@ class Sockets:
                 uv_map = found.node.uv_map
         if node.extension == "CLIP":
             self._notes.add(self._name, f"the image {node.image.name} ends in its rim's colour, not in black")
-        return Use(node.image, uv_map, place, node.extension)
+        return Use(node.image, uv_map, place, node.extension, node.interpolation == "Closest")
 
     def _place(self, node, groups):
         """Blender moves coordinates whose v points up, glTF those whose v points down."""
-        inputs = node.inputs
-        if node.vector_type != "POINT" or any(s.is_linked for s in inputs[1:] if s.enabled):
-            self._notes.add(self._name, f"a Mapping node of type {node.vector_type.title()}, or with links, is left out")
-            return None
-        (tx, ty, _), (ax, ay, turn), (sx, sy, _) = (tuple(inputs[n].default_value) for n in ("Location", "Rotation", "Scale"))
-        if ax or ay:
-            self._notes.add(self._name, "a Mapping node turns about Z only")
+        (tx, ty, _), (_, _, turn), (sx, sy, _) = (tuple(node.inputs[n].default_value) for n in ("Location", "Rotation", "Scale"))
         c, s = math.cos(turn), math.sin(turn)
         return (tx - s * sy, 1 - ty - c * sy), turn, (sx, sy)
 
@@ -211,17 +222,26 @@ class Sockets:
         behind = made_of(found)
         if any(map(_depends_on_more, behind)) or not all(self._usable(s.node) for s in behind if s.node.type == "TEX_IMAGE"):
             return None
-        flat = all(_lies_by_uv(source) or source.node.type in _POINTWISE for source in behind)
-        value = self._flat(found, [s for s in behind if s.node.type == "TEX_IMAGE"]) if flat else self._baked(found)
+        images = [self.image(s.node, s.groups) for s in behind if _lies_by_uv(s)]
+        flat = all(_lies_by_uv(source) or source.node.type in _POINTWISE for source in behind) and placed_alike(images)
+        value = self._flat(found, images) if flat else self._baked(found)
         if value and any(source.node.type == "LIGHT_PATH" for source in behind):
             self._notes.add(self._name, "Light Path: all light meets what the camera sees")
         return value
+
+    def _baked_if_all(self, found):
+        """Where all is to be baked and this is more than a constant."""
+        if not self._all or found is None or found.node is None or found.node.type in ("RGB", "VALUE"):
+            return None
+        behind = made_of(found)
+        constant_ = all(source.node.type in _POINTWISE for source in behind)
+        return None if constant_ or any(map(_depends_on_more, behind)) else self._baked(found)
 
     def _baked(self, found):
         texels, size = self._body.texels(self._owner, found, self._cycles.side) if self._body and self._cycles.side else (None, 0.0)
         if texels is None:
             return None
-        use = Use(Picture(", ".join(self._body.key + self._path(found)), texels), UNWRAPPED, None, "EXTEND", "", size)
+        use = Use(Picture(", ".join(self._body.key + self._path(found)), texels), UNWRAPPED, None, "EXTEND", size=size)
         return self._scaled(use)
 
     def _path(self, found):
@@ -235,17 +255,13 @@ class Sockets:
         return Value((most,) * 3, use)
 
     def _flat(self, found, images):
-        size = [max((source.node.image.size[i] for source in images), default=1) for i in (0, 1)]
+        size = [max((use.image.size[i] for use in images), default=1) for i in (0, 1)]
         texels = self._cycles.flat(self._owner, found, size)
         if texels is None:
             return None
         if not images:
             return Value(tuple(float(c) for c in texels[0, 0]))
-        uses = [self.image(source.node, source.groups) for source in images]
-        for use in uses[1:]:
-            if replace(use, image=None) != replace(uses[0], image=None):
-                self._notes.add(self._name, f"the image {use.image.name} lies as {uses[0].image.name} does, with which it is mixed")
-        return self._scaled(replace(uses[0], image=Picture(", ".join(self._path(found)), texels)))
+        return self._scaled(replace(images[0], image=Picture(", ".join(self._path(found)), texels)))
 
     def _usable(self, node):
         image = node.image

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from . import blend
 from .brushing import Brushing, anisotropic_widths, brushed, principled_widths, tangent_of
 from .sockets import Sockets, Value, luminance, source_of
-from .textures import scalar
+from .textures import placed_alike, scalar
 
 BLACK = Value((0.0, 0.0, 0.0))
 # Disney's coat of 1, Blender 3's, reflects a quarter of what Fresnel has for it.
@@ -13,6 +13,10 @@ DISNEY_COAT = 0.25
 # Disney's sheen, (1 - cos)^5, as the sheen of microfibres that glTF has: the albedos of the two are within a third of
 # each other from 30 to 85 degrees.
 DISNEY_SHEEN, DISNEY_SHEEN_ROUGHNESS = 0.1, 0.3
+
+
+class LieApart(Exception):
+    """Textures that become one lie on the surface in different ways: they have to be baked."""
 
 
 @dataclass
@@ -38,9 +42,10 @@ class Surface:
 class SurfaceReader:
     """Of one material, on a body whose square of texture coordinates has sides of `size` metres."""
 
-    def __init__(self, material, body, size, notes, cycles):
-        self._name, self._size, self._notes = material.name, size, notes
-        self._sockets = Sockets(material, notes, cycles, body)
+    def __init__(self, material, body, size, notes, cycles, baked=False):
+        """`baked`: whether all textures are baked on the body, and so lie alike."""
+        self._name, self._size, self._notes, self._baked = material.name, size, notes, baked
+        self._sockets = Sockets(material, notes, cycles, body, baked)
         self._readers = {
             "BSDF_PRINCIPLED": self._principled, "EMISSION": self._emission, "BSDF_DIFFUSE": self._diffuse,
             "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_GLASS": self._glass,
@@ -206,67 +211,57 @@ class SurfaceReader:
         if found and found.node and found.node.type in ("FRESNEL", "LAYER_WEIGHT"):
             return self._layered(a, b)
         share = self._scalar(node, groups, "Fac", "Factor")
-        if share.texture:
-            return self._masked(a, b, share, node.name)
-        f = min(max(share.factor, 0.0), 1.0)
-        if 0 < f < 1:
+        if not share.texture and not 0 < share.factor < 1:
+            return b if share.factor > 0 else a
+        if not share.texture:
             self._note("a Mix Shader is rendered as one surface with the mean of both")
-        return self._mean(a, b, f)
+        return self._mixture(a, b, share, node.name)
 
     def _thinned(self, solid, node, groups, flip):
         """A mixture with Transparent BSDF; its factor says how much of the second shader there is."""
         share = self._scalar(node, groups, "Fac", "Factor")
-        if share.texture and flip:
-            self._note("a Mix Shader that has Transparent BSDF second, by a texture: half is let through")
-            share = Value(0.5)
-        factor = share.factor if share.texture or not flip else 1 - share.factor
-        return replace(solid, alpha=Value(solid.alpha.factor * factor, share.texture or solid.alpha.texture))
+        if not share.texture:
+            factor = 1 - share.factor if flip else share.factor
+            return replace(solid, alpha=replace(solid.alpha, factor=solid.alpha.factor * factor))
+        sides = (solid.alpha, Value(0.0)) if flip else (Value(0.0), solid.alpha)
+        return replace(solid, alpha=self._mixed(f"{node.name}, alpha", *sides, share))
 
     def _layered(self, under, over):
         self._note("a mixture by Fresnel or Layer Weight is rendered as a glossy layer over the first shader")
         return replace(under, roughness=over.roughness, reflectance=0.04)
 
-    def _masked(self, a, b, share, node):
-        """A mixture by an image: what differs and can have a texture gets one, the rest is the mean of both."""
-        made = self._mean(a, b, min(max(share.factor * float(scalar(share.texture).mean()), 0.0), 1.0))
-        lost = [word for word, p, q in (("coats", a.coat, b.coat), ("sheen", a.sheen, b.sheen), ("normals", a.normal, b.normal),
-                                        ("reflectances", a.reflectance, b.reflectance)) if p != q]
-        for field in ("base", "metallic", "roughness", "transmission", "alpha", "emission"):
-            p, q = getattr(a, field), getattr(b, field)
-            if field == "emission":  # by its strength
-                p, q = (Value(tuple(s.strength * c for c in s.emission.factor), s.emission.texture) for s in (a, b))
-            if p == q:
-                continue
-            uses = [use for use in (share.texture, p.texture, q.texture) if use]
-            if p.vertex_colors is not None or q.vertex_colors is not None or not blend.placed_alike(uses):
-                lost.append(field)
-                continue
-            name = f"{self._name}, {node}, {field}"
-            setattr(made, field, Value(*blend.mixed(name, (p.factor, p.texture), (q.factor, q.texture), (share.factor, share.texture))))
-        if lost:
-            self._note(f"of a Mix Shader by an image {', '.join(lost)} are the mean of both")
+    def _mixture(self, a, b, share, node):
+        """Two shaders as one surface: what can have a texture is mixed texel by texel, the rest as a whole."""
+        f = min(max(share.factor * (float(scalar(share.texture).mean()) if share.texture else 1.0), 0.0), 1.0)
+
+        def mean(p, q):
+            return tuple(mean(x, y) for x, y in zip(p, q)) if isinstance(p, tuple) else (1 - f) * p + f * q
+
+        made = Surface(normal=a.normal or b.normal, coat_normal=a.coat_normal or b.coat_normal, brushing=a.brushing or b.brushing,
+                       ior=b.ior if b.transmission.factor > 0 else a.ior, sheen_roughness=max(a.sheen_roughness, b.sheen_roughness),
+                       strength=1.0)
+        for field in ("reflectance", "coat", "coat_roughness", "sheen"):
+            setattr(made, field, mean(getattr(a, field), getattr(b, field)))
+        for field in ("base", "metallic", "roughness", "transmission", "alpha"):
+            setattr(made, field, self._mixed(f"{node}, {field}", getattr(a, field), getattr(b, field), share))
+        made.emission = self._mixed(f"{node}, emission", _light(a), _light(b), share)
+        lost = [word for word in ("reflectance", "coat", "sheen", "normal") if getattr(a, word) != getattr(b, word)]
+        if share.texture and lost:
+            self._note(f"of a Mix Shader by an image there is one {', '.join(lost)}")
         return made
 
-    def _mean(self, a, b, f):
-        def mean(p, q):
-            if isinstance(p, Value):
-                factor = mean(p.factor, q.factor)
-                texture = (q.texture or p.texture) if f > 0.5 else (p.texture or q.texture)
-                colors = p.vertex_colors if p.vertex_colors is not None else q.vertex_colors
-                return Value(factor, texture, colors)
-            if isinstance(p, tuple):
-                return tuple(mean(x, y) for x, y in zip(p, q))
-            return (1 - f) * p + f * q
-
-        if f in (0, 1):
-            return b if f else a
-        emission = tuple((1 - f) * a.strength * x + f * b.strength * y for x, y in zip(a.emission.factor, b.emission.factor))
-        return Surface(mean(a.base, b.base), mean(a.metallic, b.metallic), mean(a.roughness, b.roughness),
-                       mean(a.reflectance, b.reflectance), b.ior if b.transmission.factor > 0 else a.ior,
-                       mean(a.transmission, b.transmission), mean(a.coat, b.coat), mean(a.coat_roughness, b.coat_roughness),
-                       mean(a.alpha, b.alpha), Value(emission, a.emission.texture or b.emission.texture), 1.0,
-                       a.normal or b.normal, a.coat_normal or b.coat_normal, mean(a.sheen, b.sheen),
-                       max(a.sheen_roughness, b.sheen_roughness), a.brushing or b.brushing)
+    def _mixed(self, name, p, q, share):
+        """A Value between two."""
+        uses = [use for use in (share.texture, p.texture, q.texture) if use]
+        if p == q:
+            return p
+        if p.vertex_colors is None and q.vertex_colors is None and placed_alike(uses):
+            name = f"{self._name}, {name}"
+            return Value(*blend.mixed(name, (p.factor, p.texture), (q.factor, q.texture), (share.factor, share.texture)))
+        if not self._baked:
+            raise LieApart
+        self._note(f"images that lie apart cannot be mixed: {name} is that of the second shader")
+        return q
 
     def _add(self, node, groups):
         a, b = self.read(node.inputs[0], groups), self.read(node.inputs[1], groups)
@@ -274,9 +269,14 @@ class SurfaceReader:
             a, b = b, a
         if b.base != BLACK:
             self._note("an Add Shader of two reflecting shaders is rendered as one surface with the mean of both")
-            return self._mean(a, b, 0.5)
-        sum_ = tuple(a.strength * x + b.strength * y for x, y in zip(a.emission.factor, b.emission.factor))
-        return replace(a, emission=Value(sum_, a.emission.texture or b.emission.texture), strength=1.0)
+            return self._mixture(a, b, Value(0.5), node.name)
+        half = self._mixed(f"{node.name}, emission", _light(a), _light(b), Value(0.5))
+        return replace(a, emission=half, strength=2.0)
+
+
+def _light(s):
+    """Its emission, strength included."""
+    return replace(s.emission, factor=tuple(s.strength * c for c in s.emission.factor))
 
 
 def _input(node, *names):

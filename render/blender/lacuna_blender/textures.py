@@ -3,11 +3,12 @@
 import os
 import struct
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy
 
 REPEAT, CLAMP, MIRROR = 10497, 33071, 33648
+NEAREST, LINEAR = 9728, 9729
 _WRAPS = {"REPEAT": REPEAT, "EXTEND": CLAMP, "CLIP": CLAMP, "MIRROR": MIRROR}
 
 
@@ -29,8 +30,14 @@ class Use:
     uv_map: str = ""  # "" is the one that is active for rendering
     place: tuple = None
     wrap: str = "REPEAT"
+    nearest: bool = False  # squares of one colour
     channel: str = ""  # of a scalar: R, G, B or A, "" for the luminance
     size: float = 0.0  # metres of its square on the surface; 0: as large as that of the mesh's UV map
+
+
+def placed_alike(uses):
+    """Whether images lie on a surface in the same way, so that their texels may be mixed."""
+    return len({replace(use, image=None, channel="") for use in uses}) < 2
 
 
 def png(texels):
@@ -100,7 +107,7 @@ class Textures:
 
     def color(self, use, alpha=None):
         """sRGB, and the values of another image in alpha. Returns a texture's index."""
-        key = ("color", use.image.name, use.wrap, alpha and (alpha.image.name, alpha.channel))
+        key = ("color", use.image.name, use.wrap, use.nearest, alpha and (alpha.image.name, alpha.channel))
         if key not in self._made:
             data = None if alpha else _file_of(use.image)
             self._made[key] = self._add(use, *(data or (self._coded(use, alpha), "image/png")))
@@ -109,7 +116,7 @@ class Textures:
     def scalars(self, **channels):
         """R, G, B or A: a Use or None. Linear; what has no Use is 1."""
         first = next(use for use in channels.values() if use)
-        key = tuple((c, u and (u.image.name, u.channel, u.wrap)) for c, u in sorted(channels.items()))
+        key = tuple((c, u and (u.image.name, u.channel, u.wrap, u.nearest)) for c, u in sorted(channels.items()))
         if key not in self._made:
             planes = {c: scalar(u) for c, u in channels.items() if u}
             shape = max((p.shape for p in planes.values()), key=lambda s: s[0] * s[1])
@@ -120,7 +127,7 @@ class Textures:
         return self._made[key]
 
     def normals(self, use):
-        key = ("normals", use.image.name, use.wrap)
+        key = ("normals", use.image.name, use.wrap, use.nearest)
         if key not in self._made:
             self._made[key] = self._add(use, png(_bytes(stored(use.image)[..., :3])), "image/png")
         return self._made[key]
@@ -146,7 +153,7 @@ class Textures:
 
     def _add(self, use, data, mime):
         wrap = _WRAPS.get(use.wrap, REPEAT)
-        sampler = self._glb.append("samplers", {"wrapS": wrap, "wrapT": wrap})
+        sampler = self._glb.append("samplers", {"wrapS": wrap, "wrapT": wrap, "magFilter": NEAREST if use.nearest else LINEAR})
         source = self._glb.image(data, mime, use.image.name)
         return self._glb.append("textures", {"sampler": sampler, "source": source})
 
