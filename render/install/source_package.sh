@@ -3,7 +3,7 @@
 #
 #   --source   does not build it
 #
-# Needs debhelper and dpkg-dev beside the packages of .ci/packages.
+# Needs debhelper and dpkg-dev beside the packages of .ci/packages; asks lintian where it is installed.
 set -euo pipefail
 project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 options=(-us -uc)
@@ -30,3 +30,6 @@ packages=$(awk '$1 == "build" && $2 != "g++" { printf "%s%s", between, $2; betwe
 sed -i "s/@PACKAGES@/$packages, libopenmpi-dev/" "$folder/debian/control"
 cd "$folder"
 dpkg-buildpackage "${options[@]}"
+if command -v lintian >/dev/null; then
+    lintian --allow-root --no-cfg -i --fail-on error,warning ../lacuna_"$version"-*.changes
+fi

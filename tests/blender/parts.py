@@ -19,7 +19,7 @@ except ImportError:
     sys.exit(77)
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "render" / "blender"))
-from lacuna_blender import brushing, camera, command, exr, passes, process, shapes, textures  # noqa: E402
+from lacuna_blender import blend, brushing, camera, command, exr, passes, process, shapes, sockets, textures  # noqa: E402
 from lacuna_blender.glb import Glb  # noqa: E402
 from lacuna_blender.notes import Notes  # noqa: E402
 from lacuna_blender.sockets import Value  # noqa: E402
@@ -129,6 +129,103 @@ class Brushing(unittest.TestCase):
         self.assertTrue((numpy.cross(points, tangents[:, :3])[:, 2] > 0).all(), "counterclockwise")
         numpy.testing.assert_array_equal(tangents[:, 3], 1)
         self.assertTrue(numpy.isfinite(brushing.around(2, points, numpy.tile([0, 0, 1.0], (100, 1)))).all())
+
+
+def node(kind, *inputs, output="Color", **members):
+    """A shader node with one output; its inputs are numbers or other nodes."""
+    made = object_with(type=kind, name=f"{kind} {id(inputs)}", mute=False, internal_links=[], bl_label=kind, **members)
+    made.outputs = [object_with(name=output, identifier=output, node=made)]
+    made.inputs = Inputs(socket_of(value) for value in inputs)
+    return made
+
+
+class Inputs(list):
+    """The only one, by whatever name."""
+
+    def __getitem__(self, key):
+        return super().__getitem__(0 if isinstance(key, str) else key)
+
+
+def socket_of(value):
+    if isinstance(value, float):
+        return object_with(is_linked=False, links=[], enabled=True, name="Value", default_value=value)
+    link = object_with(from_node=value, from_socket=value.outputs[0], is_muted=False)
+    return object_with(is_linked=True, links=[link], enabled=True, name="Value", default_value=0.25)
+
+
+class Nodes(unittest.TestCase):
+    def test_links_lead_through_reroutes_and_muted_nodes(self):
+        constant = node("RGB")
+        muted = node("INVERT", constant)
+        muted.mute, muted.internal_links = True, [object_with(from_socket=muted.inputs[0], to_socket=muted.outputs[0])]
+        self.assertIs(sockets.source_of(socket_of(node("REROUTE", muted))).node, constant)
+        muted.internal_links = []
+        self.assertIsNone(sockets.source_of(socket_of(muted)))
+        self.assertIsNone(sockets.source_of(socket_of(0.5)))
+
+    def test_what_an_output_is_made_of(self):
+        def kinds(image):
+            return {source.node.type for source in sockets.made_of(sockets.source_of(socket_of(node("VALTORGB", image))))}
+
+        self.assertEqual(kinds(node("TEX_IMAGE", node("TEX_COORD", output="UV"), projection="FLAT")), {"VALTORGB", "TEX_IMAGE"})
+        for lies, projection in (("Object", "FLAT"), ("UV", "BOX")):
+            self.assertEqual(kinds(node("TEX_IMAGE", node("TEX_COORD", output=lies), projection=projection)),
+                             {"VALTORGB", "TEX_IMAGE", "TEX_COORD"})
+
+
+def use_of(values, **placed):
+    """Of a picture of these values: rows from the top, numbers or colours."""
+    texels = numpy.array(values, float)
+    rgb = texels if texels.ndim == 3 else numpy.dstack([texels] * 3)
+    return textures.Use(textures.Picture("made", rgb), **placed)
+
+
+class Blend(unittest.TestCase):
+    def test_texels_are_mixed_by_the_mask(self):
+        mask, grey = use_of([[0, 0.25], [0.5, 1]]), use_of([[0.2, 0.4], [0.6, 0.8]])
+        factor, made = blend.mixed("m", (0.5, None), (2.0, grey), (1.0, mask))
+        expected = [[0.5, 0.75 * 0.5 + 0.25 * 0.8], [0.25 + 0.6, 1.6]]
+        numpy.testing.assert_allclose(factor * textures.scalar(made), expected, rtol=1e-6)
+        self.assertLessEqual(textures.scalar(made).max(), 1)
+        factor, made = blend.mixed("m", ((1.0, 0.0, 0.0), None), ((0.0, 0.0, 1.0), None), (0.5, mask))
+        numpy.testing.assert_allclose(factor * textures.linear(made.image)[1, 1, :3], (0.5, 0, 0.5))
+
+    def test_constants_stay_constants(self):
+        self.assertEqual(blend.mixed("m", (1.0, None), (3.0, None), (0.25, None)), (1.5, None))
+        factor, made = blend.mixed("m", ((0.0, 1.0, 2.0), None), ((4.0, 1.0, 0.0), None), (0.5, None))
+        self.assertEqual((factor, made), ((2.0, 1.0, 1.0), None))
+
+    def test_masks_end_at_one(self):
+        factor, made = blend.mixed("m", (0.0, None), (1.0, None), (4.0, use_of([[0.1, 0.9]])))
+        numpy.testing.assert_allclose(factor * textures.scalar(made), [[0.4, 1]])
+
+    def normals(self, heights, *given, **placed):
+        made = blend.normals_of_heights("n", use_of(heights, **placed), *given)
+        return 2 * textures.stored(made.image)[..., :3] - 1
+
+    def test_a_slope_is_its_normal(self):
+        x = numpy.arange(16) / 16
+        for heights, expected in ((numpy.tile(x, (16, 1)), (-0.5, 0, 1)), (numpy.tile(x[::-1, None], (1, 16)), (0, -0.5, 1))):
+            normal = self.normals(heights, 1.0, 1.0, 2.0, wrap="EXTEND")[8, 8]  # a metre in two
+            numpy.testing.assert_allclose(normal, numpy.array(expected) / numpy.linalg.norm(expected), atol=1e-6)
+        numpy.testing.assert_allclose(self.normals(heights, 1.0, 0.0, 2.0)[8, 8], (0, 0, 1), atol=1e-6)
+
+    def test_a_placed_slope_turns_with_its_image(self):
+        heights = numpy.tile(numpy.arange(16) / 16, (16, 1))
+        normal = self.normals(heights, 1.0, 1.0, 1.0, wrap="EXTEND", place=((0, 0), math.pi / 2, (1, 2)))[8, 8]
+        # Turned by a right angle the image's u is the surface's -v, and twice as dense.
+        numpy.testing.assert_allclose(normal[:2] / normal[2], (0, 2), atol=1e-6)
+
+    def test_repeated_heights_have_no_rim(self):
+        heights = numpy.tile(numpy.sin(numpy.arange(32) * 2 * math.pi / 32), (32, 1))
+        normal = self.normals(heights, 0.1, 1.0, 1.0)
+        self.assertAlmostEqual(normal[3, 0, 0] / normal[3, 0, 2], -0.2 * math.pi, delta=0.02)
+
+    def test_what_lies_alike(self):
+        self.assertTrue(textures.placed_alike([]))
+        self.assertTrue(textures.placed_alike([use_of([[1]]), use_of([[0]], channel="R")]))
+        for placed in ({"uv_map": "b"}, {"wrap": "EXTEND"}, {"nearest": True}, {"place": ((0, 0), 1, (1, 1))}):
+            self.assertFalse(textures.placed_alike([use_of([[1]]), use_of([[0]], **placed)]))
 
 
 class Passes(unittest.TestCase):

@@ -32,14 +32,24 @@ def arguments():
     return archive, program, out, options.get("--only"), options.get("--page")
 
 
-def make(name, out):
-    """The .blend, and Cycles' picture of it."""
+def installed(archive, program, out):
+    """The environment of a Blender that has the add-on from the zip, and finds the program."""
+    addons = out / "scripts" / "addons"
+    addons.mkdir(parents=True, exist_ok=True)
+    zipfile.ZipFile(archive).extractall(addons)
+    return {**os.environ, "BLENDER_USER_SCRIPTS": str(out / "scripts"), "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"}
+
+
+def make(name, fill, out):
+    """The .blend of what `fill` puts into an empty scene, and Cycles' picture of it."""
+    for old in out.glob(f"{name}-*"):
+        old.unlink()
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scenes.for_cycles(scene, 96, 72, EDGES, samples=256)
     scene.view_settings.view_transform = "Standard"
     scene.cycles.light_sampling_threshold = 0
-    scenes.SCENES[name][0]()
+    fill()
     scene.render.filepath = str(out / f"{name}-cycles.exr")
     bpy.ops.render.render(write_still=True)
     scene.render.filepath = str(out / f"{name}-lacuna.exr")
@@ -47,7 +57,7 @@ def make(name, out):
 
 
 def render(name, out, environment):
-    """What users type. The scene's settings of Lacuna come by a line of Python."""
+    """What users type; returns what the add-on says is left out. The scene's settings of Lacuna come by a line of Python."""
     chosen = f"import bpy; s = bpy.context.scene.lacuna; s.samples, s.seconds, s.depth = {SAMPLES}, 0, {EDGES}"
     done = subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--addons", "lacuna_blender", str(out / f"{name}.blend"),
                            "--python-expr", chosen, "-E", "LACUNA", "-o", str(out / f"{name}-lacuna.exr"), "-x", "0", "-f", "1"],
@@ -75,29 +85,25 @@ def save_png(path, *pictures):
     path.write_bytes(textures.png((numpy.clip(sheet, 0, 1) * 255 + 0.5).astype(numpy.uint8)))
 
 
-def newest(out, name):
-    """Blender adds the number of the frame."""
-    return next(p for p in (out / f"{name}-lacuna.exr0001", out / f"{name}-lacuna0001.exr", out / f"{name}-lacuna.exr")
-                if p.exists())
+def pictures(name, out):
+    """Lacuna's and Cycles', saved side by side as well."""
+    # Blender adds the number of the frame.
+    places = (out / f"{name}-lacuna.exr0001", out / f"{name}-lacuna0001.exr", out / f"{name}-lacuna.exr")
+    ours, theirs = exr.read(next(p for p in places if p.exists())), exr.read(out / f"{name}-cycles.exr")
+    save_png(out / f"{name}.png", ours, theirs)
+    return ours, theirs
 
 
 def main():
     archive, program, out, only, page = arguments()
-    addons = out / "scripts" / "addons"
-    addons.mkdir(parents=True, exist_ok=True)
-    zipfile.ZipFile(archive).extractall(addons)
-    environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(out / "scripts"),
-                   "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"}
+    environment = installed(archive, program, out)
     rows, failed = [], []
-    for name, (_, allowed, why) in scenes.SCENES.items():
+    for name, (fill, allowed, why) in scenes.SCENES.items():
         if only and name != only:
             continue
-        for old in out.glob(f"{name}-*"):
-            old.unlink()
-        make(name, out)
+        make(name, fill, out)
         notes = render(name, out, environment)
-        ours, theirs = exr.read(newest(out, name)), exr.read(out / f"{name}-cycles.exr")
-        save_png(out / f"{name}.png", ours, theirs)
+        ours, theirs = pictures(name, out)
         error = differences(regions(ours), regions(theirs))
         ratio = regions(ours).mean() / regions(theirs).mean()
         rows.append((name, ratio, 1 + error.min(), 1 + error.max(), allowed, why))
@@ -124,4 +130,5 @@ def write_page(path, rows):
     path.write_text("\n".join(lines) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()
