@@ -179,6 +179,26 @@ SquarePoint Environment::squareOf(Vec3 direction) const {
     return {end > begin ? share(across / (end - begin)) : 0.0, begin + down * (end - begin)};
 }
 
+SkySides Environment::sides(Part part) const {
+    SkySides::Sum sum;
+    // Cells of a coarse sky are large: from so many points of each, five degrees apart at most.
+    const int across = 1 + 72 / width_, down = 1 + 36 / height_;
+    for (std::size_t i = 0; i < rows_.size() * std::size_t(width_); ++i) {
+        const double share = cells(part).pmf(i) / double(across * down);
+        if (!(share > 0.0)) continue;
+        const Row& row = rows_[i / std::size_t(width_)];
+        const auto x = double(i % std::size_t(width_)) + 0.5;
+        for (int j = 0; j < down; ++j) {
+            const double cosine = row.top + (row.bottom - row.top) * (j + 0.5) / down;
+            for (int k = 0; k < across; ++k) {
+                const double turns = (x + (k + 0.5) / across) / double(width_);
+                sum.add(directionAt(cosine, float(turns) - 0.5f + turn_), share);
+            }
+        }
+    }
+    return SkySides(sum);
+}
+
 Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, double u1,
                                         double u2) const {
     const int x = int(pick.index) % width_, y = int(pick.index) / width_;

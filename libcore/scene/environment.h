@@ -6,6 +6,7 @@
 #include "libcore/base/square_density.h"
 #include "libcore/base/vec.h"
 #include "libcore/image/image.h"
+#include "libcore/scene/sky_sides.h"
 
 namespace lacuna {
 
@@ -57,6 +58,8 @@ class Environment {
     /// Share of it above its mean: 0 of a sky that is the same everywhere, near 1 where a small sun has
     /// all the light.
     double contrast() const { return above_.total(); }
+    /// What surfaces get of the part, by side. Not for a part that has nothing.
+    SkySides sides(Part part) const;
     /// Density of what is drawn above the mean over that of the whole. 0 where there is no contrast.
     double aboveMean(Vec3 direction) const {
         return above_.empty() ? 0.0 : aboveMeanAt(placeOf(direction));

@@ -81,9 +81,10 @@ LampTree::Shares LampTree::Node::shares(const Viewpoint& from) const {
 }
 
 /// By the cosine of the direction that is closest to the side, which is positive unless all are
-/// behind it.
-double LampTree::importanceOf(const Bundle& bundle, const Viewpoint& from) {
-    if (from.side == Vec3{} || bundle.axis == Vec3{}) return bundle.irradiance;
+/// behind it; a sky by what that side gets of it.
+double LampTree::importanceOf(const Bundle& bundle, const Viewpoint& from) const {
+    if (from.side == Vec3{}) return bundle.irradiance;
+    if (bundle.axis == Vec3{}) return bundle.irradiance * double(sky_.at(from.side));
     const float c = dot(from.side, bundle.axis);
     if (c >= bundle.cosine) return bundle.irradiance;
     const float s = std::sqrt(std::max(0.0f, 1.0f - c * c));
@@ -104,8 +105,16 @@ LampTree::Roots LampTree::roots(const Viewpoint& from) const {
     return roots;
 }
 
-double LampTree::shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from) {
+double LampTree::shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from) const {
     return (roots.even ? 1.0 : importanceOf(bundle, from)) / roots.sum;
+}
+
+/// `pmf`: of the leaf.
+LampTree::Pick LampTree::pickIn(const Leaf& leaf, double pmf, double u) {
+    const bool isFirst = u < leaf.share;
+    const std::uint32_t light = leaf.light + (isFirst ? 0 : 1);
+    const double ofLeaf = leaf.shareOf(light);
+    return {light, pmf * ofLeaf, below1((isFirst ? u : u - leaf.share) / ofLeaf)};
 }
 
 /// `pmf`: of the bundle.
@@ -118,6 +127,7 @@ LampTree::Pick LampTree::pickIn(const Bundle& bundle, double pmf, double u) cons
 }
 
 LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
+    if (isOneLeaf()) return pickIn(leaves_[0], 1.0, u);
     const Viewpoint from = scaled(fileFrom);
     const Roots top = roots(from);
     double pmf = top.tree / top.sum;
@@ -153,17 +163,14 @@ LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
             shares = node->shares(from);
             continue;
         }
-        const Leaf& leaf = leaves_[node->begin[chosen]];
-        const bool isFirst = u < leaf.share;
-        const std::uint32_t light = leaf.light + (isFirst ? 0 : 1);
-        const double ofLeaf = leaf.shareOf(light);
-        return {light, pmf * ofLeaf, below1((isFirst ? u : u - leaf.share) / ofLeaf)};
+        return pickIn(leaves_[node->begin[chosen]], pmf, u);
     }
 }
 
 double LampTree::pmf(const Viewpoint& fileFrom, std::uint32_t light) const {
     const std::uint32_t place = placeOf_[light];
     if (place == kNone) return 0.0;
+    if (isOneLeaf()) return leaves_[0].shareOf(light);
     const Viewpoint from = scaled(fileFrom);
     const Roots top = roots(from);
     if (place >= leaves_.size()) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "libcore/base/vec.h"
+#include "libcore/scene/sky_sides.h"
 
 namespace lacuna {
 
@@ -57,9 +58,10 @@ class LampTree {
     LampTree(LampTree&&) noexcept;
     LampTree& operator=(LampTree&&) noexcept;
     ~LampTree();
-    /// `sceneRadius`: positive. `lights`: how many there are, those without power included.
+    /// `sceneRadius`: positive. `lights`: how many there are, those without power included. `sky`: of
+    /// the light that comes from all sides.
     LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight> distant,
-             float sceneRadius, std::size_t lights);
+             float sceneRadius, std::size_t lights, SkySides sky = {});
 
     /// Whether there is more to choose from than the halves of one light, which go by power.
     bool chooses() const { return leaves_.size() + distant_.size() > 1; }
@@ -104,18 +106,21 @@ class LampTree {
     Viewpoint scaled(const Viewpoint& from) const { return {from.position * toUnits_, from.side}; }
     void build(std::vector<PlacedLight>& lights);
     void add(const DistantLight& light, double irradiance, ShiningCone& cone);
-    static double importanceOf(const Bundle& bundle, const Viewpoint& from);
+    double importanceOf(const Bundle& bundle, const Viewpoint& from) const;
 
     struct Roots;
     Roots roots(const Viewpoint& from) const;
-    static double shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from);
+    double shareOf(const Roots& roots, const Bundle& bundle, const Viewpoint& from) const;
     Pick pickIn(const Bundle& bundle, double pmf, double u) const;
+    static Pick pickIn(const Leaf& leaf, double pmf, double u);
+    bool isOneLeaf() const { return leaves_.size() == 1 && distant_.empty(); }
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<std::uint32_t> placeOf_;  // by light: its leaf, then those at infinity
     std::vector<Distant> distant_;
     std::vector<Bundle> bundles_;
+    SkySides sky_;
     float toUnits_ = 1.0f;  // lengths to those of the tree: a power of two
 };
 

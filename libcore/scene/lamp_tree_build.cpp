@@ -108,8 +108,8 @@ std::uint32_t LampTree::Extent::split(std::span<PlacedLight> own) {
 }
 
 LampTree::LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight> distant,
-                   float sceneRadius, std::size_t lights)
-    : placeOf_(lights, kNone) {
+                   float sceneRadius, std::size_t lights, SkySides sky)
+    : placeOf_(lights, kNone), sky_(std::move(sky)) {
     toUnits_ = std::ldexp(1.0f, -std::ilogb(sceneRadius));
     double total = 0.0;
     for (const PlacedLight& l : placed) total += l.intensity;

@@ -297,7 +297,10 @@ LampTree Lights::makeTree() const {
                           {Vec3d(punctualDirection_[p]), cone, false, false},
                           powers[i] / (isPoint ? 4.0 * std::numbers::pi : spotSolidAngle(l))});
     }
-    return LampTree(std::move(placed), distant, diskRadius_, kinds_.size());
+    const bool chooses = placed.size() + distant.size() > 1;
+    const bool hasSky = !distant.empty() && distant.back().direction == Vec3{};
+    return LampTree(std::move(placed), distant, diskRadius_, kinds_.size(),
+                    chooses && hasSky ? environment_->sides(skyPart_) : SkySides{});
 }
 
 void Lights::chooseUnit(double power) {

@@ -19,6 +19,7 @@ import numpy
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "render" / "blender")]
+import lacuna_blender  # noqa: E402
 import scenes  # noqa: E402
 from lacuna_blender import export, exr, textures  # noqa: E402
 from lacuna_blender.notes import Notes  # noqa: E402
@@ -33,7 +34,7 @@ class Exporter(bpy.types.RenderEngine):
     folder, arguments = "", []
 
     def render(self, depsgraph):
-        Exporter.arguments = export.write(depsgraph, depsgraph.scene.camera, Exporter.folder, Notes())
+        Exporter.arguments = export.write(depsgraph, depsgraph.scene.camera, Exporter.folder, Notes(), lambda name: None)
 
 
 def exported(scene, folder):
@@ -136,6 +137,7 @@ def main():
     given = sys.argv[sys.argv.index("--") + 1:]
     options = {given[i]: given[i + 1] for i in range(len(given)) if given[i].startswith("--")}
     program, out = (Path(a).resolve() for a in given[:2])
+    lacuna_blender.register()  # its settings
     bpy.utils.register_class(Exporter)
     found = {}
     for name in scenes.SCENES:

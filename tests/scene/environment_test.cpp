@@ -38,6 +38,35 @@ void expectNear(const Rgb& a, const Rgb& b, float tolerance) {
     EXPECT_NEAR(a.b, b.b, tolerance);
 }
 
+/// Sides of a sky with a small sun and of one without, however it is turned: by the cosine to the sun, and all
+/// alike.
+TEST(Environment, SidesGetWhatIsBeforeThem) {
+    const double kOff = std::sin(8 * kPiD / 180);  // from a cell's middle to its corner
+    Image image(64, 32, Rgb(0.01f));
+    image.at(48, 8) = Rgb(1e5f);
+    for (const double turn : {0.0, 77.0}) {
+        const Environment sky(image, 1.0, turn, "sky");
+        const SkySides sides = sky.sides(Environment::Part::AboveMean);
+        const Vec3 sun = sky.sample(0.5, 0.5f, 0.5f, Environment::Part::AboveMean).direction;
+        Rng rng(3, 0, StreamKind::User, 0);
+        double sum = 0.0;
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 side = randomDirection(rng);
+            const float cosine = dot(side, sun);
+            EXPECT_NEAR(sides.at(side), 4.0f * std::max(0.0f, cosine), 4.0 * kOff) << cosine;
+            EXPECT_GT(sides.at(side), 0.0f);
+            sum += double(sides.at(side)) / 1000;
+        }
+        EXPECT_NEAR(sum, 1.0, 0.15);
+    }
+    const Environment even(Image(4, 2, Rgb(1.0f)), 1.0, 0.0, "even");
+    const SkySides all = even.sides(Environment::Part::Whole);
+    for (const Vec3 side : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0.6f, 0, 0.8f}}) {
+        EXPECT_NEAR(all.at(side), 1.0f, 0.05f);
+        EXPECT_EQ(SkySides().at(side), 1.0f);
+    }
+}
+
 /// At the borders of texels above all, where rounding leads into the next one.
 TEST(Environment, SamplesHaveTheDensityOfTheirDirections) {
     constexpr float kLast = 1.0f - 0x1p-24f;

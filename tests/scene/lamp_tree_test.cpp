@@ -261,6 +261,24 @@ TEST(LampTree, anEvenSkyLeavesTheChoiceToTheSun) {
     EXPECT_GT(shareOfSky(1000.0f), 0.4) << "of which hits find next to nothing";
 }
 
+// A sky whose sun is low, and a lamp above: walls that face the sun get light from the sky, the floor from the
+// lamp.
+TEST(LampTree, aSkyIsPickedByWhatASideGetsOfIt) {
+    Image image(64, 32, Rgb(1e-3f));
+    image.at(48, 15) = Rgb(100.0f);
+    const Environment sky(image, 1.0, 0.0, "sky");
+    const double power = double(mean(sky.integral())) * sky.contrast();
+    const PunctualLight sun = directionalLight({0, -1, 0}, Rgb(float(power)));
+    const Lights lights({}, {&sun, 1}, {}, &sky, 1.0f);
+    const Vec3 toSun = sky.sample(0.5, 0.5f, 0.5f, Environment::Part::AboveMean).direction;
+    const auto share = [&](const Vec3& side) {
+        return lights.tree().pmf({{}, normalize(side)}, lights.environmentIndex());
+    };
+    EXPECT_GT(share(toSun), 0.9);
+    EXPECT_LT(share({0, 1, 0}), 0.2);
+    EXPECT_NEAR(share(toSun + Vec3{0, 1, 0}), 0.5, 0.05);
+}
+
 // Where no hits find the rest, next event draws all of a sky; else what is above its mean, which is nothing of
 // an even one.
 TEST(LampTree, ofASkyThatIsAloneIsDrawnWhatHitsDoNotFind) {
