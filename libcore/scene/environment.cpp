@@ -59,14 +59,23 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
         }
     }
     integral_ = {float(sum[0]), float(sum[1]), float(sum[2])};
-    cells_ = DiscreteDistribution(weights);
+    whole_ = tableOf(weights);
     if (black()) return;
     even_ = image_.size() == 1;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double evenly = rows_[i / std::size_t(width_)].solidAngle / (4.0 * std::numbers::pi);
-        weights[i] = std::max(0.0, cells_.pmf(i) - (1.0 + kRounding) * evenly);
+        weights[i] = std::max(0.0, whole_.cells.pmf(i) - evenly(int(i / std::size_t(width_))));
     }
-    above_ = DiscreteDistribution(weights);
+    above_ = tableOf(weights);
+}
+Environment::Table Environment::tableOf(std::span<const double> weights) const {
+    Table table{DiscreteDistribution(weights), {}};
+    for (std::size_t y = 0; y <= rows_.size(); ++y) {
+        table.rows.push_back(table.cells.before(y * std::size_t(width_)));
+    }
+    return table;
+}
+double Environment::evenly(int row) const {
+    return (1.0 + kRounding) * rows_[std::size_t(row)].solidAngle / (4.0 * std::numbers::pi);
 }
 
 Environment::Place Environment::placeOf(Vec3 d) const {
@@ -144,15 +153,16 @@ Bilinear bilinear(const auto& corners) {
 }  // namespace
 
 Environment::Sample Environment::sample(double uCell, float u1, float u2, Part part) const {
-    return inCell(cells(part).sample(uCell), u1, u2);
+    return inCell(table(part).cells.sample(uCell), u1, u2);
 }
 
 Environment::Sample Environment::sampleSquare(double across, double down, Part part) const {
-    if (even_) return {directionAt(1.0 - 2.0 * down, float(across) + turn_), kEvenPdfW};
-    const DiscreteDistribution& cells = this->cells(part);
-    const auto width = std::size_t(width_);
-    const std::size_t row = cells.sample(down).index / width;
-    const double begin = cells.before(row * width), end = cells.before((row + 1) * width);
+    if (even_)
+        return {directionAt(1.0 - 2.0 * down, float(across) + turn_), {image_[0], kEvenPdfW}};
+    const auto& [cells, rows] = table(part);
+    // The last row that begins at or below, so that it has something.
+    const auto next = std::upper_bound(rows.begin() + 1, rows.end() - 1, down);
+    const double begin = next[-1], end = *next;
     // Rounding must not lead into the next row.
     const double u = std::min(begin + across * (end - begin), std::nextafter(end, begin));
     const DiscreteDistribution::Pick cell = cells.sample(u);
@@ -161,21 +171,23 @@ Environment::Sample Environment::sampleSquare(double across, double down, Part p
 
 double Environment::aboveMeanAt(const Place& p) const {
     const std::size_t cell = std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x);
-    const double whole = cells_.pmf(cell);
-    return whole > 0.0 ? above_.pmf(cell) / whole : 0.0;
+    const double whole = whole_.cells.pmf(cell);
+    // The table would say the same, from another place in memory.
+    return whole > 0.0 ? std::max(0.0, 1.0 - evenly(p.y) / whole) / contrast() : 0.0;
 }
 
 SquarePoint Environment::squareOf(Vec3 direction) const {
     const Place p = placeOf(direction);
     const auto width = std::size_t(width_);
     const std::size_t row = std::size_t(p.y) * width, cell = row + std::size_t(p.x);
-    const double begin = cells_.before(row), end = cells_.before(row + width);
+    const DiscreteDistribution& cells = whole_.cells;
+    const double begin = cells.before(row), end = cells.before(row + width);
     const Bilinear density = bilinear(cornersOf(p.x, p.y));
     const double below = shareBelow(p.y, direction);
     const auto share = [](double part) { return std::clamp(part, 0.0, 1.0); };
     const double down = share(density.down().cdf(below));
-    const double across = cells_.before(cell) - begin +
-                          share(density.across(below).cdf(double(p.right))) * cells_.pmf(cell);
+    const double across = cells.before(cell) - begin +
+                          share(density.across(below).cdf(double(p.right))) * cells.pmf(cell);
     return {end > begin ? share(across / (end - begin)) : 0.0, begin + down * (end - begin)};
 }
 
@@ -184,7 +196,7 @@ SkySides Environment::sides(Part part) const {
     // Cells of a coarse sky are large: from so many points of each, five degrees apart at most.
     const int across = 1 + 72 / width_, down = 1 + 36 / height_;
     for (std::size_t i = 0; i < rows_.size() * std::size_t(width_); ++i) {
-        const double share = cells(part).pmf(i) / double(across * down);
+        const double share = table(part).cells.pmf(i) / double(across * down);
         if (!(share > 0.0)) continue;
         const Row& row = rows_[i / std::size_t(width_)];
         const auto x = double(i % std::size_t(width_)) + 0.5;
@@ -210,7 +222,7 @@ Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, 
     const Vec3 direction =
         directionAt(cosine, float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
     // Rounding may lead into the next cell: the density is the one that is found there.
-    return {direction, pdfW(direction)};
+    return {direction, seen(direction)};
 }
 
 float Environment::pdfWAt(const Place& p, Vec3 direction) const {
@@ -221,7 +233,7 @@ float Environment::pdfWAt(const Place& p, Vec3 direction) const {
     const double all = 0.25 * (down.begin + down.end);
     if (!(all > 0.0)) return 0.0f;
     const double here = across.begin + (across.end - across.begin) * double(p.right);
-    const double pmf = cells_.pmf(std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x));
+    const double pmf = whole_.cells.pmf(std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x));
     return float(pmf * here / (all * rows_[std::size_t(p.y)].solidAngle));
 }
 

@@ -40,11 +40,11 @@ class Environment {
 
     struct Sample {
         Vec3 direction;  ///< unit, from the scene towards the sky
-        float pdfW;
+        Seen seen;       ///< there
     };
     /// What is drawn: the whole radiance, or what of each cell is above the mean [Karlik19].
     enum class Part { Whole, AboveMean };
-    /// `pdfW` is that of the whole, whatever is drawn. Not to be called for a black map, nor for a part
+    /// The density is that of the whole, whatever is drawn. Not to be called for a black map, nor for a part
     /// that has nothing.
     Sample sample(double uTexel, float u1, float u2, Part part = Part::Whole) const;
     /// The same density from a point of the square: points that are even there are even in the sky.
@@ -52,17 +52,17 @@ class Environment {
     /// The point of the square that gives `direction`: {across, down}. Not for a black map.
     SquarePoint squareOf(Vec3 direction) const;
 
-    bool black() const { return cells_.empty(); }
+    bool black() const { return whole_.cells.empty(); }
     /// Integral of the radiance over all directions, as the density has it.
     Rgb integral() const { return integral_; }
     /// Share of it above its mean: 0 of a sky that is the same everywhere, near 1 where a small sun has
     /// all the light.
-    double contrast() const { return above_.total(); }
+    double contrast() const { return above_.cells.total(); }
     /// What surfaces get of the part, by side. Not for a part that has nothing.
     SkySides sides(Part part) const;
     /// Density of what is drawn above the mean over that of the whole. 0 where there is no contrast.
     double aboveMean(Vec3 direction) const {
-        return above_.empty() ? 0.0 : aboveMeanAt(placeOf(direction));
+        return above_.cells.empty() ? 0.0 : aboveMeanAt(placeOf(direction));
     }
 
   private:
@@ -85,9 +85,16 @@ class Environment {
     double shareBelow(int y, Vec3 direction) const;
     Sample inCell(const DiscreteDistribution::Pick& cell, double u1, double u2) const;
     double aboveMeanAt(const Place& place) const;
-    const DiscreteDistribution& cells(Part part) const {
-        return part == Part::Whole ? cells_ : above_;
-    }
+    struct Table {
+        DiscreteDistribution cells;
+        /// Where each row begins among them, and the end of the last one: close together, where those of
+        /// the cells would each have to be fetched from afar.
+        std::vector<double> rows;
+    };
+    const Table& table(Part part) const { return part == Part::Whole ? whole_ : above_; }
+    Table tableOf(std::span<const double> weights) const;
+    /// A cell's share of all directions, as far as it counts as not above the mean.
+    double evenly(int row) const;
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;
@@ -97,8 +104,8 @@ class Environment {
         double solidAngle;   ///< of a cell: exact, so that densities integrate to one
     };
     std::vector<Row> rows_;  // of cells
-    DiscreteDistribution cells_;
-    DiscreteDistribution above_;  ///< by what is above the mean; its sum is the share of that
+    Table whole_;
+    Table above_;  ///< by what is above the mean; its sum is the share of that
     Rgb integral_;
     bool even_ = false;  ///< one texel that is not black: the same from everywhere
     float turn_;         ///< rotation as a fraction of a whole turn

@@ -519,8 +519,8 @@ LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                                           ? sampleSky(u, draw.u1, draw.u2, sky)
                                           : environment_->sample(u, draw.u1, draw.u2, sky);
         p.position = s.direction;
-        p.pdf = float(pmf) * s.pdfW;
-        p.exitance = skyExitance(environment_->radiance(s.direction));
+        p.pdf = float(pmf) * s.seen.pdfW;
+        p.exitance = skyExitance(s.seen.radiance);
         if (guide_) p.pdf *= guidedPdf(p);
         return p;
     }

@@ -76,7 +76,7 @@ TEST(Environment, SamplesHaveTheDensityOfTheirDirections) {
         for (const float u : {0.0f, 0x1p-23f, 0.5f, kLast}) {
             for (const float v : {0.0f, 0x1p-23f, 0.5f, kLast}) {
                 const Environment::Sample s = e.sample(0.001 * i, u, v);
-                different += s.pdfW != e.pdfW(s.direction);
+                different += s.seen.pdfW != e.pdfW(s.direction);
             }
         }
     }
@@ -192,7 +192,7 @@ TEST(Environment, DirectionsOfAnEvenSkyAreAllAlike) {
     for (int i = 0; i < 500; ++i) {
         EXPECT_NEAR(e.pdfW(randomDirection(rng)) * 4 * kPiD, 1, 1e-6);
         const Environment::Sample s = e.sample(rng.uniformDouble(), rng.uniform(), rng.uniform());
-        EXPECT_NEAR(s.pdfW * 4 * kPiD, 1, 1e-6);
+        EXPECT_NEAR(s.seen.pdfW * 4 * kPiD, 1, 1e-6);
     }
 }
 
@@ -210,8 +210,8 @@ TEST(Environment, DrawsTheSameFromASquare) {
             const double a = rng.uniformDouble(), b = rng.uniformDouble();
             const Environment::Sample s =
                 square ? e.sampleSquare(a, b) : e.sample(a, float(b), rng.uniform());
-            others += std::fabs(e.pdfW(s.direction) / s.pdfW - 1) > 1e-3;
-            const double w = 1 / double(s.pdfW);
+            others += std::fabs(e.pdfW(s.direction) / s.seen.pdfW - 1) > 1e-3;
+            const double w = 1 / double(s.seen.pdfW);
             const Vec3d d(s.direction);
             const double values[] = {w, w * d.x * d.x, w * d.y, w * d.z};
             for (int k = 0; k < 4; ++k) moments[k].add(values[k]);
@@ -226,7 +226,7 @@ TEST(Environment, DrawsTheSameFromASquare) {
     // The corners of the square.
     for (const double a : {0.0, 0x1.fffffffffffffp-1}) {
         for (const double b : {0.0, 0x1.fffffffffffffp-1}) {
-            EXPECT_GT(e.sampleSquare(a, b).pdfW, 0.0f);
+            EXPECT_GT(e.sampleSquare(a, b).seen.pdfW, 0.0f);
         }
     }
 }
@@ -257,8 +257,8 @@ TEST(Environment, WhatIsAboveTheMeanIsDrawnAsItSays) {
             const Environment::Sample s =
                 square ? e.sampleSquare(a, b, Environment::Part::AboveMean)
                        : e.sample(a, float(b), rng.uniform(), Environment::Part::AboveMean);
-            EXPECT_EQ(s.pdfW, e.pdfW(s.direction));
-            const double density = double(s.pdfW) * e.aboveMean(s.direction);
+            EXPECT_EQ(s.seen.pdfW, e.pdfW(s.direction));
+            const double density = double(s.seen.pdfW) * e.aboveMean(s.direction);
             others += density == 0.0;
             const auto values = valuesOf(s.direction);
             for (int k = 0; k < 4; ++k) moments[k].add(density > 0.0 ? values[k] / density : 0.0);
@@ -299,7 +299,7 @@ TEST(Environment, ASunIsDrawnAsItShines) {
             const Environment::Sample s =
                 e.sample(rng.uniformDouble(), rng.uniform(), rng.uniform());
             const double r =
-                double(mean(e.radiance(s.direction))) / double(s.pdfW * mean(e.integral()));
+                double(mean(e.radiance(s.direction))) / double(s.seen.pdfW * mean(e.integral()));
             ratio.add(r);
             if (std::abs(s.direction.y) > 0.99f) continue;  // rows at the poles are less even
             least = std::min(least, r);
@@ -325,7 +325,7 @@ TEST(Environment, SquaresAndDirectionsAreEachOthersInverse) {
         const SquarePoint back = e.squareOf(s.direction);
         ASSERT_NEAR(back[1], down, 1e-4);
         ASSERT_NEAR(back[0], across, 2e-3) << down;
-        ASSERT_GT(s.pdfW, 0.0f);
+        ASSERT_GT(s.seen.pdfW, 0.0f);
     }
 }
 
@@ -339,9 +339,9 @@ TEST(Environment, ATexelIsAsGoodAsTwoOfIt) {
         const Environment::Sample a = one.sampleSquare(across, down),
                                   b = two.sampleSquare(across, down);
         EXPECT_LT(length(Vec3d(a.direction) - Vec3d(b.direction)), 2e-6);
-        EXPECT_NEAR(a.pdfW, b.pdfW, 1e-6f);
-        EXPECT_EQ(a.pdfW, one.pdfW(a.direction));
-        EXPECT_EQ(a.pdfW, one.seen(a.direction).pdfW);
+        EXPECT_NEAR(a.seen.pdfW, b.seen.pdfW, 1e-6f);
+        EXPECT_EQ(a.seen.pdfW, one.pdfW(a.direction));
+        EXPECT_EQ(a.seen.pdfW, one.seen(a.direction).pdfW);
         expectNear(one.radiance(a.direction), two.seen(b.direction).radiance, 1e-6f);
         const SquarePoint back = one.squareOf(a.direction);
         EXPECT_NEAR(back[0], across, 2e-3) << down;
