@@ -1,4 +1,4 @@
-"""Fifteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+"""Sixteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
 
 import math
 
@@ -482,6 +482,19 @@ def procedural():
     camera()
 
 
+def tinted_glass():
+    """Bodies that absorb, thick and thin, before a bright wall."""
+    stage()
+    for x, density in ((-1.5, 0.5), (0, 2.0), (1.5, 4.0)):
+        made, tree, _ = material(f"tinted {density}", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0, IOR=1.2)
+        absorbs = tree.nodes.new("ShaderNodeVolumeAbsorption")
+        absorbs.inputs["Color"].default_value, absorbs.inputs["Density"].default_value = (0.9, 0.5, 0.2, 1), density
+        tree.links.new(absorbs.outputs[0], tree.get_output_node("CYCLES").inputs["Volume"])
+        cube(made, 0.9, location=(x, 0, 0.5))
+    world((0.8, 0.8, 0.8))
+    camera()
+
+
 # Allowed difference of a region's mean from Cycles', as a share of it, and why it is more than noise.
 SCENES = {
     "area-lamps": (area_lamps, 0.04, ""), "bulbs": (bulbs, 0.04, ""),
@@ -493,4 +506,5 @@ SCENES = {
     "images-on-surfaces": (images_on_surfaces, 0.08, "normal maps end at the surface's own horizon"),
     "copies-and-modifiers": (copies_and_modifiers, 0.04, ""), "ray-visibility": (ray_visibility, 0.05, ""),
     "sky-texture": (sky_texture, 0.05, ""), "images-through-nodes": (images_through_nodes, 0.05, ""),
-    "masks-and-bumps": (masks_and_bumps, 0.06, ""), "procedural": (procedural, 0.06, "")}
+    "masks-and-bumps": (masks_and_bumps, 0.06, ""), "procedural": (procedural, 0.06, ""),
+    "tinted-glass": (tinted_glass, 0.06, "")}

@@ -11,7 +11,7 @@ import numpy
 from . import exr, process
 
 _PATIENCE = 120.0  # seconds for one answer
-_SKY, _LARGEST = 2048, 4096  # texels along the longer side
+_LARGEST = 4096  # texels along the longer side
 
 
 class Cycles:
@@ -30,8 +30,7 @@ class Cycles:
         self._end()
 
     def panorama(self, world, width):
-        """A world as a latitude-longitude picture, the middle of it +X; `width`: of the images that it has, in texels."""
-        width = min(max(width, _SKY), _LARGEST)
+        """A world as a latitude-longitude picture, the middle of it +X; `width`: in texels."""
         return self._ask("panorama", "worlds", world, (width, width // 2))
 
     def flat(self, owner, found, size):
@@ -54,11 +53,18 @@ class Cycles:
         key = (what, owner.name_full, *size, repr(more))
         if key not in self._known:
             owner = owner.original
-            file = self._path("blend")
+            file = self._saved(owner)
+            self._known[key] = file and self._ask_for(owner.name, what, end, kind=kind, name=owner.name, file=file, frame=self._frame,
+                                                      width=size[0], height=size[1], **more)
+        return self._known[key]
+
+    def _saved(self, owner):
+        """The .blend of a data-block and of what it needs; None where it cannot be written."""
+        key = ("saved", owner.name_full)
+        if key not in self._known:
+            self._known[key] = self._path("blend")
             try:
-                bpy.data.libraries.write(file, {owner}, path_remap="ABSOLUTE", fake_user=True)
-                self._known[key] = self._ask_for(owner.name, what, end, kind=kind, name=owner.name, file=file, frame=self._frame,
-                                                 width=size[0], height=size[1], **more)
+                bpy.data.libraries.write(self._known[key], {owner}, path_remap="ABSOLUTE", fake_user=True)
             except (OSError, RuntimeError) as error:
                 print(f"Lacuna: {owner.name}: Cycles was not asked about its nodes: {error}")
                 self._known[key] = None

@@ -33,7 +33,7 @@ def panorama(request):
     camera = add_camera(scene, "PANO", (0, 0, 0), (math.pi / 2, 0, -math.pi / 2))
     (camera.cycles if hasattr(camera.cycles, "panorama_type") else camera).panorama_type = "EQUIRECTANGULAR"
     # A sun is a few texels, and has to be met by enough samples.
-    render(scene, request, max(_PANORAMA // (request["width"] * request["height"]), 1), width_of_filter=1)
+    render(scene, request, min(max(_PANORAMA // (request["width"] * request["height"]), 1), 64), width_of_filter=1)
 
 
 def flat(request):

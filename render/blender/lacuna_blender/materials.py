@@ -48,16 +48,17 @@ class Materials:
         output = material.node_tree.get_output_node("CYCLES")
         if output is None:
             return Surface()
-        if output.inputs["Volume"].is_linked:
-            self._notes.add(name, "the volume is left out")
         if output.inputs["Displacement"].is_linked:
             self._notes.add(name, "the displacement is left out")
+        reader = SurfaceReader(material, body, metres, self._notes, self._cycles)
         try:
-            found = SurfaceReader(material, body, metres, self._notes, self._cycles).read(output.inputs["Surface"])
+            found = reader.read(output.inputs["Surface"])
         except LieApart:
             found = None
         if found is None or not _fits(found):
             found = SurfaceReader(material, body, metres, self._notes, self._cycles, baked=True).read(output.inputs["Surface"])
+        if output.inputs["Volume"].is_linked:
+            found = replace(found, absorption=reader.absorption(output.inputs["Volume"]))
         return found
 
     def _write(self, name, s, hidden, two_sided=True):
@@ -120,7 +121,10 @@ class Materials:
             if s.transmission.texture:
                 values["transmissionTexture"] = info(self._textures.scalars(R=s.transmission.texture), s.transmission.texture)
             self._glb.extension(entry, "KHR_materials_transmission", values)
-            self._glb.extension(entry, "KHR_materials_volume", {"thicknessFactor": 1.0})  # a body, not a sheet
+            body = {"thicknessFactor": 1.0}  # and not a sheet
+            if s.absorption:
+                body["attenuationColor"], body["attenuationDistance"] = list(s.absorption[0]), s.absorption[1]
+            self._glb.extension(entry, "KHR_materials_volume", body)
         if s.coat > 0:
             values = {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)}
             if s.coat_normal:

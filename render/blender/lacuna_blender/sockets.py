@@ -187,9 +187,8 @@ class Sockets:
         if found and found.node and found.node.type == "MAPPING":
             place = self._place(found.node, found.groups)
             found = source_of(found.node.inputs["Vector"], found.groups)
-        if found and found.node:
-            if found.node.type == "UVMAP":
-                uv_map = found.node.uv_map
+        if found and found.node and found.node.type == "UVMAP":
+            uv_map = found.node.uv_map
         if node.extension == "CLIP":
             self._notes.add(self._name, f"the image {node.image.name} ends in its rim's colour, not in black")
         return Use(node.image, uv_map, place, node.extension, node.interpolation == "Closest")

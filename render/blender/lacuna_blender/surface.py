@@ -1,5 +1,6 @@
 """A shader tree as one surface of glTF's kind: what each BSDF is there, and what mixtures become."""
 
+import math
 from dataclasses import dataclass, replace
 
 from . import blend
@@ -37,6 +38,7 @@ class Surface:
     sheen: tuple = (0.0, 0.0, 0.0)
     sheen_roughness: float = 0.0
     brushing: Brushing = None
+    absorption: tuple = None  # of the body behind it: what is left of light, by channel, after so many metres
 
 
 class SurfaceReader:
@@ -59,6 +61,17 @@ class SurfaceReader:
             return Surface()
         reader = self._readers.get(found.node.type, self._other)
         return reader(found.node, found.groups)
+
+    def absorption(self, socket):
+        """Surface.absorption of a volume input, or None, which is said."""
+        found = source_of(socket)
+        if found and found.node and found.node.type == "VOLUME_ABSORPTION":
+            density = self._number(found.node, found.groups, "Density")
+            color = self._color(found.node, found.groups, "Color")
+            if density > 0 and not color.texture:
+                return tuple(math.exp(min(c, 1.0) - 1) for c in color.factor), 1 / density
+        self._note("the volume is left out")
+        return None
 
     def _note(self, text):
         self._notes.add(self._name, text)

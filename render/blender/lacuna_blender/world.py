@@ -12,6 +12,7 @@ from .textures import linear
 
 # The middle of an image is +X in Blender, and -Z (Blender's +Y) in Lacuna.
 BETWEEN = 90.0
+_PLAIN, _WITH_SUN, _WIDEST = 512, 2048, 4096  # texels of a panorama, from left to right
 
 
 def options(world, folder, notes, cycles):
@@ -56,7 +57,10 @@ def _constant(socket, groups):
 
 def _panorama(world, folder, notes, cycles):
     nodes = list(_nodes(world.node_tree))
-    values = cycles.panorama(world, max((n.image.size[0] for n in nodes if n.type == "TEX_ENVIRONMENT" and n.image), default=0))
+    images = [n.image.size[0] for n in nodes if n.type in ("TEX_ENVIRONMENT", "TEX_IMAGE") and n.image]
+    # A sun is half a degree wide; an image that is turned wants twice its texels.
+    widths = [_WITH_SUN if any(n.type == "TEX_SKY" for n in nodes) else _PLAIN, *(2 * i for i in images)]
+    values = cycles.panorama(world, min(max(widths), _WIDEST))
     if values is None:
         notes.add(world.name, "the world's nodes cannot be followed: it is black")
         return []
