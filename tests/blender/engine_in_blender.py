@@ -127,6 +127,17 @@ class Engine(unittest.TestCase):
         self.render()
         self.assertNotIn("Noise Texture", "\n".join(engine.last_notes))
 
+    def test_a_material_in_two_slots_is_baked_for_both(self):
+        scenes.camera()
+        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
+        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
+        cube = scenes.cube(made)
+        cube.data.materials.append(made)
+        for i, face in enumerate(cube.data.polygons):
+            face.material_index = i % 2
+        self.scene.lacuna.baked = 64
+        self.assertGreater(next(p for n, p in self.render().channels.items() if n.endswith("Combined.G")).mean(), 0)
+
     def test_without_an_answer_of_cycles_the_render_goes_on(self):
         from lacuna_blender import cycles, engine
         scenes.camera()

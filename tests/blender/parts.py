@@ -175,7 +175,7 @@ class Nodes(unittest.TestCase):
 
 def use_of(values, **placed):
     """Of a picture of these values: rows from the top, numbers or colours."""
-    texels = numpy.array(values, float)
+    texels = numpy.array(values, numpy.float32)
     rgb = texels if texels.ndim == 3 else numpy.dstack([texels] * 3)
     return textures.Use(textures.Picture("made", rgb), **placed)
 
@@ -185,10 +185,10 @@ class Blend(unittest.TestCase):
         mask, grey = use_of([[0, 0.25], [0.5, 1]]), use_of([[0.2, 0.4], [0.6, 0.8]])
         factor, made = blend.mixed("m", (0.5, None), (2.0, grey), (1.0, mask))
         expected = [[0.5, 0.75 * 0.5 + 0.25 * 0.8], [0.25 + 0.6, 1.6]]
-        numpy.testing.assert_allclose(factor * textures.scalar(made), expected, rtol=1e-6)
+        numpy.testing.assert_allclose(factor * textures.scalar(made), expected, rtol=1e-5)
         self.assertLessEqual(textures.scalar(made).max(), 1)
         factor, made = blend.mixed("m", ((1.0, 0.0, 0.0), None), ((0.0, 0.0, 1.0), None), (0.5, mask))
-        numpy.testing.assert_allclose(factor * textures.linear(made.image)[1, 1, :3], (0.5, 0, 0.5))
+        numpy.testing.assert_allclose(factor * textures.linear(made.image)[1, 1, :3], (0.5, 0, 0.5), rtol=1e-5)
 
     def test_constants_stay_constants(self):
         self.assertEqual(blend.mixed("m", (1.0, None), (3.0, None), (0.25, None)), (1.5, None))
@@ -197,7 +197,7 @@ class Blend(unittest.TestCase):
 
     def test_masks_end_at_one(self):
         factor, made = blend.mixed("m", (0.0, None), (1.0, None), (4.0, use_of([[0.1, 0.9]])))
-        numpy.testing.assert_allclose(factor * textures.scalar(made), [[0.4, 1]])
+        numpy.testing.assert_allclose(factor * textures.scalar(made), [[0.4, 1]], rtol=1e-5)
 
     def normals(self, heights, *given, **placed):
         made = blend.normals_of_heights("n", use_of(heights, **placed), *given)

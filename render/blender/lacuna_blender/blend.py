@@ -32,8 +32,9 @@ def mixed(name, a, b, mask):
 def _texels(factor, use):
     """Height x width x 1 or 3."""
     if isinstance(factor, float):
-        return numpy.full((1, 1, 1), factor) if use is None else factor * scalar(use)[..., None]
-    return numpy.array(factor) * (numpy.ones((1, 1, 3)) if use is None else linear(use.image)[..., :3])
+        return numpy.full((1, 1, 1), factor, numpy.float32) if use is None else factor * scalar(use)[..., None]
+    texels = numpy.ones((1, 1, 3), numpy.float32) if use is None else linear(use.image)[..., :3]
+    return numpy.array(factor, numpy.float32) * texels
 
 
 def normals_of_heights(name, use, distance, strength, size):
@@ -51,6 +52,7 @@ def normals_of_heights(name, use, distance, strength, size):
         across, up = sx * (c * across + s * up), sy * (c * up - s * across)
     bumped = numpy.dstack([-across, -up, numpy.ones_like(up)])
     bumped /= numpy.linalg.norm(bumped, axis=2, keepdims=True)
-    normal = strength * bumped + (1 - strength) * numpy.array([0, 0, 1])
-    normal /= numpy.linalg.norm(normal, axis=2, keepdims=True)
-    return replace(use, image=Picture(name, 0.5 * normal + 0.5), channel="")
+    bumped *= strength
+    bumped[..., 2] += 1 - strength
+    bumped /= numpy.linalg.norm(bumped, axis=2, keepdims=True)
+    return replace(use, image=Picture(name, 0.5 * bumped + 0.5), channel="")

@@ -27,16 +27,12 @@ def is_smooth(mesh):
 
 
 class Body:
-    """`corners`: the loops of its triangles, n x 3. Valid as long as the mesh is."""
+    """`slot`: of the material; `corners`: the loops of its triangles, n x 3. Valid as long as the mesh is."""
 
-    def __init__(self, thing, mesh, corners, cycles):
+    def __init__(self, thing, mesh, slot, corners, cycles):
         self.corners, self.arrays = corners, None
+        self.key = (thing.original.name_full, f"slot {slot}")  # no other body's
         self._thing, self._mesh, self._cycles, self._tried = thing, mesh, cycles, False
-
-    @property
-    def key(self):
-        """Equal for bodies of equal textures."""
-        return self._mesh.name_full, self._thing.original.name_full
 
     @property
     def is_baked(self):

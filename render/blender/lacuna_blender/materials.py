@@ -125,6 +125,8 @@ class Materials:
             if s.absorption:
                 body["attenuationColor"], body["attenuationDistance"] = list(s.absorption[0]), s.absorption[1]
             self._glb.extension(entry, "KHR_materials_volume", body)
+        elif s.absorption:
+            self._notes.add(entry["name"], "the volume is left out: no light gets in by the surface")
         if s.coat > 0:
             values = {"clearcoatFactor": _share(s.coat), "clearcoatRoughnessFactor": _share(s.coat_roughness)}
             if s.coat_normal:

@@ -36,7 +36,7 @@ class Meshes:
         corners = read(mesh.loop_triangles, "loops", 3, numpy.int32)
         slot_of = numpy.minimum(read(mesh.loop_triangles, "material_index", 1, numpy.int32), len(slots) - 1)
         points = read(mesh.vertices, "co", 3)[read(mesh.loops, "vertex_index", 1, numpy.int32)]
-        bodies = {slot: Body(thing, mesh, corners[slot_of == slot], self._cycles) for slot in numpy.unique(slot_of)}
+        bodies = {slot: Body(thing, mesh, slot, corners[slot_of == slot], self._cycles) for slot in numpy.unique(slot_of)}
         materials = {slot: self._materials.of(slots[slot], hidden, body) for slot, body in bodies.items()}
         smooth = is_smooth(mesh)
         normals = _corner_normals(mesh) if smooth or any(m.tangent for m in materials.values()) else None
