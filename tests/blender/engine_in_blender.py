@@ -94,6 +94,19 @@ class Engine(unittest.TestCase):
         self.assertAlmostEqual(next(p for n, p in picture.channels.items() if n.endswith("Z"))[5, 30], 9, delta=0.01)
 
     def test_esc_saves_nothing(self):
+        self.stop()
+
+    def test_esc_ends_the_export_too(self):
+        self.add_marble()
+        self.stop()
+
+    def add_marble(self):
+        """What Cycles is asked about."""
+        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
+        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
+        return scenes.cube(made)
+
+    def stop(self):
         from lacuna_blender import engine
         scenes.camera()
         self.scene.lacuna.samples, self.scene.lacuna.seconds = 0, 600
@@ -111,10 +124,7 @@ class Engine(unittest.TestCase):
     def test_what_is_not_carried_over_is_listed(self):
         from lacuna_blender import engine
         scenes.camera()
-        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
-        noise = tree.nodes.new("ShaderNodeTexNoise")
-        tree.links.new(noise.outputs["Color"], node.inputs["Color"])
-        scenes.cube(made)
+        self.add_marble()
         scenes.lamp("AREA", (0, -2, 4), (0, 0, 0), 10, spread=0.5).name = "softbox"
         scenes.cube(scenes.principled("skin", (0.5, 0.5, 0.5), Subsurface=0.3))
         self.scene.render.use_motion_blur = True
@@ -129,10 +139,8 @@ class Engine(unittest.TestCase):
 
     def test_a_material_in_two_slots_is_baked_for_both(self):
         scenes.camera()
-        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
-        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
-        cube = scenes.cube(made)
-        cube.data.materials.append(made)
+        cube = self.add_marble()
+        cube.data.materials.append(cube.data.materials[0])
         for i, face in enumerate(cube.data.polygons):
             face.material_index = i % 2
         self.scene.lacuna.baked = 64
@@ -141,9 +149,7 @@ class Engine(unittest.TestCase):
     def test_without_an_answer_of_cycles_the_render_goes_on(self):
         from lacuna_blender import cycles, engine
         scenes.camera()
-        made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
-        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
-        scenes.cube(made)
+        self.add_marble()
         tree = scenes.world().node_tree
         tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs[0], tree.nodes["Background"].inputs["Color"])
         start, cycles.Cycles._start = cycles.Cycles._start, staticmethod(lambda: cycles.subprocess.Popen(
