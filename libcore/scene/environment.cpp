@@ -157,8 +157,9 @@ Environment::Sample Environment::sample(double uCell, float u1, float u2, Part p
 }
 
 Environment::Sample Environment::sampleSquare(double across, double down, Part part) const {
-    if (even_)
+    if (even_) {
         return {directionAt(1.0 - 2.0 * down, float(across) + turn_), {image_[0], kEvenPdfW}};
+    }
     const auto& [cells, rows] = table(part);
     // The last row that begins at or below, so that it has something.
     const auto next = std::upper_bound(rows.begin() + 1, rows.end() - 1, down);
@@ -178,10 +179,9 @@ double Environment::aboveMeanAt(const Place& p) const {
 
 SquarePoint Environment::squareOf(Vec3 direction) const {
     const Place p = placeOf(direction);
-    const auto width = std::size_t(width_);
-    const std::size_t row = std::size_t(p.y) * width, cell = row + std::size_t(p.x);
-    const DiscreteDistribution& cells = whole_.cells;
-    const double begin = cells.before(row), end = cells.before(row + width);
+    const auto& [cells, rows] = whole_;
+    const auto row = std::size_t(p.y), cell = row * std::size_t(width_) + std::size_t(p.x);
+    const double begin = rows[row], end = rows[row + 1];
     const Bilinear density = bilinear(cornersOf(p.x, p.y));
     const double below = shareBelow(p.y, direction);
     const auto share = [](double part) { return std::clamp(part, 0.0, 1.0); };

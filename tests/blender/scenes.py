@@ -406,7 +406,7 @@ def hills(name):
 
 
 def masks_and_bumps():
-    """Two shaders by an image, heights as a Bump, a cut by an image without a coloured one, a screen that shines by one."""
+    """Two shaders by an image, heights as two Bumps, a cut by an image without a coloured one, a screen that shines by one."""
     stage()
     mask = quarters("mask", [(0,) * 3, (1,) * 3, (1,) * 3, (.3,) * 3])
     made, tree, place = textured("painted steel", mask)
@@ -420,13 +420,15 @@ def masks_and_bumps():
     tree.links.new(steel.outputs[0], mix.inputs[2])
     tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
     plane(made, 2, location=(-2, 1.5, 1), rotation=(math.pi / 2, 0, 0.3))
-    made, tree, place = textured("hilly", hills("hills"))
-    shader = tree.nodes["Diffuse BSDF"]
-    tree.links.remove(shader.inputs["Color"].links[0])
-    shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
-    bump = node(tree, "ShaderNodeBump", place.outputs["Color"], "Height", Distance=0.3, Strength=0.8)
-    tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
-    plane(made, 3, location=(0.6, 2, 1.5), rotation=(math.pi / 2, 0, 0))
+    heights = hills("hills")
+    for name, distance, side, at in (("hilly", 0.3, 3, (0.6, 2, 1.5)), ("pits", -0.6, 3, (4, 2.2, 1.5))):
+        made, tree, place = textured(name, heights)
+        shader = tree.nodes["Diffuse BSDF"]
+        tree.links.remove(shader.inputs["Color"].links[0])
+        shader.inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
+        bump = node(tree, "ShaderNodeBump", place.outputs["Color"], "Height", Distance=distance, Strength=0.8)
+        tree.links.new(bump.outputs["Normal"], shader.inputs["Normal"])
+        plane(made, side, location=at, rotation=(math.pi / 2, 0, 0))
     made, tree, place = textured("cut", mask)
     shader = tree.nodes["Diffuse BSDF"]
     tree.links.remove(shader.inputs["Color"].links[0])
@@ -464,7 +466,11 @@ def procedural():
     ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = 0.4, 0.6
     ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.05, 0.1, 0.3, 1), (0.9, 0.8, 0.7, 1)
     tree.links.new(ramp.outputs["Color"], shader.inputs["Color"])
+    mix = node(tree, "ShaderNodeMixShader", shader.outputs[0], 1, Fac=0.2)
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
     ball(made, 0.8, location=(-1.3, 0.3, 0.8))
+    cube(made, 0.9, location=(-2.6, -0.4, 0.45), rotation=(0, 0, 0.3))  # another shape's texture
     made, tree, shader = material("worn", "ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.5, 1))
     wave = node(tree, "ShaderNodeTexWave", tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], "Vector", Scale=1.5)
     half = node(tree, "ShaderNodeMath", wave.outputs["Fac"], 0)

@@ -21,6 +21,12 @@ def uv_layer(mesh, wanted):
     return layers.get(wanted) if wanted else next((l for l in layers if l.active_render), None)
 
 
+def colors_of(mesh, colors):
+    """Of a mesh's colour attribute by loop: red, green, blue and alpha, linear whatever their kind."""
+    values = read(colors.data, "color", 4)
+    return values[read(mesh.loops, "vertex_index", 1, numpy.int32)] if colors.domain == "POINT" else values
+
+
 def is_smooth(mesh):
     """Whether a face has other normals than its own; glTF says that none has by leaving them out."""
     return mesh.has_custom_normals or bool(read(mesh.polygons, "use_smooth", 1, bool).any())
@@ -80,9 +86,7 @@ class Body:
         for layer in mesh.uv_layers:
             arrays["uv:" + layer.name] = read(layer.data, "uv", 2)[loops]
         for colors in mesh.color_attributes:
-            values = read(colors.data, "color", 4)
-            by_corner = loops if colors.domain == "CORNER" else read(mesh.loops, "vertex_index", 1, numpy.int32)[loops]
-            arrays["color:" + colors.name] = values[by_corner]
+            arrays["color:" + colors.name] = colors_of(mesh, colors)[loops]
         return arrays
 
     def _side(self, uvs):

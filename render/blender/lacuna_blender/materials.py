@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from .blend import white
 from .surface import LieApart, Surface, SurfaceReader
-from .sockets import Value
+from .sockets import Value, all_nodes
 from .textures import placed_alike
 
 
@@ -26,7 +26,7 @@ class Materials:
     def of(self, material, hidden, body):
         """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera. `body`: what it is
         on (body.Body), which matters where it has bumps or is baked."""
-        metres = _rounded(body.size()) if material and material.use_nodes and _has_bumps(material.node_tree) else 1.0
+        metres = _rounded(body.size()) if _has_bumps(material) else 1.0
         shared = (material and material.name_full, hidden, metres)
         own = (*shared, *body.key)
         if shared not in self._made and own not in self._made:
@@ -86,7 +86,7 @@ class Materials:
         if s.alpha.texture or s.alpha.factor < 1:
             entry["alphaMode"] = "BLEND"
         rough, metal = s.roughness.texture, s.metallic.texture
-        if rough and metal and (rough.place, rough.uv_map) != (metal.place, metal.uv_map):
+        if rough and metal and not placed_alike((rough, metal)):
             self._notes.add(name, "the metallic texture lies as that of the roughness does")
         if rough or metal:
             pbr["metallicRoughnessTexture"] = info(self._textures.scalars(G=rough, B=metal), rough or metal)
@@ -155,8 +155,8 @@ def _fits(s):
     return placed_alike(base + alpha) and placed_alike(metallic + roughness) and len(maps) <= 2
 
 
-def _has_bumps(tree):
-    return any(n.type == "BUMP" or n.type == "GROUP" and n.node_tree and _has_bumps(n.node_tree) for n in tree.nodes)
+def _has_bumps(material):
+    return bool(material and material.use_nodes) and any(n.type == "BUMP" for n in all_nodes(material.node_tree))
 
 
 def _rounded(size):

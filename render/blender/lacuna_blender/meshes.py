@@ -3,7 +3,7 @@
 import numpy
 
 from . import brushing
-from .body import UNWRAPPED, Body, is_smooth, read, uv_layer
+from .body import UNWRAPPED, Body, colors_of, is_smooth, read, uv_layer
 
 GEOMETRY = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 
@@ -88,10 +88,8 @@ class Meshes:
         if colors is None:
             self._notes.add(name, f"there are no vertex colours {wanted}: white is used")
             return None
-        values = read(colors.data, "color", 4)  # linear, whatever their kind
+        values = colors_of(mesh, colors)
         values[:, 3] = 1
-        if colors.domain == "POINT":
-            values = values[read(mesh.loops, "vertex_index", 1, numpy.int32)]
         return values
 
 

@@ -110,6 +110,14 @@ def _depends_on_more(source):
         node.type == "ATTRIBUTE" and node.attribute_type != "GEOMETRY"
 
 
+def all_nodes(tree):
+    """Those of groups too."""
+    for node in tree.nodes:
+        yield node
+        if node.type == "GROUP" and node.node_tree:
+            yield from all_nodes(node.node_tree)
+
+
 def constant(socket):
     value = socket.default_value
     return tuple(value[:3]) if hasattr(value, "__len__") else float(value)
@@ -240,11 +248,12 @@ class Sockets:
         texels, size = self._body.texels(self._owner, found, self._cycles.side) if self._body and self._cycles.side else (None, 0.0)
         if texels is None:
             return None
-        use = Use(Picture(", ".join(self._body.key + self._path(found)), texels), UNWRAPPED, None, "EXTEND", size=size)
-        return self._scaled(use)
+        name = self.name_of(found.node, found.groups, found.output.identifier, *self._body.key)
+        return self._scaled(Use(Picture(name, texels), UNWRAPPED, None, "EXTEND", size=size))
 
-    def _path(self, found):
-        return (self._name, *(g.name for g in found.groups), found.node.name, found.output.identifier)
+    def name_of(self, node, groups, *more):
+        """Of a Picture that is made at a node: no other one's, if `more` says what else it depends on."""
+        return ", ".join((self._owner.name_full, *(g.name for g in groups), node.name, *more))
 
     @staticmethod
     def _scaled(use):
@@ -260,7 +269,8 @@ class Sockets:
             return None
         if not images:
             return Value(tuple(float(c) for c in texels[0, 0]))
-        return self._scaled(replace(images[0], image=Picture(", ".join(self._path(found)), texels)))
+        name = self.name_of(found.node, found.groups, found.output.identifier)
+        return self._scaled(replace(images[0], image=Picture(name, texels)))
 
     def _usable(self, node):
         image = node.image

@@ -109,7 +109,7 @@ class SurfaceReader:
         distance = self._number(node, groups, "Distance") * heights.factor * (-1 if node.invert else 1)
         strength = min(max(self._number(node, groups, "Strength"), 0.0), 1.0)
         size = heights.texture.size or self._size
-        name = f"{heights.texture.image.name}, {node.name}, {size:.3g} m"
+        name = self._sockets.name_of(node, groups, heights.texture.image.name, f"{size:.3g} m")
         return blend.normals_of_heights(name, heights.texture, distance, strength, size), 1.0
 
     def _sheen(self, node, groups, base):
@@ -228,7 +228,7 @@ class SurfaceReader:
             return b if share.factor > 0 else a
         if not share.texture:
             self._note("a Mix Shader is rendered as one surface with the mean of both")
-        return self._mixture(a, b, share, node.name)
+        return self._mixture(a, b, share, node, groups)
 
     def _thinned(self, solid, node, groups, flip):
         """A mixture with Transparent BSDF; its factor says how much of the second shader there is."""
@@ -237,13 +237,13 @@ class SurfaceReader:
             factor = 1 - share.factor if flip else share.factor
             return replace(solid, alpha=replace(solid.alpha, factor=solid.alpha.factor * factor))
         sides = (solid.alpha, Value(0.0)) if flip else (Value(0.0), solid.alpha)
-        return replace(solid, alpha=self._mixed(f"{node.name}, alpha", *sides, share))
+        return replace(solid, alpha=self._mixed("alpha", *sides, share, node, groups))
 
     def _layered(self, under, over):
         self._note("a mixture by Fresnel or Layer Weight is rendered as a glossy layer over the first shader")
         return replace(under, roughness=over.roughness, reflectance=0.04)
 
-    def _mixture(self, a, b, share, node):
+    def _mixture(self, a, b, share, node, groups):
         """Two shaders as one surface: what can have a texture is mixed texel by texel, the rest as a whole."""
         f = min(max(share.factor * (float(scalar(share.texture).mean()) if share.texture else 1.0), 0.0), 1.0)
 
@@ -256,24 +256,24 @@ class SurfaceReader:
         for field in ("reflectance", "coat", "coat_roughness", "sheen"):
             setattr(made, field, mean(getattr(a, field), getattr(b, field)))
         for field in ("base", "metallic", "roughness", "transmission", "alpha"):
-            setattr(made, field, self._mixed(f"{node}, {field}", getattr(a, field), getattr(b, field), share))
-        made.emission = self._mixed(f"{node}, emission", _light(a), _light(b), share)
+            setattr(made, field, self._mixed(field, getattr(a, field), getattr(b, field), share, node, groups))
+        made.emission = self._mixed("emission", _light(a), _light(b), share, node, groups)
         lost = [word for word in ("reflectance", "coat", "sheen", "normal") if getattr(a, word) != getattr(b, word)]
         if share.texture and lost:
             self._note(f"of a Mix Shader by an image there is one {', '.join(lost)}")
         return made
 
-    def _mixed(self, name, p, q, share):
-        """A Value between two."""
+    def _mixed(self, field, p, q, share, node, groups):
+        """A Value between two, of that field of a surface."""
         uses = [use for use in (share.texture, p.texture, q.texture) if use]
         if p == q:
             return p
         if p.vertex_colors is None and q.vertex_colors is None and placed_alike(uses):
-            name = f"{self._name}, {name}"
+            name = self._sockets.name_of(node, groups, field, *(use.image.name for use in uses))
             return Value(*blend.mixed(name, (p.factor, p.texture), (q.factor, q.texture), (share.factor, share.texture)))
         if not self._baked:
             raise LieApart
-        self._note(f"images that lie apart cannot be mixed: {name} is that of the second shader")
+        self._note(f"images that lie apart cannot be mixed: the {field} of {node.name} is that of the second shader")
         return q
 
     def _add(self, node, groups):
@@ -282,8 +282,8 @@ class SurfaceReader:
             a, b = b, a
         if b.base != BLACK:
             self._note("an Add Shader of two reflecting shaders is rendered as one surface with the mean of both")
-            return self._mixture(a, b, Value(0.5), node.name)
-        half = self._mixed(f"{node.name}, emission", _light(a), _light(b), Value(0.5))
+            return self._mixture(a, b, Value(0.5), node, groups)
+        half = self._mixed("emission", _light(a), _light(b), Value(0.5), node, groups)
         return replace(a, emission=half, strength=2.0)
 
 

@@ -7,7 +7,7 @@ import os
 import numpy
 
 from . import exr
-from .sockets import constant, source_of
+from .sockets import all_nodes, constant, source_of
 from .textures import linear
 
 # The middle of an image is +X in Blender, and -Z (Blender's +Y) in Lacuna.
@@ -56,7 +56,7 @@ def _constant(socket, groups):
 
 
 def _panorama(world, folder, notes, cycles):
-    nodes = list(_nodes(world.node_tree))
+    nodes = list(all_nodes(world.node_tree))
     images = [n.image.size[0] for n in nodes if n.type in ("TEX_ENVIRONMENT", "TEX_IMAGE") and n.image]
     # A sun is half a degree wide; an image that is turned wants twice its texels.
     widths = [_WITH_SUN if any(n.type == "TEX_SKY" for n in nodes) else _PLAIN, *(2 * i for i in images)]
@@ -69,14 +69,6 @@ def _panorama(world, folder, notes, cycles):
     if (values == values[0, 0]).all():
         return _colour([float(c) for c in values[0, 0]])
     return _map(values, BETWEEN, 1.0, folder)
-
-
-def _nodes(tree):
-    """All, those of groups too."""
-    for node in tree.nodes:
-        yield node
-        if node.type == "GROUP" and node.node_tree:
-            yield from _nodes(node.node_tree)
 
 
 def _colour(colour):
