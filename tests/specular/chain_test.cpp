@@ -192,6 +192,28 @@ TEST(ChainSearch, findsTheImageInABall) {
     expectChains(*scene, lampAt(*scene, {2, 2.5, 0.5}), 1, 1, 6000);
 }
 
+/// Newton's method takes a chain's vertices from one face of a block to the next. A ray that leaves a
+/// flat face does not meet it again: two reflections there would let it pass as if there were no glass.
+TEST(ChainSearch, leavesEachFaceItMeets) {
+    SceneBuilder b;
+    b.add(box({-0.4f, 0.01f, -0.4f}, {0.4f, 2, 0.4f}, b.add(glass(1.5f))), rotation({0, 1, 0}, 24));
+    const auto scene = b.build();
+    const ChainSearch search(*scene);
+    ChainQuery query{floorOf(*scene), {normalize(Vec3{0.45f, 0.82f, 0.37f}), true}, 4};
+    const Vec3 middle = query.start.position;
+    RayTally tally;
+    Rng rng(4, 0, StreamKind::User, 0);
+    int edges = 0;
+    for (int i = 0; i < 200000; ++i) {
+        query.start.position = middle + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f};
+        const auto found = search.draw(query, rng, tally);
+        for (std::size_t k = 1; found && k < found->chain.size(); ++k, ++edges) {
+            EXPECT_NE(found->chain[k].hit.primitive, found->chain[k - 1].hit.primitive);
+        }
+    }
+    EXPECT_GT(edges, 1000);
+}
+
 /// The spread of a plane mirror is that of the straight way to the image.
 TEST(ChainSearch, knowsTheDistanceToAnImage) {
     SceneBuilder b;
