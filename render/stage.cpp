@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "libcore/base/error.h"
+#include "libcore/base/stopwatch.h"
 
 namespace lacuna {
 namespace {
@@ -52,6 +53,10 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     stage.settings.sampling = options.sampling;
     stage.settings.transparentBackground = options.transparentBackground;
     stage.settings.lightPaths = lightPathsOf(settings);
+    if (stage.techniques.connects && stage.techniques.chains) {
+        const Stopwatch phase(stage.phaseSeconds["chains"]);
+        stage.settings.chainSeeds = std::make_shared<const ChainSeeds>(*stage.scene, pool);
+    }
     stage.phaseSeconds["load"] = loadSeconds;
     stage.setupSeconds = secondsSince(start);
     return stage;

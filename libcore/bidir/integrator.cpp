@@ -11,7 +11,9 @@ namespace {
 std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
     const Techniques& techniques = setup.techniques;
     if (!techniques.connects || !techniques.chains) return nullptr;
-    auto chains = std::make_unique<const SpecularChains>(setup.walker);
+    std::shared_ptr<const ChainSeeds> seeds = setup.settings.chainSeeds;
+    if (!seeds) seeds = std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
+    auto chains = std::make_unique<const SpecularChains>(setup.walker, std::move(seeds));
     return chains->empty() ? nullptr : std::move(chains);
 }
 

@@ -13,6 +13,7 @@
 #include "libcore/bidir/sampler.h"
 #include "libcore/bidir/scene_paths.h"
 #include "libcore/bidir/walk.h"
+#include "libcore/specular/chain_seeds.h"
 
 namespace lacuna {
 
@@ -25,6 +26,7 @@ struct RenderSettings {
     std::uint64_t blockIterations = BlockPlan::kEndless;
     Sampling sampling = Sampling::Independent;
     Guides guides = {};
+    std::shared_ptr<const ChainSeeds> chainSeeds = {};  ///< of the scene; null: made where needed
     /// Leaves out the environment where the lens sees it: paths of one edge. (coverage_film.h)
     bool transparentBackground = false;
 };

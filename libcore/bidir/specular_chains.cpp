@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libcore/bidir/chain_vertices.h"
 
 namespace lacuna {
 
-SpecularChains::SpecularChains(const Walker& walker) : walker_(walker), search_(walker.scene()) {
+SpecularChains::SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds)
+    : walker_(walker), search_(walker.scene()), seeds_(std::move(seeds)) {
     const Lights& lights = walker.lights();
     std::vector<double> powers;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
@@ -53,7 +55,9 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return std::nullopt;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
-    const std::optional<FoundChain> found = search_.draw(query, rng, tally);
+    const Vec3 eyeSide = dot(z.ng, z.toPrevious) < 0.0f ? -z.ng : z.ng;
+    const std::span<const ChainSeed> known = seeds_->near(y0.light, z.position, eyeSide);
+    const std::optional<FoundChain> found = search_.draw(query, known, rng, tally);
     if (!found) return std::nullopt;
 
     light.assign(1, y0);
@@ -63,7 +67,7 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     const Rgb contribution = broughtBy(walker_, *found, light, z, atEye.f);
     if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
 
-    const double repeats = search_.reciprocalProbability(*found, query, rng, tally);
+    const double repeats = search_.reciprocalProbability(*found, query, known, rng, tally);
     return closeChain(walker_, light, eye, atEye.f, contribution * float(repeats), path);
 }
 

@@ -3,6 +3,7 @@
 // makes them, the weight one. (theory.md, "Specular chains")
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace lacuna {
 
 class SpecularChains {
   public:
-    /// `walker` must outlive it.
-    explicit SpecularChains(const Walker& walker);
+    /// `walker` must outlive it. `seeds`: of its scene.
+    SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds);
 
     /// The scene has no such light, or nothing that a chain could be made of.
     bool empty() const { return byPower_.empty() || search_.empty(); }
@@ -39,6 +40,7 @@ class SpecularChains {
     ChainSearch search_;
     std::vector<std::uint32_t> lights_;  ///< without an extent
     DiscreteDistribution byPower_;       ///< over lights_
+    std::shared_ptr<const ChainSeeds> seeds_;
 };
 
 }  // namespace lacuna

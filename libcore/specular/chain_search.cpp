@@ -43,7 +43,7 @@ Vec3d ChainSearch::seedDirection(const ChainQuery& query, Rng& rng) const {
 
 /// A ray that scatters by the events' shares, from where it leads to specular surfaces. It may end at
 /// any vertex, and more seldom where another one follows, which then stands before the light.
-std::optional<Chain> ChainSearch::seed(const ChainQuery& query, Rng& rng, RayTally& tally) const {
+std::optional<Chain> ChainSearch::guess(const ChainQuery& query, Rng& rng, RayTally& tally) const {
     const ChainStart& start = query.start;
     constexpr float kEndsBefore = 0.1f;
     const Vec3d direction = seedDirection(query, rng);
@@ -59,20 +59,48 @@ std::optional<Chain> ChainSearch::seed(const ChainQuery& query, Rng& rng, RayTal
     return chain;
 }
 
-std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query, Rng& rng,
+/// The way that light came to a place nearby: to the same first vertex, or, where that is nearer than the
+/// place, along the same direction.
+std::optional<Chain> ChainSearch::along(const ChainSeed& way, const ChainQuery& query,
+                                        RayTally& tally) const {
+    if (way.size > query.most) return std::nullopt;
+    const Vec3d place(query.start.position), end(way.end), first(way.towards);
+    const Vec3d fromEnd = first - end, fromPlace = first - place;
+    const Vec3d to = lengthSquared(place - end) < lengthSquared(fromEnd) ? fromPlace : fromEnd;
+    if (!(lengthSquared(to) > 0.0)) return std::nullopt;
+    Chain chain(MovingRay::from(place, normalize(to)));
+    while (chain.size() < way.size) {
+        const std::optional<Hit> hit = solver_.next(query.start, chain, tally);
+        if (!hit || !chain.extend(solver_.scene(), *hit, way.events[chain.size()])) {
+            return std::nullopt;
+        }
+    }
+    return chain;
+}
+
+std::optional<Chain> ChainSearch::seed(const ChainQuery& query, std::span<const ChainSeed> known,
+                                       Rng& rng, RayTally& tally) const {
+    constexpr float kKnown = 2.0f / 3;
+    if (known.empty() || rng.uniform() >= kKnown) return guess(query, rng, tally);
+    return along(known[rng.below(std::uint32_t(known.size()))], query, tally);
+}
+
+std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query,
+                                            std::span<const ChainSeed> known, Rng& rng,
                                             RayTally& tally) const {
-    const std::optional<Chain> from = seed(query, rng, tally);
+    const std::optional<Chain> from = seed(query, known, rng, tally);
     return from ? solver_.solve(query, *from, tally) : std::nullopt;
 }
 
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
-                                          Rng& rng, RayTally& tally) const {
+                                          std::span<const ChainSeed> known, Rng& rng,
+                                          RayTally& tally) const {
     // 1 / p = sum over n >= 0 of (1 - p)^n: how often n searches in a row find something else. From
     // kAll on a roulette at each doubling, so that no single estimate takes minutes.
     constexpr std::uint64_t kAll = 1024;
     double sum = 1.0, worth = 1.0;
     for (std::uint64_t n = 1;; ++n) {
-        const std::optional<Chain> from = seed(query, rng, tally);
+        const std::optional<Chain> from = seed(query, known, rng, tally);
         // Newton's method keeps the events.
         if (from && from->sameEventsAs(found.chain)) {
             const std::optional<FoundChain> again = solver_.solve(query, *from, tally);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "libcore/base/rng.h"
+#include "libcore/specular/chain_seeds.h"
 #include "libcore/specular/chain_solver.h"
 #include "libcore/specular/triangles_by_area.h"
 
@@ -22,16 +23,22 @@ class ChainSearch {
 
     /// One search from a random ray; empty where it finds no chain.
     /// Whether the chain sees its start and the light is for the caller to ask.
-    std::optional<FoundChain> draw(const ChainQuery& query, Rng& rng, RayTally& tally) const;
+    /// `known`, ways to places nearby, may be any, as long as reciprocalProbability is given the same.
+    std::optional<FoundChain> draw(const ChainQuery& query, std::span<const ChainSeed> known,
+                                   Rng& rng, RayTally& tally) const;
 
     /// An estimate of one over the probability that draw() finds `found`, without bias. It has no
     /// bound; the mean number of searches is at most that number.
-    double reciprocalProbability(const FoundChain& found, const ChainQuery& query, Rng& rng,
-                                 RayTally& tally) const;
+    double reciprocalProbability(const FoundChain& found, const ChainQuery& query,
+                                 std::span<const ChainSeed> known, Rng& rng, RayTally& tally) const;
 
   private:
     Vec3d seedDirection(const ChainQuery& query, Rng& rng) const;
-    std::optional<Chain> seed(const ChainQuery& query, Rng& rng, RayTally& tally) const;
+    std::optional<Chain> seed(const ChainQuery& query, std::span<const ChainSeed> known, Rng& rng,
+                              RayTally& tally) const;
+    std::optional<Chain> guess(const ChainQuery& query, Rng& rng, RayTally& tally) const;
+    std::optional<Chain> along(const ChainSeed& way, const ChainQuery& query,
+                               RayTally& tally) const;
 
     ChainSolver solver_;
     TrianglesByArea triangles_;  // mirrors and smooth glass: what a chain may meet first

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "libcore/specular/chain_search.h"
+#include "libcore/specular/chain_seeds.h"
 #include "libcore/specular/glass_boxes.h"
 #include "tests/material/statistics.h"
 #include "tests/scene/scene_builder.h"
@@ -140,15 +141,15 @@ ChainTarget lampAt(const Scene& scene, Vec3d position) {
 /// Each search finds one chain at most; what it is worth is one over its probability, and its mean
 /// therefore the number of chains.
 void expectChains(const Scene& scene, const ChainTarget& target, std::size_t most, double chains,
-                  int searches) {
+                  int searches, std::span<const ChainSeed> known = {}) {
     const ChainSearch search(scene);
     const ChainQuery query{floorOf(scene), target, most};
     RayTally tally;
     Rng rng(2, 0, StreamKind::User, 0);
     Moments worth;
     for (int i = 0; i < searches; ++i) {
-        const auto found = search.draw(query, rng, tally);
-        worth.add(found ? search.reciprocalProbability(*found, query, rng, tally) : 0.0);
+        const auto found = search.draw(query, known, rng, tally);
+        worth.add(found ? search.reciprocalProbability(*found, query, known, rng, tally) : 0.0);
     }
     EXPECT_LT(std::fabs(worth.mean() - chains), 5 * worth.standardError())  // 6e-7 by chance
         << worth.mean() << " +- " << worth.standardError();
@@ -184,6 +185,91 @@ TEST(ChainSearch, findsTheWayThroughASlab) {
     }
 }
 
+/// A floor under a block of glass, a sun and a lamp above; and a thin sheet under a pane of solid glass,
+/// with a lamp on either side of both.
+SceneBuilder litThroughGlass() {
+    SceneBuilder b;
+    const auto clear = b.add(glass(1.5f)), white = b.add(matte(Rgb(0.5f)));
+    b.add(quad({-3, -0.001f, 3}, {6, 0, 0}, {0, 0, -6}, white));
+    b.add(box({-0.4f, 0.3f, -0.4f}, {0.5f, 0.9f, 0.4f}, clear), rotation({0, 1, 0}, 24));
+    b.add(box({9, -0.001f, -1}, {11, 0.001f, 1}, white));
+    b.add(box({9, 0.5f, -1}, {11, 0.7f, 1}, clear));
+    b.add(box({9, -0.7f, -1}, {11, -0.5f, 1}, clear));
+    b.add(directionalLight({-0.2, -0.9, -0.1}, Rgb(1)));
+    b.add(pointLight({0.3, 2, 0.2}, Rgb(1)));
+    b.add(pointLight({10, 2, 0}, Rgb(1)));
+    b.add(pointLight({10, -2, 0}, Rgb(1)));
+    return b;
+}
+
+/// What is known only says where searches begin: the way through the block, reflections inside it, and
+/// nonsense.
+TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
+    const auto scene = litThroughGlass().build();
+    const ChainTarget lamp = lampAt(*scene, {0.3, 2, 0.2});
+    const ThreadPool threads(1);
+    const ChainSeeds seeds(*scene, threads);
+    const auto known = seeds.near(1, floorOf(*scene).position, {0, 1, 0});
+    EXPECT_EQ(known.size(), 16u);
+    ChainSeed nowhere{{5, 5, 5}, {5, 4, 5}, {}, 3}, here{floorOf(*scene).position, {}, {}, 1};
+    here.towards = here.end;
+    const std::array nonsense{nowhere, here};
+    // Through two faces, through the upper one or the lower one as if the other were not there, and one by
+    // a side.
+    for (const std::span<const ChainSeed> some :
+         {std::span<const ChainSeed>{}, known, std::span<const ChainSeed>(nonsense)}) {
+        expectChains(*scene, lamp, 2, 4, 20000, some);
+    }
+}
+
+/// Searches that know where light comes from mostly find it at once.
+TEST(ChainSeeds, areWaysThatLightComes) {
+    const auto scene = litThroughGlass().build();
+    const ThreadPool threads(2);
+    const ChainSeeds seeds(*scene, threads);
+    const ChainSearch search(*scene);
+    const ChainTarget targets[] = {{normalize(Vec3{0.2f, 0.9f, 0.1f}), true},
+                                   lampAt(*scene, {0.3, 2, 0.2})};
+    RayTally tally;
+    Rng rng(6, 0, StreamKind::User, 0);
+    for (const std::uint32_t light : {0u, 1u}) {
+        int found[2] = {};
+        for (int i = 0; i < 4000; ++i) {
+            ChainStart start = floorOf(*scene);
+            start.position =
+                start.position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.4f;
+            const ChainQuery query{start, targets[light], Chain::kMost};
+            const auto near = seeds.near(light, start.position, {0, 1, 0});
+            found[0] += search.draw(query, {}, rng, tally) ? 1 : 0;
+            found[1] += search.draw(query, near, rng, tally) ? 1 : 0;
+        }
+        EXPECT_GT(found[1], 1.2 * found[0]);
+    }
+}
+
+/// They are those of the light that is asked for, and of one side of a thin sheet.
+TEST(ChainSeeds, knowSidesAndLights) {
+    const auto scene = litThroughGlass().build();
+    const ThreadPool threads(1);
+    const ChainSeeds seeds(*scene, threads);
+    for (const float up : {1.0f, -1.0f}) {
+        const Vec3 sheet = Vec3(Vec3d{10.1, 0.001 * double(up), 0.2} - scene->centre());
+        for (const std::uint32_t light : {2u, 3u}) {
+            // Each lamp shines on one face.
+            const bool shines = (light == 2) == (up > 0);
+            int ends = 0;
+            for (const ChainSeed& seed : seeds.near(light, sheet, {0, up, 0})) {
+                ends += length(seed.end - sheet) < 0.5f && (seed.towards.y - seed.end.y) * up > 0;
+            }
+            EXPECT_EQ(ends, shines ? 16 : 0) << "light " << light << ", side " << up;
+        }
+    }
+    SceneBuilder noGlass;
+    noGlass.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, noGlass.add(matte(Rgb(0.5f)))));
+    noGlass.add(pointLight({0, 1, 0}, Rgb(1)));
+    EXPECT_TRUE(ChainSeeds(*noGlass.build(), threads).near(0, {}, {0, 1, 0}).empty());
+}
+
 /// A convex mirror shows a lamp once from anywhere.
 TEST(ChainSearch, findsTheImageInABall) {
     SceneBuilder b;
@@ -206,7 +292,7 @@ TEST(ChainSearch, leavesEachFaceItMeets) {
     int edges = 0;
     for (int i = 0; i < 200000; ++i) {
         query.start.position = middle + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f};
-        const auto found = search.draw(query, rng, tally);
+        const auto found = search.draw(query, {}, rng, tally);
         for (std::size_t k = 1; found && k < found->chain.size(); ++k, ++edges) {
             EXPECT_NE(found->chain[k].hit.primitive, found->chain[k - 1].hit.primitive);
         }
@@ -226,7 +312,7 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
     RayTally tally;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 100; ++i) {
-        const auto found = search.draw({start, lamp, 1}, rng, tally);
+        const auto found = search.draw({start, lamp, 1}, {}, rng, tally);
         if (!found) continue;
         EXPECT_NEAR(found->spread * lengthSquared(to), 1.0, 1e-6);
         EXPECT_LT(length(found->chain.firstDirection() - normalize(to)), 1e-6);
@@ -294,7 +380,7 @@ TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
     Rng rng(5, 0, StreamKind::User, 0);
     std::vector<FoundChain> images;
     for (int i = 0; i < 400; ++i) {
-        const auto found = search.draw(query, rng, tally);
+        const auto found = search.draw(query, {}, rng, tally);
         const bool refracts =
             found && found->chain.size() == 2 &&
             found->chain[0].event == SpecularEvent{ScatterEvent::DeltaTransmission} &&
