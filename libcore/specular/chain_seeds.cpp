@@ -34,9 +34,9 @@ void followRay(const ChainSolver& solver, std::uint32_t light, const Vec3& at, R
                std::vector<Arrival>& arrivals) {
     const Scene& scene = solver.scene();
     const LightPoint from = scene.lights().punctualPoint(light);
-    const Vec3 origin =
-        isInfinite(from.kind) ? at + from.position * (2 * scene.radius()) : from.position;
-    const Vec3d way = Vec3d(at) - Vec3d(origin);
+    const bool infinite = isInfinite(from.kind);
+    const Vec3 origin = infinite ? at + from.position * (2 * scene.radius()) : from.position;
+    const Vec3d way = infinite ? -Vec3d(from.position) : Vec3d(at) - Vec3d(origin);
     if (!(lengthSquared(way) > 0.0)) return;
     const Vec3d direction = normalize(way);
     if (!(scene.lights().profile(light, from.ng, Vec3(direction)) > 0.0f)) return;
