@@ -71,13 +71,18 @@ struct PathVertex {
 static_assert(std::is_trivially_copyable_v<PathVertex>);
 static_assert(sizeof(PathVertex) == 248);  // pools hold millions of them
 
+/// ng on the side that a surface's own subpath comes from.
+inline Vec3 sideOfPath(const PathVertex& v) {
+    return dot(v.ng, v.toPrevious) < 0.0f ? -v.ng : v.ng;
+}
+
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
 /// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either
 /// walk's vertex.
 inline Vec3 scatteringSide(const PathVertex& v) {
     if (v.kind != VertexKind::Surface) return v.twoSided ? Vec3{} : v.ng;
     if (v.bsdf.transmits()) return {};
-    return dot(v.ng, v.toPrevious) < 0.0f ? -v.ng : v.ng;
+    return sideOfPath(v);
 }
 
 /// Asks the cache for a vertex that will be looked at soon.

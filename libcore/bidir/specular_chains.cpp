@@ -55,8 +55,7 @@ std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& ta
     if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return std::nullopt;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
-    const Vec3 eyeSide = dot(z.ng, z.toPrevious) < 0.0f ? -z.ng : z.ng;
-    const std::span<const ChainSeed> known = seeds_->near(y0.light, z.position, eyeSide);
+    const std::span<const ChainSeed> known = seeds_->near(y0.light, z.position, sideOfPath(z));
     const std::optional<FoundChain> found = search_.draw(query, known, rng, tally);
     if (!found) return std::nullopt;
 

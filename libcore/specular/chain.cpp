@@ -208,10 +208,12 @@ bool Chain::extend(const Scene& scene, const Hit& hit, double u) {
 }
 
 std::optional<Hit> Chain::meetAgain(const ChainVertex& vertex) const {
-    const auto isOn = [&vertex](const Hit& hit) {
-        return hit.object == vertex.hit.object && hit.primitive == vertex.hit.primitive;
-    };
-    if (size_ > 0 && isOn(vertices_[size_ - 1].hit)) return std::nullopt;  // it leaves that plane
+    if (size_ > 0) {
+        const Hit& left = vertices_[size_ - 1].hit;
+        const bool same =
+            left.object == vertex.hit.object && left.primitive == vertex.hit.primitive;
+        if (same) return std::nullopt;  // a ray does not meet the plane that it leaves
+    }
     // [Moeller97]
     const auto& [a, b, c] = vertex.corners;
     const Vec3d u = b - a, v = c - a, p = cross(last_.direction, v);

@@ -222,7 +222,7 @@ TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     }
 }
 
-/// Searches that know where light comes from mostly find it at once.
+/// Searches that know where light comes from find some of it more often.
 TEST(ChainSeeds, areWaysThatLightComes) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(2);
