@@ -115,6 +115,13 @@ std::optional<FoundChain> ChainSolver::solve(const ChainQuery& query, const Chai
     return FoundChain{chain, spread, miss.acrossBy};
 }
 
+bool ChainSolver::stopsAllRaysAlong(const Chain& chain) const {
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        if (!stopsAllRays(scene_.description().materials[chain[i].point.material])) return false;
+    }
+    return true;
+}
+
 std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query,
                                                     RayTally& tally) const {
     const ChainStart& start = query.start;
@@ -129,12 +136,12 @@ std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query,
                             double(hit->distance) >= length(target.wayFrom(chain.last().origin));
         if (behind) break;
         if (!chain.extend(scene_, *hit, {.event = ScatterEvent::DeltaTransmission})) break;
-        const std::uint32_t material = chain[chain.size() - 1].point.material;
-        if (!stopsAllRays(scene_.description().materials[material])) return std::nullopt;
     }
-    if (chain.size() == 0) return std::nullopt;
+    if (chain.size() == 0 || !stopsAllRaysAlong(chain)) return std::nullopt;
     const auto found = solve(query, chain, tally);
-    if (!found || target.infinite) return found;
+    // Newton's method may have left the surfaces that it began with.
+    if (!found || !stopsAllRaysAlong(found->chain)) return std::nullopt;
+    if (target.infinite) return found;
     // A lamp may be of glass itself, and rounding put its surface before it.
     const double last = length(target.wayFrom(found->chain.last().origin));
     return last > kAtTarget * length(way) ? found : std::nullopt;

@@ -76,6 +76,7 @@ class ChainSolver {
   private:
     std::optional<Chain> retrace(const ChainStart& start, const Vec3d& direction,
                                  const Chain& events, RayTally& tally) const;
+    bool stopsAllRaysAlong(const Chain& chain) const;
 
     const Scene& scene_;
 };

@@ -363,6 +363,27 @@ TEST(ChainSolver, goesThroughASlabByItself) {
     EXPECT_FALSE(ChainSolver(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
 }
 
+/// Glass with alpha is left out, also where only Newton's method comes to it: the straight way to the
+/// lamp meets the slab at x = 1, the way that is found beyond 1.05, where alpha begins.
+TEST(ChainSolver, goesThroughNoAlphaThatItComesTo) {
+    for (const bool veiled : {false, true}) {
+        SceneBuilder b;
+        const auto clear = b.add(glass(1.5f));
+        lacuna::Material veil = glass(1.5f);
+        if (veiled) veil.alphaMode = lacuna::Material::Alpha::Blend;
+        b.add(quad({-50, 1.5f, 50}, {100, 0, 0}, {0, 0, -100}, clear));
+        b.add(quad({-50, 1, -50}, {51.05f, 0, 0}, {0, 0, 100}, clear));
+        b.add(quad({1.05f, 1, -50}, {48.95f, 0, 0}, {0, 0, 100}, b.add(veil)));
+        const auto scene = b.build();
+        const ChainQuery query{floorOf(*scene), lampAt(*scene, {3, 3, 0}), Chain::kMost};
+        RayTally tally;
+        const auto found = ChainSolver(*scene).throughGlass(query, tally);
+        ASSERT_EQ(found.has_value(), !veiled);
+        if (veiled) continue;
+        EXPECT_GT(double(found->chain[0].point.position.x) + scene->centre().x, 1.05);
+    }
+}
+
 /// A ball of glass shows a lamp near its focus several times: which of two images a path belongs to shows
 /// in the sign of their spread, however near the two are.
 TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
