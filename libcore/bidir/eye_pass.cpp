@@ -109,6 +109,7 @@ void EyePass::block(const Iteration& iteration, const PixelRect& pixels, const T
         Rng& rng = worker.rngs.emplace_back(
             setup_.sampler.stream(iteration.number, StreamKind::EyePath, inFilm));
         worker.walks.push_back(setup_.startEye(x, y, rng, worker.eye[i]));
+        worker.walks.back().lends = iteration.counts.sharing.any();
     }
     setup_.walker.finish(worker.walks, result.tally);
     for (std::size_t i = 0; i < count; ++i) iteration.counts.labelWalk(worker.eye[i]);

@@ -19,6 +19,16 @@ Edge edgeOfWalk(const PathVertex& from, const PathVertex& to) {
             float(cosine * double(to.toPreviousFactor))};
 }
 
+/// What a walk's step from `from` on to `to` multiplies its throughput by. From what the vertices know, and
+/// not as a quotient of throughputs, which are zero in colours that the walk itself has lost.
+Rgb carriedOn(const Walker& walker, const PathVertex& from, const PathVertex& to) {
+    const double pdf = double(to.pdfA) * double(walker.survivalAt(from));
+    if (!(pdf > 0.0)) return {};
+    const double g = measureCosine(to, to.toPrevious) * double(to.toPreviousFactor);
+    return from.scatter * float(g / pdf) *
+           transmittance(walker.scene().absorption(), from, -to.toPrevious, to);
+}
+
 }  // namespace
 
 bool LentWalk::forksAt(Subpath walk, std::size_t h) {
@@ -87,7 +97,6 @@ void LentWalk::take(std::size_t i, std::size_t t, std::vector<PathVertex>& out) 
     z.pdfReverseA = from.next.pdfWToEye * next.toPreviousFactor;
     const Vec3 direction = -behind.toPrevious;
     const double cosine = measureCosine(next, direction);
-    const Rgb before = behind.throughput;
     behind.throughput =
         from.next.pdfWToLight > 0.0f
             ? from.arrives * from.next.f *
@@ -95,11 +104,9 @@ void LentWalk::take(std::size_t i, std::size_t t, std::vector<PathVertex>& out) 
                   float(cosine / (sumNext_ * double(walker_->survivalAt(next))))
             : Rgb{};
     behind.pdfA = from.next.pdfWToLight * edgeOfWalk(next, behind).toSecond;
-    // What lies farther carries what comes here as before.
-    const auto share = [](float now, float then) { return then > 0.0f ? now / then : 0.0f; };
-    const Rgb scale{share(behind.throughput.r, before.r), share(behind.throughput.g, before.g),
-                    share(behind.throughput.b, before.b)};
-    for (std::size_t n = h_ + 3; n < t; ++n) out[n].throughput *= scale;
+    for (std::size_t n = h_ + 3; n < t; ++n) {
+        out[n].throughput = out[n - 1].throughput * carriedOn(*walker_, out[n - 1], out[n]);
+    }
 }
 
 }  // namespace lacuna

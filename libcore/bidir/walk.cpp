@@ -240,7 +240,7 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     if (!(forward > 0.0f)) return false;
     walk.throughput =
         v.throughput * (e.f * (std::fabs(dot(sample->to, v.ng)) / (forward * survival)));
-    if (isBlack(walk.throughput)) return false;
+    if (isBlack(walk.throughput) && !walk.lends) return false;
 
     v.scatter = e.f;
     v.event = sample->event;

@@ -30,6 +30,8 @@ struct Walk {
     Vec3 direction;   ///< unit
     float pdfW;       ///< of the direction; at infinity: of the point on the disk
     Rgb throughput;   ///< that the ray carries
+    /// Whether others may go on along it, who carry what it does not: it goes on in the dark.
+    bool lends = false;
 };
 
 class Walker final : public LightSampler {

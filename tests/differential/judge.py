@@ -162,7 +162,7 @@ def deviation(report, reference, kind):
     worst = 0.0
     for m, e, m0, e0 in zip(*(numbers(r[name]) for r in (report, reference) for name in ("mean_rgb", "mean_rgb_stderr"))):
         difference = m - m0
-        if kind == "any" or (kind == "at most" and difference < 0) or (kind == "at least" and difference > 0):
+        if kind == "any" or (kind == "at most" and difference < 0):
             continue
         error = math.hypot(e, e0, ROUNDING * m0)
         z = difference / error if error > 0 else math.copysign(math.inf, difference) if difference else 0.0
