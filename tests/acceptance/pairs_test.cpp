@@ -66,6 +66,26 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
 
 INSTANTIATE_TEST_SUITE_P(All, LightPairsSlow, testing::ValuesIn(allPairs()), ByParameter());
 
+/// What one vertex brings nothing to may be all that the one beside it has: whatever is learned at one and
+/// used at another has to allow for it.
+TEST(PureColoursSlow, everyRowAgreesWithBpt) {
+    const auto scene = tilesOfPureColours(Rgb(0.9f)).build();
+    Shot shot;
+    shot.maxDepth = 6;
+    shot.iterations = 2000;
+    shot.seed = 100;
+    const Picture reference = render(*scene, rowNamed("bpt"), shot);
+    shot.seed = 1;
+    shot.iterations = 600;
+    shot.lightPaths = 1024;
+    for (const std::string& name : rowNames()) {
+        const MethodRow row = rowNamed(name);
+        if (mergesBetweenDeltas(row)) continue;
+        expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
+                   Judge::BlocksAndMean);
+    }
+}
+
 // Scenes of the repository
 // -------------------------------------------------------------------------
 

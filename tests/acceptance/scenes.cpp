@@ -287,6 +287,23 @@ NamedScene behindGlass() {
     return {"behind glass", std::move(b), true};
 }
 
+SceneBuilder tilesOfPureColours(const Rgb& walls) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(walls);
+    b.add(box({-1, -1, -1}, {1, 1, 1}, 0, true));
+    constexpr int kTiles = 40;
+    const std::uint32_t tiles[] = {b.add(matte(Rgb(0.8f, 0, 0))), b.add(matte(Rgb(0, 0.8f, 0))),
+                                   b.add(matte(Rgb(0, 0, 0.8f)))};
+    for (int i = 0; i < kTiles; ++i) {
+        const float width = 1.98f / kTiles, x = -0.99f + width * float(i);
+        b.add(quad({x, -0.99f, 0.99f}, {width, 0, 0}, {0, 0, -1.98f}, tiles[i % 3]));
+    }
+    const auto lamp = b.add(emitter(Rgb(9, 9, 9)));
+    b.add(quad({-0.3f, 0.7f, 0.2f}, {0.6f, 0, 0}, {0, 0, -0.4f}, lamp));  // it shines upwards
+    b.add(lookAt({0, 0.5, 0.9}, {0, -0.8, -0.6}, 40));
+    return b;
+}
+
 std::vector<NamedScene> weightScenes() {
     return {diffuseBox(),     glossyBox(),         deltaBox(),    underTheSky(),
             punctualLights(), instancedEmitters(), bentNormals(), colouredBodies(),

@@ -65,6 +65,9 @@ NamedScene lampsWithAlpha();
 NamedScene colouredBodies();
 /// A lamp and a sky behind a slab of coloured glass, and behind a ball.
 NamedScene behindGlass();
+/// A lamp that shines upwards over a floor of red, green and blue tiles, smaller than pixels: what one of
+/// them takes from light is all that the next one gives.
+SceneBuilder tilesOfPureColours(const Rgb& walls);
 /// All of these.
 std::vector<NamedScene> weightScenes();
 

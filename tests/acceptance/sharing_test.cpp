@@ -53,28 +53,10 @@ TEST(SharedWalks, stayOnTheirSideOfAShelf) {
     expectSame(withShare(*scene, "16", shot), alone, "shelf");
 }
 
-/// Tiles of pure colours, smaller than pixels.
-SceneBuilder tilesBetween(const Rgb& walls) {
-    SceneBuilder b;
-    b.d.materials[0] = matte(walls);
-    b.add(box({-1, -1, -1}, {1, 1, 1}, 0, true));
-    constexpr int kTiles = 40;
-    const std::uint32_t tiles[] = {b.add(matte(Rgb(0.8f, 0, 0))), b.add(matte(Rgb(0, 0.8f, 0))),
-                                   b.add(matte(Rgb(0, 0, 0.8f)))};
-    for (int i = 0; i < kTiles; ++i) {
-        const float width = 1.98f / kTiles, x = -0.99f + width * float(i);
-        b.add(quad({x, -0.99f, 0.99f}, {width, 0, 0}, {0, 0, -1.98f}, tiles[i % 3]));
-    }
-    const auto lamp = b.add(emitter(Rgb(9, 9, 9)));
-    b.add(quad({-0.3f, 0.7f, 0.2f}, {0.6f, 0, 0}, {0, 0, -0.4f}, lamp));  // it shines upwards
-    b.add(lookAt({0, 0.5, 0.9}, {0, -0.8, -0.6}, 40));
-    return b;
-}
-
 /// What a walk has lost, in one colour or in all, is not lost to those who share it.
 TEST(SharedWalks, carryColoursThatTheirOwnersLack) {
     for (const Rgb& walls : {Rgb(0.9f), Rgb(0, 0.9f, 0.3f)}) {
-        const auto scene = tilesBetween(walls).build();
+        const auto scene = tilesOfPureColours(walls).build();
         Shot shot;
         shot.iterations = 1200;
         shot.maxDepth = 8;
