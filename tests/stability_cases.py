@@ -35,6 +35,8 @@ GROUPS = [
         Case("refraction", "glass in a white sky, glass in glass, a camera inside glass",
              "1 outside, the squared index inside, without noise"),
         Case("light-in-glass", "a lamp inside rough glass", "every method agrees with path tracing"),
+        Case("pure-colours", "tiles of red, green and blue alone, smaller than pixels",
+             "every method agrees with bpt; shared walks with walks alone"),
         Case("glass-slab", "a slab before the camera, the lamp and anywhere between",
              "dims by its transmittance, whatever the distance"),
     ]),

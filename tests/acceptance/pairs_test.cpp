@@ -84,6 +84,7 @@ TEST(PureColoursSlow, everyRowAgreesWithBpt) {
         expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
                    Judge::BlocksAndMean);
     }
+    stabilityCase("pure-colours", worstDeviation(), kOfAllowed);
 }
 
 // Scenes of the repository

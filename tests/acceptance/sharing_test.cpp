@@ -3,6 +3,7 @@
 
 #include "tests/acceptance/render_test.h"
 #include "tests/acceptance/scenes.h"
+#include "tests/stability.h"
 
 namespace lacuna::test {
 namespace {
@@ -65,6 +66,7 @@ TEST(SharedWalks, carryColoursThatTheirOwnersLack) {
         expectSame(withShare(*scene, "16", shot), alone,
                    walls.r > 0 ? "white walls" : "green walls");
     }
+    stabilityCase("pure-colours", worstDeviation(), kOfAllowed);
 }
 
 /// A picture whose squares are cut by its border, and pixels of one square alone.
