@@ -9,6 +9,12 @@
 
 namespace lacuna {
 
+namespace {
+/// Of the tools that make caches, and of lacuna-render, which makes them with --prepare.
+constexpr const char* kDomain = "--domain (lacuna-render: --set voxels.domain)";
+constexpr const char* kResolution = "--resolution (lacuna-render: --set voxels.resolution)";
+}  // namespace
+
 VoxelBox parseDomain(const std::string& text) {
     double number[6];
     const char* at = text.data();
@@ -22,10 +28,10 @@ VoxelBox parseDomain(const std::string& text) {
     }
     for (int i = 0; i < 3 && good; ++i) good = number[i] < number[i + 3];
     if (!good) {
-        throw UsageError(
-            "--domain: expected x0,y0,z0,x1,y1,z1 in the scene's coordinates with x0 < x1, y0 < y1 "
-            "and z0 < z1, found '" +
-            text + "'");
+        throw UsageError(std::string(kDomain) +
+                         ": expected x0,y0,z0,x1,y1,z1 in the scene's coordinates with x0 < x1, "
+                         "y0 < y1 and z0 < z1, found '" +
+                         text + "'");
     }
     return {{number[0], number[1], number[2]}, {number[3], number[4], number[5]}};
 }
@@ -77,14 +83,20 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const
     });
     phases.run("parts", [&] { result.parts = keepReachedParts(reach, space.shape, space.state); });
     if (result.parts.reached == 0) {
-        throw UsageError(
-            !settings.domain.empty()
-                ? "--domain: expected a box that camera paths or lamps reach, found none of them "
-                  "in it; leave it out or raise --resolution"
-            : flat ? "--domain: expected the box of the space in front of the surfaces, because "
-                     "this scene's own is flat; found none; give one"
-                   : "--resolution: expected voxels fine enough to leave empty ones where the "
-                     "camera looks, found none; raise it");
+        if (!settings.domain.empty()) {
+            throw UsageError(std::string(kDomain) +
+                             ": expected a box that camera paths or lamps reach, found none of "
+                             "them in it; leave it out, or raise " +
+                             kResolution);
+        }
+        if (flat) {
+            throw UsageError(std::string(kDomain) +
+                             ": expected the box of the space in front of the surfaces, because "
+                             "this scene's own is flat; found none; give one");
+        }
+        throw UsageError(std::string(kResolution) +
+                         ": expected voxels fine enough to leave empty ones where the camera "
+                         "looks, found none; raise it");
     }
     phases.run("distance", [&] {
         const SurfaceDistance surface(triangles, pool);

@@ -24,7 +24,7 @@ PHOTONS, PHOTON_RADIUS = 500, 0.06
 FORCED_ON = ("emissive_textures", "textures", "alpha_mask", "normal_maps", "vertex_colors", "attenuation")
 TECHNIQUES = {"hits": "s = 0", "connections": "s >= 1, t >= 2", "splats": "t = 1"}  # and how --help-method tells of them
 # What a row may say instead of rendering a scene: skeletons are of the space between surfaces.
-REFUSALS = {"skelbpt": ("--domain: expected the box of the space in front of the surfaces",
+REFUSALS = {"skelbpt": ("expected the box of the space in front of the surfaces",
                         "expected a scene with an extent, found a point",
                         "expected voxels fine enough to leave empty ones where the camera looks")}
 DELTAS = {"mirror", "smooth_refraction", "smooth_thin_transmission"}
