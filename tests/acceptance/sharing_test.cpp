@@ -59,7 +59,7 @@ TEST(SharedWalks, carryColoursThatTheirOwnersLack) {
     for (const Rgb& walls : {Rgb(0.9f), Rgb(0, 0.9f, 0.3f)}) {
         const auto scene = tilesOfPureColours(walls).build();
         Shot shot;
-        shot.iterations = 1200;
+        shot.iterations = 700;
         shot.maxDepth = 8;
         const Picture alone = withShare(*scene, "1", shot);
         shot.seed = 2;
