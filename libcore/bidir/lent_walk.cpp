@@ -24,8 +24,7 @@ Edge edgeOfWalk(const PathVertex& from, const PathVertex& to) {
 Rgb carriedOn(const Walker& walker, const PathVertex& from, const PathVertex& to) {
     const double pdf = double(to.pdfA) * double(walker.survivalAt(from));
     if (!(pdf > 0.0)) return {};
-    const double g = measureCosine(to, to.toPrevious) * double(to.toPreviousFactor);
-    return from.scatter * float(g / pdf) *
+    return from.scatter * float(double(edgeOfWalk(from, to).geometry) / pdf) *
            transmittance(walker.scene().absorption(), from, -to.toPrevious, to);
 }
 
