@@ -25,23 +25,65 @@ double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
     return kByOrder[std::min(order, 3) - 1] * shadows_.triesAt(z.position);
 }
 
-/// The chain: a function of the two, whichever walk made z. No ray is traced where the lamp lies behind z
-/// or nothing lies between.
-std::optional<FoundChain> RefractedLamps::between(const PathVertex& z, const PathVertex& y0,
-                                                  RayTally& tally) const {
+/// The one chain that the straight ray leads to, or from within glass a guess: a function of the two, whichever
+/// walk made z. No ray is traced where the lamp lies behind z or nothing lies between.
+std::optional<RefractedLamps::Joined> RefractedLamps::straight(const PathVertex& z,
+                                                               const PathVertex& y0,
+                                                               RayTally& tally) const {
     const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
     if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
     if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
-    return solver_.throughGlass(queryOf(z, y0), tally);
+    const ChainQuery query = queryOf(z, y0);
+    const Vec3d straightOn = normalize(query.target.wayFrom(Vec3d(z.position)));
+    std::optional<FoundChain> found = solver_.throughGlass(query, straightOn, tally);
+    if (!found) {
+        const GlassBodies::WaysOut guesses = bodies_.roughWaysOut(z.position, query.target);
+        for (std::size_t i = 0; i < guesses.size() && !found; ++i) {
+            found = solver_.throughGlass(query, guesses[i].direction, tally);
+        }
+    }
+    return found ? std::optional(Joined{*found, 1.0}) : std::nullopt;
 }
 
-/// p(y_0) over what an eye walk that leaves z along the chain has for it, but for the direction's density
+/// One that leaves the body around z by the face of `way`, of all `ways`.
+std::optional<RefractedLamps::Joined> RefractedLamps::out(const GlassBodies::WaysOut& ways,
+                                                          const GlassBodies::WayOut& way,
+                                                          const PathVertex& z, const PathVertex& y0,
+                                                          RayTally& tally) const {
+    if (!z.bsdf.transmits() && leadsBehind(z, Vec3(way.direction))) return std::nullopt;
+    auto found = solver_.throughGlass(queryOf(z, y0), way.direction, tally);
+    if (!found || ways.through(found->chain[0].point.ng) != &way) return std::nullopt;
+    return Joined{*found, 1.0 / double(ways.size())};
+}
+
+/// One of the chains between the two, if Newton's method finds it.
+std::optional<RefractedLamps::Joined> RefractedLamps::drawBetween(const PathVertex& z,
+                                                                  const PathVertex& y0, double u,
+                                                                  RayTally& tally) const {
+    const GlassBodies::WaysOut ways = bodies_.waysOut(z.position, queryOf(z, y0).target);
+    if (ways.size() == 0) return straight(z, y0, tally);
+    const auto i = std::min(ways.size() - 1, std::size_t(u * double(ways.size())));
+    return out(ways, ways[i], z, y0, tally);
+}
+
+/// That one of them whose first vertex, from z, is on a face with this normal.
+std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& normal,
+                                                                  const PathVertex& z,
+                                                                  const PathVertex& y0,
+                                                                  RayTally& tally) const {
+    const GlassBodies::WaysOut ways = bodies_.waysOut(z.position, queryOf(z, y0).target);
+    if (ways.size() == 0) return straight(z, y0, tally);
+    const GlassBodies::WayOut* way = ways.through(normal);
+    return way ? out(ways, *way, z, y0, tally) : std::nullopt;
+}
+
+/// p(y_0) and the chain's pmf over what an eye walk that leaves z along the chain has for it, but for the direction's density
 /// at z: the events' probabilities, and how far the chain spreads a solid angle.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
-                                 const FoundChain& found) const {
+                                 const Joined& joined) const {
     const Lights& lights = walker_.lights();
-    const Chain& chain = found.chain;
-    double walk = found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
+    const Chain& chain = joined.found.chain;
+    double walk = joined.found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
                   double(lights.opacity(y0.light, y0.lightUv));
     for (std::size_t i = 0; i < chain.size(); ++i) {
         const ChainVertex& v = chain[i];
@@ -50,7 +92,7 @@ double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
             walker_.scattering(vertexOf(walker_, v), v.toEye, v.toLight, v.event.event);
         walk *= double(e.pdfWToLight) / v.measure;
     }
-    const double samples = double(lightPointOf(lights, y0).pdf) * seenSamples;
+    const double samples = double(lightPointOf(lights, y0).pdf) * seenSamples * joined.pmf;
     return walk > 0.0 ? samples / walk : 0.0;
 }
 
@@ -60,12 +102,12 @@ double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const Vec3& toChain, RayTally& tally) const {
     const double seenSamples = walker_.seenSamples(y0, z);
     if (!(seenSamples > 0.0)) return 0.0;
-    const auto found = between(z, y0, tally);
-    if (!found || found->chain.size() != vertices) return 0.0;
+    const auto joined = betweenOver(last.ng, z, y0, tally);
+    if (!joined || joined->found.chain.size() != vertices) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
-    if (!solver_.isAlong(*found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
-    return densityAt(y0, seenSamples, *found);
+    if (!solver_.isAlong(joined->found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
+    return densityAt(y0, seenSamples, *joined);
 }
 
 bool RefractedLamps::isGlass(const PathVertex& v) const {
@@ -117,18 +159,20 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const double seenSamples = walker_.sampleSeenLight(z, rng, y0);
     const double samples = expected * seenSamples;
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
-    const auto found = between(z, y0, tally);
-    if (!found || int(found->chain.size()) > left) return std::nullopt;
+    const auto joined = drawBetween(z, y0, rng.uniformDouble(), tally);
+    if (!joined || int(joined->found.chain.size()) > left) return std::nullopt;
+    const FoundChain& found = joined->found;
 
     const BsdfEvaluation atEye =
-        walker_.scattering(z, z.toPrevious, Vec3(found->chain.firstDirection()));
+        walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
     light.assign(1, y0);
-    const float pdfWToEye = appendChain(walker_, found->chain, light);
-    const Rgb contribution = broughtBy(walker_, *found, light, z, atEye.f) * float(1.0 / samples);
+    const float pdfWToEye = appendChain(walker_, found.chain, light);
+    const Rgb contribution =
+        broughtBy(walker_, found, light, z, atEye.f) * float(1.0 / (samples * joined->pmf));
     if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
     const Closed closed =
         closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
-    path.refracted = expected * densityAt(y0, seenSamples, *found) / double(atEye.pdfWToLight);
+    path.refracted = expected * densityAt(y0, seenSamples, *joined) / double(atEye.pdfWToLight);
     return closed;
 }
 

@@ -10,6 +10,7 @@
 
 #include "libcore/bidir/close.h"
 #include "libcore/specular/chain_solver.h"
+#include "libcore/specular/glass_bodies.h"
 #include "libcore/specular/glass_boxes.h"
 #include "libcore/specular/glass_shadows.h"
 
@@ -46,18 +47,30 @@ class RefractedLamps {
         : walker_(walker),
           solver_(walker.scene()),
           glass_(glass),
+          bodies_(walker.scene()),
           shadows_(walker.scene(), glass) {}
 
+    struct Joined {
+        FoundChain found;
+        double pmf;  // of this one of all chains between the two
+    };
     bool isGlass(const PathVertex& v) const;
-    std::optional<FoundChain> between(const PathVertex& z, const PathVertex& y0,
+    std::optional<Joined> drawBetween(const PathVertex& z, const PathVertex& y0, double u,
                                       RayTally& tally) const;
-    double densityAt(const PathVertex& y0, double seenSamples, const FoundChain& found) const;
+    std::optional<Joined> betweenOver(const Vec3& normal, const PathVertex& z, const PathVertex& y0,
+                                      RayTally& tally) const;
+    std::optional<Joined> straight(const PathVertex& z, const PathVertex& y0,
+                                   RayTally& tally) const;
+    std::optional<Joined> out(const GlassBodies::WaysOut& ways, const GlassBodies::WayOut& way,
+                              const PathVertex& z, const PathVertex& y0, RayTally& tally) const;
+    double densityAt(const PathVertex& y0, double seenSamples, const Joined& joined) const;
     double densityOfChain(const PathVertex& z, const PathVertex& y0, const PathVertex& last,
                           std::size_t vertices, const Vec3& toChain, RayTally& tally) const;
 
     const Walker& walker_;
     ChainSolver solver_;
     GlassBoxes glass_;
+    GlassBodies bodies_;
     GlassShadows shadows_;
 };
 

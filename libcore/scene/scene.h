@@ -67,6 +67,10 @@ class Scene {
     std::vector<std::array<Vec3, 3>> trianglesOf(bool (*wanted)(const Material&)) const {
         return surfaces_.of(wanted);
     }
+    /// Likewise of one material.
+    std::vector<std::array<Vec3, 3>> trianglesOf(std::size_t material) const {
+        return surfaces_.of(material);
+    }
 
     /// Closest surface along a ray that leaves `origin` (offset off its surface; ng zero: no
     /// surface).

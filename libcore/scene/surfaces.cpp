@@ -235,14 +235,24 @@ Vec3 Surfaces::bumped(const SurfacePoint& point, const TextureUse& map, float sc
     return dot(unit, point.ng) > 1e-3f ? unit : point.ns;
 }
 
-std::vector<std::array<Vec3, 3>> Surfaces::of(bool (*wanted)(const Material&)) const {
+template <class Wanted>
+std::vector<std::array<Vec3, 3>> Surfaces::ofObjects(const Wanted& wanted) const {
     std::vector<std::array<Vec3, 3>> all;
     for (const SceneObject& object : baked_.objects) {
-        if (!wanted(materialOf(object))) continue;
+        if (!wanted(object)) continue;
         const std::size_t triangles = baked_.meshes[object.mesh].triangles.size();
         for (std::uint32_t k = 0; k < triangles; ++k) all.push_back(baked_.corners(object, k));
     }
     return all;
+}
+
+std::vector<std::array<Vec3, 3>> Surfaces::of(bool (*wanted)(const Material&)) const {
+    return ofObjects([&](const SceneObject& object) { return wanted(materialOf(object)); });
+}
+
+std::vector<std::array<Vec3, 3>> Surfaces::of(std::size_t material) const {
+    return ofObjects(
+        [&](const SceneObject& object) { return baked_.meshes[object.mesh].material == material; });
 }
 
 bool Surfaces::mostlyHoles(const TriangleAlpha& alpha) const {

@@ -58,6 +58,7 @@ class Surfaces {
     std::vector<std::array<Vec3, 3>> blocking(const ThreadPool& pool) const;
     /// Scene::trianglesOf.
     std::vector<std::array<Vec3, 3>> of(bool (*wanted)(const Material&)) const;
+    std::vector<std::array<Vec3, 3>> of(std::size_t material) const;
 
   private:
     struct MapAxes;
@@ -70,6 +71,8 @@ class Surfaces {
                 const MapAxes& axes) const;
     Vec3 grainAt(const SurfacePoint& point, const Material& material, const MapAxes& axes) const;
     bool mostlyHoles(const TriangleAlpha& alpha) const;
+    template <class Wanted>
+    std::vector<std::array<Vec3, 3>> ofObjects(const Wanted& wanted) const;
 
     const SceneDescription& description_;
     const BakedScene& baked_;

@@ -122,29 +122,67 @@ bool ChainSolver::stopsAllRaysAlong(const Chain& chain) const {
     return true;
 }
 
-std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query,
-                                                    RayTally& tally) const {
-    const ChainStart& start = query.start;
+/// What a ray runs through before the target, refracted by all of it.
+struct ChainSolver::Refracted {
+    Chain chain;
+    std::optional<Hit> first;  // what it meets, glass or not
+};
+
+ChainSolver::Refracted ChainSolver::refracted(const ChainQuery& query, const Vec3d& direction,
+                                              RayTally& tally) const {
     const ChainTarget& target = query.target;
-    const Vec3d way = target.wayFrom(Vec3d(start.position));
-    if (!(lengthSquared(way) > 0.0)) return std::nullopt;
-    Chain chain(MovingRay::from(Vec3d(start.position), normalize(way)));
+    Refracted ray{Chain(MovingRay::from(Vec3d(query.start.position), direction)), {}};
+    Chain& chain = ray.chain;
     while (chain.size() < query.most) {
-        const std::optional<Hit> hit = next(start, chain, tally);
+        const std::optional<Hit> hit = next(query.start, chain, tally);
         if (!hit) break;
         const bool behind = !target.infinite &&
                             double(hit->distance) >= length(target.wayFrom(chain.last().origin));
         if (behind) break;
+        if (chain.size() == 0) ray.first = hit;
         if (!chain.extend(scene_, *hit, {.event = ScatterEvent::DeltaTransmission})) break;
     }
+    return ray;
+}
+
+std::optional<FoundChain> ChainSolver::solvedThroughGlass(const ChainQuery& query,
+                                                          const Chain& chain,
+                                                          RayTally& tally) const {
     if (chain.size() == 0 || !stopsAllRaysAlong(chain)) return std::nullopt;
     const auto found = solve(query, chain, tally);
     // Newton's method may have left the surfaces that it began with.
     if (!found || !stopsAllRaysAlong(found->chain)) return std::nullopt;
+    const ChainTarget& target = query.target;
     if (target.infinite) return found;
     // A lamp may be of glass itself, and rounding put its surface before it.
     const double last = length(target.wayFrom(found->chain.last().origin));
-    return last > kAtTarget * length(way) ? found : std::nullopt;
+    const double whole = length(target.wayFrom(Vec3d(query.start.position)));
+    return last > kAtTarget * whole ? found : std::nullopt;
+}
+
+/// Where the surface of a body would refract a ray from within to the target, if it were flat.
+std::optional<Vec3d> ChainSolver::turnedToLeave(const ChainQuery& query,
+                                                const Refracted& ray) const {
+    if (!ray.first) return std::nullopt;
+    SurfacePoint point;
+    scene_.surfaceAt(*ray.first, point);
+    if (!(dot(ray.chain.firstDirection(), Vec3d(point.ng)) > 0.0)) return std::nullopt;
+    const Bsdf bsdf = scene_.bsdfAt(point);
+    if (!bsdf.has(ScatterEvent::DeltaTransmission) || !bsdf.bends()) return std::nullopt;
+    const Vec3d n(point.ns);
+    return refractedWay(Vec3d(query.start.position),
+                        {n, dot(n, Vec3d(point.position)), double(bsdf.relativeIndex(true))},
+                        query.target);
+}
+
+std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query, const Vec3d& direction,
+                                                    RayTally& tally) const {
+    const Refracted ray = refracted(query, direction, tally);
+    const auto found = solvedThroughGlass(query, ray.chain, tally);
+    if (found) return found;
+    const auto turned = turnedToLeave(query, ray);
+    if (!turned) return std::nullopt;
+    return solvedThroughGlass(query, refracted(query, *turned, tally).chain, tally);
 }
 
 bool ChainSolver::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,

@@ -7,6 +7,7 @@
 
 #include "libcore/scene/scene.h"
 #include "libcore/specular/chain.h"
+#include "libcore/specular/snell.h"
 
 namespace lacuna {
 
@@ -14,17 +15,6 @@ namespace lacuna {
 struct ChainStart {
     Vec3 position, ng;
     Vec3 side;  ///< unit, on the side that light comes from; zero: both
-};
-
-/// Where it ends: a light without an extent.
-struct ChainTarget {
-    Vec3 position;  ///< at infinity: unit direction towards the light
-    bool infinite = false;
-
-    /// As long as it is far; at infinity: unit.
-    Vec3d wayFrom(const Vec3d& place) const {
-        return infinite ? Vec3d(position) : Vec3d(position) - place;
-    }
 };
 
 /// What is searched for.
@@ -64,10 +54,12 @@ class ChainSolver {
     std::optional<FoundChain> solve(const ChainQuery& query, const Chain& seed,
                                     RayTally& tally) const;
 
-    /// The chain of refractions alone that the straight ray to the target leads to: by what it runs
-    /// through before the target, then by Newton's method. A function of the query. Through glass alone
-    /// that stops every ray.
-    std::optional<FoundChain> throughGlass(const ChainQuery& query, RayTally& tally) const;
+    /// The chain of refractions alone that a ray along a unit direction leads to: by what it runs through
+    /// before the target, then by Newton's method. Where that finds none and the ray leaves glass, once more
+    /// by where the surface would refract it to the target. A function of all three. Through glass alone that
+    /// stops every ray.
+    std::optional<FoundChain> throughGlass(const ChainQuery& query, const Vec3d& direction,
+                                           RayTally& tally) const;
     /// Whether a path of the same events between the same ends, which begins along a unit direction that
     /// is known but for an angle, is this chain.
     bool isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
@@ -77,6 +69,11 @@ class ChainSolver {
     std::optional<Chain> retrace(const ChainStart& start, const Vec3d& direction,
                                  const Chain& events, RayTally& tally) const;
     bool stopsAllRaysAlong(const Chain& chain) const;
+    struct Refracted;
+    Refracted refracted(const ChainQuery& query, const Vec3d& direction, RayTally& tally) const;
+    std::optional<FoundChain> solvedThroughGlass(const ChainQuery& query, const Chain& chain,
+                                                 RayTally& tally) const;
+    std::optional<Vec3d> turnedToLeave(const ChainQuery& query, const Refracted& ray) const;
 
     const Scene& scene_;
 };

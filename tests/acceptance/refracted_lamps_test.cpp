@@ -94,6 +94,23 @@ SceneBuilder glassAboveAStage() {
     return b;
 }
 
+/// What lies in a block of glass sees a lamp through several of its faces.
+void addBallInABlock(SceneBuilder& b) {
+    b.add(box({-0.5f, -0.3f, -0.5f}, {0.5f, 0.3f, 0.5f}, b.add(glass(1.4f))),
+          translation({-0.8, 0.4, -0.1}) * rotation({1, 3, 1}, 20) * scaling({-1, 1, 1}));
+    b.add(sphere({-0.8f, 0.4f, -0.1f}, 0.2f, 8, b.add(matte({0.7f, 0.3f, 0.2f}))));
+}
+
+/// Such a ball, in a corner of a room without lamps.
+SceneBuilder ballInABlock() {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.5f));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    addBallInABlock(b);
+    b.add(lookAt({0.3, 1.3, 2.4}, {-0.8, 0.4, -0.1}, 24));
+    return b;
+}
+
 struct Lit {
     std::string name;
     void (*light)(SceneBuilder&);
@@ -116,9 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Lit{"sky", [](SceneBuilder& b) { b.environment(constantSky(2)); }}),
     ByParameter());
 
-TEST_P(BehindGlass, isWhatWalksFind) {
-    SceneBuilder b = glassAboveAStage();
-    GetParam().light(b);
+void comparedWithWalks(SceneBuilder b, const Lit& lit) {
+    lit.light(b);
     const auto scene = b.build();
     Shot shot;
     shot.maxDepth = 7;
@@ -129,9 +145,16 @@ TEST_P(BehindGlass, isWhatWalksFind) {
     shot.iterations = 2000;
     for (const char* name : {"pt", "bpt", "spcbpt", "vcm"}) {
         expectSame(render(*scene, rowNamed(name), shot), walks,
-                   std::string(name) + ", " + GetParam().name + " behind glass",
-                   Judge::BlocksAndMean);
+                   std::string(name) + ", " + lit.name + " behind glass", Judge::BlocksAndMean);
     }
+}
+
+TEST_P(BehindGlass, isWhatWalksFind) {
+    comparedWithWalks(glassAboveAStage(), GetParam());
+}
+
+TEST_P(BehindGlass, isWhatWalksFindInABlock) {
+    comparedWithWalks(ballInABlock(), GetParam());
 }
 
 /// A lamp in a bulb: one surface, with the vertex inside it and outside.
@@ -155,6 +178,30 @@ TEST_P(RefractedLampsOf, lampInABulb) {
                Judge::BlocksAndMean);
 }
 
+/// The technique makes nearly all paths by which the lamp lights the ball through one face: not only those of
+/// the face that the straight way meets, and none is lost where that way would be reflected back.
+TEST(RefractedLamps, shineThroughEachFace) {
+    SceneBuilder b = ballInABlock();
+    b.add(quad({0.6f, 1.8f, 0.4f}, {0.2f, 0, 0}, {0, -0.2f, 0.2f}, b.add(emitter(Rgb(70.0f)))));
+    const auto scene = b.build();
+    Shot shot = quickShot(3000);
+    shot.maxDepth = 4;
+    double known = 0, all = 0;
+    const ThreadPool one(1);
+    shot.threads = &one;
+    shot.observer = [&](const PathEvent& event) {
+        const FullPath& path = event.path;
+        const bool throughOneFace = path.edges == 4 && path.delta[1] && !path.delta[2] &&
+                                    path.vertex[1]->event == ScatterEvent::DeltaTransmission;
+        if (event.technique.refracts() || !throughOneFace) return;
+        const double light = double(mean(event.contribution)) / event.weight;
+        all += light;
+        if (path.refracted > 0) known += light;
+    };
+    render(*scene, rowNamed("pt"), shot);
+    EXPECT_GT(known, 0.95 * all) << all;
+}
+
 /// What a path adds, by this technique and by an eye walk that runs into the lamp, are in the ratio of the
 /// densities that weights have. No weight would be wrong without it, only worse.
 TEST(RefractedLamps, knowTheirDensity) {
@@ -164,6 +211,7 @@ TEST(RefractedLamps, knowTheirDensity) {
         b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
         b.add(box({-3, 1, -3}, {3, 1.1f, 3}, b.add(glass())));
         b.add(sphere({0.5f, 0.5f, 0.2f}, 0.3f, 16, b.add(glass(1.2f)), true));
+        addBallInABlock(b);
         lacuna::Material lamp = emitter({2, 3, 4}, true);
         if (alpha) {
             lamp.alphaMode = lacuna::Material::Alpha::Blend;
@@ -217,6 +265,7 @@ TEST(RefractedLamps, countTheSameFromAllSides) {
     for (const float x : {-1.2f, -0.7f, -0.2f, 0.3f, 0.8f}) {  // the middle is lit best
         b.add(box({x, 1, -1.5f}, {x + 0.4f, 1.1f, 1.5f}, pane));
     }
+    addBallInABlock(b);
     b.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, b.add(emitter({2, 3, 4}))));
     b.add(quad({-2, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));  // a gap is left
     b.add(quad({0.06f, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));

@@ -321,6 +321,12 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
     FAIL() << "nothing found in 100 searches";
 }
 
+std::optional<FoundChain> throughGlass(const ChainSolver& solver, const ChainQuery& query,
+                                       RayTally& tally) {
+    const Vec3d straight = normalize(query.target.wayFrom(Vec3d(query.start.position)));
+    return solver.throughGlass(query, straight, tally);
+}
+
 /// Through both faces of a slab, as Snell's law has it: where the ray comes out, and how it spreads.
 TEST(ChainSolver, goesThroughASlabByItself) {
     SceneBuilder b;
@@ -336,7 +342,7 @@ TEST(ChainSolver, goesThroughASlabByItself) {
     };
     for (const double x : {0.1, 1.0, 3.0, 8.0}) {
         const ChainTarget lamp = lampAt(*scene, {x, 2.5, 0});
-        const auto found = solver.throughGlass({start, lamp, Chain::kMost}, tally);
+        const auto found = throughGlass(solver, {start, lamp, Chain::kMost}, tally);
         ASSERT_TRUE(found) << x;
         EXPECT_EQ(found->chain.size(), 2u);
         const Vec3d along = found->chain.firstDirection();
@@ -351,16 +357,30 @@ TEST(ChainSolver, goesThroughASlabByItself) {
     }
     // What lies at infinity is seen in the direction that it is in.
     const ChainTarget sky{normalize(Vec3{0.3f, 0.8f, 0.2f}), true};
-    const auto found = solver.throughGlass({start, sky, Chain::kMost}, tally);
+    const auto found = throughGlass(solver, {start, sky, Chain::kMost}, tally);
     ASSERT_TRUE(found);
     EXPECT_LT(length(found->chain.firstDirection() - Vec3d(sky.position)), 1e-6);
     EXPECT_NEAR(found->spread, 1.0, 1e-6);
     // Nothing bends the way to a lamp below it, and no way leads through a mirror.
-    EXPECT_FALSE(solver.throughGlass({start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
+    EXPECT_FALSE(throughGlass(solver, {start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
     SceneBuilder shut;
     shut.add(box({-50, 1, -50}, {50, 1.5f, 50}, shut.add(mirror())));
     const auto closed = shut.build();
-    EXPECT_FALSE(ChainSolver(*closed).throughGlass({floorOf(*closed), sky, Chain::kMost}, tally));
+    EXPECT_FALSE(throughGlass(ChainSolver(*closed), {floorOf(*closed), sky, Chain::kMost}, tally));
+}
+
+/// From under water the straight way to a low sun would be reflected back; the one that is found obeys Snell's law.
+TEST(ChainSolver, turnsWhatWouldBeReflectedBack) {
+    SceneBuilder b;
+    b.add(box({-50, -0.5f, -50}, {50, 1, 50}, b.add(glass(1.33f))));
+    const auto scene = b.build();
+    RayTally tally;
+    const ChainTarget sun{normalize(Vec3{3, 1, 0}), true};
+    const auto found =
+        throughGlass(ChainSolver(*scene), {floorOf(*scene), sun, Chain::kMost}, tally);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->chain.size(), 1u);
+    EXPECT_NEAR(found->chain.firstDirection().x, double(sun.position.x) / 1.33, 1e-6);
 }
 
 /// Glass with alpha is left out, also where only Newton's method comes to it: the straight way to the
@@ -377,7 +397,7 @@ TEST(ChainSolver, goesThroughNoAlphaThatItComesTo) {
         const auto scene = b.build();
         const ChainQuery query{floorOf(*scene), lampAt(*scene, {3, 3, 0}), Chain::kMost};
         RayTally tally;
-        const auto found = ChainSolver(*scene).throughGlass(query, tally);
+        const auto found = throughGlass(ChainSolver(*scene), query, tally);
         ASSERT_EQ(found.has_value(), !veiled);
         if (veiled) continue;
         EXPECT_GT(double(found->chain[0].point.position.x) + scene->centre().x, 1.05);

@@ -1,0 +1,236 @@
+#include "libcore/specular/glass_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace lacuna {
+
+namespace {
+
+using Triangle = std::array<Vec3, 3>;
+
+constexpr std::size_t kMostBodies = 64, kMostSides = 64;
+constexpr double kSlack = 1e-5;  // of the scene's radius
+constexpr double kSameFace =
+    1e-6;  // one minus the cosine between normals: a thousandth of a radian
+
+/// Numbers for corners, the same where they lie in the same place.
+std::vector<std::array<std::uint32_t, 3>> cornersOf(std::span<const Triangle> triangles) {
+    std::map<std::tuple<float, float, float>, std::uint32_t> numbers;
+    std::vector<std::array<std::uint32_t, 3>> all;
+    all.reserve(triangles.size());
+    for (const Triangle& triangle : triangles) {
+        std::array<std::uint32_t, 3> corners;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3& p = triangle[c];
+            corners[c] =
+                numbers.try_emplace({p.x, p.y, p.z}, std::uint32_t(numbers.size())).first->second;
+        }
+        all.push_back(corners);
+    }
+    return all;
+}
+
+/// What hangs together by shared corners, each as a list of triangles.
+std::vector<std::vector<Triangle>> connectedParts(std::span<const Triangle> triangles) {
+    const auto corners = cornersOf(triangles);
+    std::vector<std::uint32_t> leader(3 * triangles.size());
+    std::iota(leader.begin(), leader.end(), 0u);
+    const auto find = [&](std::uint32_t i) {
+        while (leader[i] != i) i = leader[i] = leader[leader[i]];
+        return i;
+    };
+    for (const auto& [a, b, c] : corners) {
+        leader[find(b)] = find(a);
+        leader[find(c)] = find(a);
+    }
+    std::map<std::uint32_t, std::vector<Triangle>> parts;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        parts[find(corners[i][0])].push_back(triangles[i]);
+    }
+    std::vector<std::vector<Triangle>> all;
+    for (auto& [first, part] : parts) all.push_back(std::move(part));
+    return all;
+}
+
+/// The mean of all corners: inside of what is convex.
+Vec3d middleOf(std::span<const Triangle> triangles) {
+    Vec3d sum;
+    for (const auto& [a, b, c] : triangles) sum += Vec3d(a) + Vec3d(b) + Vec3d(c);
+    return sum * (1.0 / (3.0 * double(triangles.size())));
+}
+
+Box boxAround(std::span<const Triangle> triangles) {
+    Box box{triangles[0][0], triangles[0][0]};
+    for (const Triangle& triangle : triangles) {
+        for (const Vec3& corner : triangle) {
+            box.low = min(box.low, corner);
+            box.high = max(box.high, corner);
+        }
+    }
+    return box;
+}
+
+/// A tenth of its size wider to each side, and by `slack`.
+Box widened(const Box& box, float slack) {
+    const Vec3 wide = (box.high - box.low) * 0.1f + Vec3{slack, slack, slack};
+    return {box.low - wide, box.high + wide};
+}
+
+bool contains(const Box& box, const Vec3& point) {
+    return point.x >= box.low.x && point.x <= box.high.x && point.y >= box.low.y &&
+           point.y <= box.high.y && point.z >= box.low.z && point.z <= box.high.z;
+}
+
+double volumeOf(const Box& box) {
+    const Vec3d size = Vec3d(box.high) - Vec3d(box.low);
+    return size.x * size.y * size.z;
+}
+
+/// Half of its surface.
+double areaOf(const Box& box) {
+    const Vec3d size = Vec3d(box.high) - Vec3d(box.low);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/// Whether each edge is that of two triangles.
+bool isClosed(std::span<const Triangle> triangles) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    for (const auto& corners : cornersOf(triangles)) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [a, b] = std::minmax(corners[i], corners[(i + 1) % 3]);
+            ++edges[{a, b}];
+        }
+    }
+    return std::ranges::all_of(edges, [](const auto& edge) { return edge.second == 2; });
+}
+
+}  // namespace
+
+bool GlassBodies::Body::contains(const Vec3d& point, double slack) const {
+    return std::ranges::all_of(faces, [&](const Interface& face) {
+        return dot(point, face.normal) - face.offset <= slack;
+    });
+}
+
+/// None where it is not convex, not closed, or round.
+std::optional<GlassBodies::Body> GlassBodies::bodyOf(std::span<const Triangle> triangles,
+                                                     double index, double slack) {
+    Body body{boxAround(triangles), {}};
+    const Vec3d middle = middleOf(triangles);
+    for (const auto& [a, b, c] : triangles) {
+        Vec3d n = normalize(cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)));
+        if (dot(n, Vec3d(a) - middle) < 0.0) n = -n;  // a mirrored copy's
+        const auto same = std::ranges::find_if(body.faces, [&](const Interface& face) {
+            return dot(face.normal, n) > 1.0 - kSameFace;
+        });
+        if (same != body.faces.end()) continue;
+        if (body.faces.size() == kMostFaces) return std::nullopt;
+        body.faces.push_back({n, dot(n, Vec3d(a)), index});
+    }
+    for (const Triangle& triangle : triangles) {
+        for (const Vec3& corner : triangle) {
+            if (!body.contains(Vec3d(corner), slack)) return std::nullopt;
+        }
+    }
+    if (!isClosed(triangles)) return std::nullopt;
+    const Vec3 wide = Vec3{1, 1, 1} * float(slack);
+    body.box = {body.box.low - wide, body.box.high + wide};
+    return body;
+}
+
+GlassBodies::GlassBodies(const Scene& scene) : slack_(kSlack * double(scene.radius())) {
+    const std::span<const Material> materials = scene.description().materials;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const Material& material = materials[i];
+        if (!mayBeSmoothGlass(material) || material.thin || !stopsAllRays(material)) continue;
+        for (const std::vector<Triangle>& part : connectedParts(scene.trianglesOf(i))) {
+            std::optional<Body> body = bodyOf(part, double(material.ior), slack_);
+            if (body) {
+                bodies_.push_back(std::move(*body));
+            } else {
+                addSides(part, double(material.ior));
+            }
+        }
+    }
+    // The largest, and of them the smallest first: what is inside of another one comes before it.
+    const auto volume = [](const Body& body) { return volumeOf(body.box); };
+    std::ranges::stable_sort(bodies_, std::greater(), volume);
+    if (bodies_.size() > kMostBodies) bodies_.resize(kMostBodies);
+    std::ranges::reverse(bodies_);
+    const auto area = [](const Side& side) { return areaOf(side.box); };
+    std::ranges::stable_sort(sides_, std::greater(), area);
+    if (sides_.size() > kMostSides) sides_.resize(kMostSides);
+}
+
+/// By the axis, of six, that triangles look along most.
+void GlassBodies::addSides(std::span<const Triangle> triangles, double index) {
+    const Box whole = boxAround(triangles);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const double sign : {-1.0, 1.0}) {
+            Vec3d normal, middle;  // weighed by area, which the length of n is twice
+            double area = 0.0;
+            std::vector<Triangle> those;
+            for (const Triangle& triangle : triangles) {
+                const auto& [a, b, c] = triangle;
+                const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+                if (!(n[axis] * sign >= std::sqrt(1.0 / 3.0) * length(n))) continue;
+                normal += n;
+                middle += (Vec3d(a) + Vec3d(b) + Vec3d(c)) * (length(n) / 3.0);
+                area += length(n);
+                those.push_back(triangle);
+            }
+            if (!(area > 0.0)) continue;
+            normal = normalize(normal);
+            sides_.push_back(
+                {{normal, dot(normal, middle) / area, index}, boxAround(those), whole});
+        }
+    }
+}
+
+const GlassBodies::WayOut* GlassBodies::WaysOut::through(const Vec3& normal) const {
+    const std::span<const WayOut> ways(ways_.data(), size_);
+    const auto likeness = [&](const WayOut& way) { return std::fabs(dot(way.normal, normal)); };
+    const auto best = std::ranges::max_element(ways, {}, likeness);
+    return best != ways.end() && likeness(*best) > 1.0f - 2.0f * float(kSameFace) ? &*best
+                                                                                  : nullptr;
+}
+
+GlassBodies::WaysOut GlassBodies::waysOut(const Vec3& from, const ChainTarget& target) const {
+    WaysOut ways;
+    const Vec3d start(from);
+    const auto around = std::ranges::find_if(bodies_, [&](const Body& body) {
+        return lacuna::contains(body.box, from) && body.contains(start, slack_);
+    });
+    if (around == bodies_.end()) return ways;
+    for (const Interface& face : around->faces) {
+        const std::optional<Vec3d> way = refractedWay(start, face, target);
+        if (!way) continue;
+        const double distance = (face.offset - dot(start, face.normal)) / dot(*way, face.normal);
+        if (!around->contains(start + *way * distance, slack_)) continue;
+        ways.ways_[ways.size_++] = {Vec3(face.normal), *way};
+    }
+    return ways;
+}
+
+GlassBodies::WaysOut GlassBodies::roughWaysOut(const Vec3& from, const ChainTarget& target) const {
+    WaysOut ways;
+    const Vec3d start(from);
+    for (const Side& side : sides_) {
+        if (ways.size_ == kMostFaces) break;
+        if (!contains(side.around, from)) continue;
+        const std::optional<Vec3d> way = refractedWay(start, side.plane, target);
+        if (!way) continue;
+        const double distance =
+            (side.plane.offset - dot(start, side.plane.normal)) / dot(*way, side.plane.normal);
+        if (!contains(widened(side.box, float(slack_)), Vec3(start + *way * distance))) continue;
+        ways.ways_[ways.size_++] = {Vec3(side.plane.normal), *way};
+    }
+    return ways;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,33 @@
+// The way from one point to another through a plane between two media.
+#pragma once
+
+#include <optional>
+
+#include "libcore/base/vec.h"
+
+namespace lacuna {
+
+/// Where a chain ends: a light without an extent, or a point of one.
+struct ChainTarget {
+    Vec3 position;  ///< at infinity: unit direction towards the light
+    bool infinite = false;
+
+    /// As long as it is far; at infinity: unit.
+    Vec3d wayFrom(const Vec3d& place) const {
+        return infinite ? Vec3d(position) : Vec3d(position) - place;
+    }
+};
+
+/// A plane, and what leads through it along its normal.
+struct Interface {
+    Vec3d normal;   ///< unit
+    double offset;  ///< of its points along the normal
+    double index;   ///< of the medium behind it over that in front of it
+};
+
+/// Unit direction from a point behind the plane that refraction at the plane turns to the target, by Snell's
+/// law; empty where the target is not in front of it, or there is none.
+std::optional<Vec3d> refractedWay(const Vec3d& from, const Interface& plane,
+                                  const ChainTarget& target);
+
+}  // namespace lacuna
