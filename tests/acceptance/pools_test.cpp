@@ -33,19 +33,19 @@ Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, do
     return picture;
 }
 
-std::vector<std::string> pooledRows() {
+std::vector<std::string> pooledRows(bool ofTests) {
     std::vector<std::string> names;
     for (const MethodRow& row : allRows()) {
-        if (!smallSettings(row, 1).empty() && !mergesBetweenDeltas(row)) names.push_back(row.name);
+        const bool pooled = !smallSettings(row, 1).empty() && !mergesBetweenDeltas(row);
+        if (pooled && isTestRow(row) == ofTests) names.push_back(row.name);
     }
     return names;
 }
 
-class TinyPoolsSlow : public testing::TestWithParam<std::string> {};
-
-TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
+/// The worst difference, of what is allowed.
+double worstOfTinyPools(const std::string& name) {
     const auto scene = diffuseBox().builder.build();
-    const MethodRow row = rowNamed(GetParam());
+    const MethodRow row = rowNamed(name);
     Shot shot;
     shot.maxDepth = 4;
     // The same view on a larger film, the same mean: a pool of 10^4, which is weighed at every
@@ -64,7 +64,7 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
         shot.candidates = candidates;
         shot.seed = std::uint64_t(candidates) + 1;
         const Picture small = renderUntilKnown(*scene, row, shot, kSmallError, 100000);
-        ASSERT_LT(small.standardError(), 1.01 * kSmallError * small.mean()) << "too noisy to judge";
+        EXPECT_LT(small.standardError(), 1.01 * kSmallError * small.mean()) << "too noisy to judge";
         const double error = std::hypot(small.standardError(), large.standardError());
         worst = std::max(worst, std::fabs(small.mean() - large.mean()) / (4.5 * error));
         // 4.5 standard errors: 7e-6 false alarms for each comparison.
@@ -76,10 +76,21 @@ TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
                     candidates, small.mean() / large.mean(), error / large.mean(),
                     int(small.pixels.iterations()));
     }
-    stabilityCase("tiny-pools", worst, kOfAllowed);
+    return worst;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TinyPoolsSlow, testing::ValuesIn(pooledRows()), ByParameter());
+class TinyPoolsSlow : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, TinyPoolsSlow, testing::ValuesIn(pooledRows(false)), ByParameter());
+TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
+    stabilityCase("tiny-pools", worstOfTinyPools(GetParam()), kOfAllowed);
+}
+
+class TinyPoolsNight : public TinyPoolsSlow {};
+INSTANTIATE_TEST_SUITE_P(RowsOfTests, TinyPoolsNight, testing::ValuesIn(pooledRows(true)),
+                         ByParameter());
+TEST_P(TinyPoolsNight, giveTheMeanOfALargePool) {
+    EXPECT_LT(worstOfTinyPools(GetParam()), 1.0);
+}
 
 }  // namespace
 }  // namespace lacuna::test

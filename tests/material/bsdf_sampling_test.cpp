@@ -185,19 +185,19 @@ void run(std::size_t first, std::size_t stride, std::size_t tests, int samples) 
 }
 
 TEST(BsdfSampling, SamplesFollowTheDensity) {
-    const std::size_t stride = 23;  // coprime to the grid's axes: meets every value of each
+    const std::size_t stride = 11;  // coprime to the grid's axes: meets every value of each
     run(0, stride, grid().size() / stride + 1, 20000);
 }
 
-class BsdfSamplingSlow : public ::testing::TestWithParam<std::size_t> {};
+class BsdfSamplingNight : public ::testing::TestWithParam<std::size_t> {};
 
 constexpr std::size_t kQuarters = 4;
 
-TEST_P(BsdfSamplingSlow, SamplesFollowTheDensityOnTheWholeGrid) {
+TEST_P(BsdfSamplingNight, SamplesFollowTheDensityOnTheWholeGrid) {
     run(GetParam(), kQuarters, grid().size(), 40000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Quarters, BsdfSamplingSlow, ::testing::Range<std::size_t>(0, kQuarters));
+INSTANTIATE_TEST_SUITE_P(Quarters, BsdfSamplingNight, ::testing::Range<std::size_t>(0, kQuarters));
 
 }  // namespace
 }  // namespace lacuna::test

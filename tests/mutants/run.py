@@ -170,7 +170,7 @@ class Build:
             print("\n".join(output.split("\n")[-30:]))
             return None
         if quick:
-            output, _ = run(["ctest", "--test-dir", self.directory, "-LE", "slow", "--timeout", self.seconds],
+            output, _ = run(["ctest", "--test-dir", self.directory, "-LE", "slow|night", "--timeout", self.seconds],
                             self.sources)
             return re.findall(r"^\s+\d+ - (\S+) \(", output, re.M)
         found, end = [], time.monotonic() + self.seconds

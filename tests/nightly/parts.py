@@ -68,7 +68,7 @@ def suite(preset, log, *chosen, environment=()):
 
 def sanitizers(options):
     """The suite under AddressSanitizer and UndefinedBehaviorSanitizer."""
-    count, seconds, failed = suite("debug", options.out / "sanitizers.log", *(["-LE", "slow"] if options.quick else []))
+    count, seconds, failed = suite("debug", options.out / "sanitizers.log", *(["-LE", "slow|night"] if options.quick else []))
     which = "without the slow tests" if options.quick else "the whole suite"
     return {"summary": f"AddressSanitizer and UndefinedBehaviorSanitizer, {which}: {count} tests in {seconds:.0f} s",
             "rows": [], "findings": failed}
@@ -76,7 +76,7 @@ def sanitizers(options):
 
 def threads(options):
     """What has threads, under ThreadSanitizer."""
-    count, seconds, failed = suite("threads", options.out / "threads.log", "-LE", "slow", "-R", THREADED,
+    count, seconds, failed = suite("threads", options.out / "threads.log", "-LE", "slow|night", "-R", THREADED,
                                    environment={"TSAN_OPTIONS": f"suppressions={SUPPRESSIONS}"})
     return {"summary": f"ThreadSanitizer, what has threads, without the slow tests: {count} tests in {seconds:.0f} s",
             "rows": [], "findings": failed}
@@ -96,7 +96,7 @@ def on_old_processor(program, log):
 
 def baseline(options):
     """What any x86-64 runs: the quick tests here, and those that start no other program on an old processor."""
-    count, seconds, failed = suite("baseline", options.out / "baseline.log", "-LE", "slow")
+    count, seconds, failed = suite("baseline", options.out / "baseline.log", "-LE", "slow|night")
     if not shutil.which(OLD_PROCESSOR[0]):
         raise Failed(f"{OLD_PROCESSOR[0]} is missing: apt-get install qemu-user")
     folder = ROOT / "build-baseline" / "tests"

@@ -163,9 +163,9 @@ TEST_F(RenderRanks, makeThePictureOfOneProcess) {
         expectThePictureOfOneProcess(method);
 }
 
-using RenderRanksSlow = RenderRanks;
+using RenderRanksNight = RenderRanks;
 
-TEST_F(RenderRanksSlow, makeThePictureOfOneProcessByEveryRow) {
+TEST_F(RenderRanksNight, makeThePictureOfOneProcessByEveryRow) {
     for (const MethodRow& row : methods()) expectThePictureOfOneProcess(row.name);
 }
 

@@ -56,7 +56,7 @@ TEST_F(RenderVerifySlow, OnOurScenes) {
         for (std::size_t m = 0; m < methods().size(); ++m) {
             const MethodRow& row = methods()[m];
             const Outcome o = run(
-                entry.path().string() + " -o @out.exr --width 48 --height 32 --iterations 1 " +
+                entry.path().string() + " -o @out.exr --width 32 --height 22 --iterations 1 " +
                 "--verify --json @o.json --quiet --rr-depth " +
                 depths[(scenes + m) % depths.size()] + " --method " + row.name + cheap(row.name));
             ASSERT_EQ(o.exitCode, 0) << o.err;

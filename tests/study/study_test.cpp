@@ -338,7 +338,9 @@ TEST_F(StudyRun, RefusesReferencesOfOtherScenesSizesAndDepths) {
     refused(other.text(), "--width 24 --height 16 --max-depth 5", "a picture of the scene");
 }
 
-TEST_F(StudyRun, InterruptedTenTimesItIsTheSame) {
+using StudyRunNight = StudyRun;
+
+TEST_F(StudyRunNight, InterruptedTenTimesItIsTheSame) {
     writeStudy(R"({"iterations": 60, "scenes": [{"file": "room.gltf",
         "options": {"width": 96, "height": 64, "max-depth": 5},
         "reference": {"method": "bpt", "iterations": 60, "parts": 2, "file": "reference.exr"}}]})");
