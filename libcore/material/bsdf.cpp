@@ -146,7 +146,9 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     if (transmission > 0.0f && glass() > 0.0f && !without.has(glassKind) &&
         !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
         flags |= kGlass;
-        flags |= thin ? unsigned(kThin) : 0u;
+        // What does not bend light lets it go straight on, whatever the normal, as a sheet does.
+        const bool straight = thin || (!roughGlass && ior_ == 1.0f);
+        flags |= straight ? unsigned(kThin) : 0u;
         flags |= roughGlass ? unsigned(kRoughGlass) : 0u;
     }
     if ((flags & kLayers) != 0 && alpha_ > 0.0f) {

@@ -185,6 +185,36 @@ TEST(BsdfContract, TiltedLobesAreAMixtureOfBothNormals) {
     for (const int n : pairs) EXPECT_GT(n, 1000);
 }
 
+// Glass with the index of air lets light straight on, whichever normal it is taken about: rounding must
+// not choose one.
+TEST(BsdfContract, GlassThatDoesNotBendHasOneEvent) {
+    Bsdf::Parameters p;
+    p.baseColor = Rgb(0.8f);
+    p.transmission = 1.0f;
+    p.ior = 1.0f;
+    p.thin = false;
+    p.roughness = 0.5f;
+    const Vec3 ng{0, 0, 1}, ns = normalize(Vec3{0.5f, 0, 1});
+    const Bsdf bsdf(p, ng, ns, tables());
+    int mixed = 0;
+    for (int i = 1; i < 90; ++i) {
+        const Vec3 e = polar(i, 190);
+        const float share = bsdf.shareAboutNg(e);
+        mixed += share > 0.01f && share < 0.99f ? 1 : 0;
+        const BsdfEvaluation exact = bsdf.evaluateDelta(e, -e, ScatterEvent::DeltaTransmission);
+        EXPECT_NEAR(exact.f.g, 0.8f, 1e-5f) << i;
+        EXPECT_NEAR(exact.pdfWToLight, std::abs(e.z), 1e-5f) << i;
+        for (const Vec3& off : {Vec3{1e-6f, 0, 0}, Vec3{0, 1e-6f, 0}, Vec3{0, 0, 1e-6f}}) {
+            const BsdfEvaluation rounded =
+                bsdf.evaluateDelta(e, normalize(-e + off), ScatterEvent::DeltaTransmission);
+            EXPECT_NEAR(rounded.f.g, exact.f.g, 1e-5f) << i;
+            EXPECT_NEAR(rounded.pdfWToLight, exact.pdfWToLight, 1e-5f) << i;
+            EXPECT_NEAR(rounded.pdfWToEye, exact.pdfWToEye, 1e-5f) << i;
+        }
+    }
+    EXPECT_GT(mixed, 5);
+}
+
 // No eye above the surface finds a lit one black, nor does any find it brighter than a white one.
 TEST(BsdfContract, TiltedNormalsLeaveNoEyeInTheDark) {
     Random random(18);
