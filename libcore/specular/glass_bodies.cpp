@@ -1,11 +1,12 @@
 #include "libcore/specular/glass_bodies.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numeric>
-#include <tuple>
+#include <unordered_map>
 
 namespace lacuna {
 
@@ -18,17 +19,29 @@ constexpr double kSlack = 1e-5;  // of the scene's radius
 constexpr double kSameFace =
     1e-6;  // one minus the cosine between normals: a thousandth of a radian
 
+struct HashOfPlace {
+    std::size_t operator()(const Vec3& p) const {
+        std::uint64_t hash = 0;
+        for (const float x : {p.x, p.y, p.z}) {
+            // Zero has two signs, which are one place.
+            hash = (hash ^ std::bit_cast<std::uint32_t>(x + 0.0f)) * 0x9e3779b97f4a7c15u;
+            hash ^= hash >> 32;
+        }
+        return std::size_t(hash);
+    }
+};
+
 /// Numbers for corners, the same where they lie in the same place.
 std::vector<std::array<std::uint32_t, 3>> cornersOf(std::span<const Triangle> triangles) {
-    std::map<std::tuple<float, float, float>, std::uint32_t> numbers;
+    std::unordered_map<Vec3, std::uint32_t, HashOfPlace> numbers;
+    numbers.reserve(triangles.size());
     std::vector<std::array<std::uint32_t, 3>> all;
     all.reserve(triangles.size());
     for (const Triangle& triangle : triangles) {
         std::array<std::uint32_t, 3> corners;
         for (std::size_t c = 0; c < 3; ++c) {
-            const Vec3& p = triangle[c];
-            corners[c] =
-                numbers.try_emplace({p.x, p.y, p.z}, std::uint32_t(numbers.size())).first->second;
+            const auto next = std::uint32_t(numbers.size());
+            corners[c] = numbers.try_emplace(triangle[c], next).first->second;
         }
         all.push_back(corners);
     }
@@ -48,13 +61,18 @@ std::vector<std::vector<Triangle>> connectedParts(std::span<const Triangle> tria
         leader[find(b)] = find(a);
         leader[find(c)] = find(a);
     }
-    std::map<std::uint32_t, std::vector<Triangle>> parts;
+    constexpr std::uint32_t kNone = ~0u;
+    std::vector<std::uint32_t> partOf(leader.size(), kNone);
+    std::vector<std::vector<Triangle>> parts;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        parts[find(corners[i][0])].push_back(triangles[i]);
+        std::uint32_t& part = partOf[find(corners[i][0])];
+        if (part == kNone) {
+            part = std::uint32_t(parts.size());
+            parts.emplace_back();
+        }
+        parts[part].push_back(triangles[i]);
     }
-    std::vector<std::vector<Triangle>> all;
-    for (auto& [first, part] : parts) all.push_back(std::move(part));
-    return all;
+    return parts;
 }
 
 /// The mean of all corners: inside of what is convex.
