@@ -41,6 +41,7 @@ std::vector<DeltaEvent> deltaEvents(const Case& c) {
     const Vec3d v = Vec3d(c.from), ng = Vec3d(c.bsdf.ng()), ns = Vec3d(c.bsdf.ns());
     const Vec3d coat(c.parameters.clearcoatNormal);
     const bool ownCoat = length(coat) > 0;
+    const bool straight = c.parameters.thin || c.parameters.ior == 1.0f;
     for (const auto& [normal, byNg] :
          {std::pair(ns, false), std::pair(ng, true), std::pair(coat, false)}) {
         const Vec3d n = normal * (c.front ? 1.0 : -1.0);
@@ -59,12 +60,12 @@ std::vector<DeltaEvent> deltaEvents(const Case& c) {
         add(ScatterEvent::DeltaReflection, normalize(n * (2 * cosine) - v), cosine);
         const double eta = c.indexOn(!c.front) / c.indexOn(c.front);
         const double sine2 = (1 - cosine * cosine) / (eta * eta);
-        if (c.parameters.thin || sine2 > 1) continue;
+        if (straight || sine2 > 1) continue;
         const double through = std::sqrt(1 - sine2);
         add(ScatterEvent::DeltaTransmission,
             normalize(n * (cosine / eta - through) - v * (1 / eta)), through);
     }
-    if (c.parameters.thin) {  // one event, whatever the normal
+    if (straight) {  // one event, whatever the normal
         out.push_back({ScatterEvent::DeltaTransmission, -c.from, std::abs(dot(v, ng))});
     }
     return out;
