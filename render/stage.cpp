@@ -57,6 +57,10 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
         const Stopwatch phase(stage.phaseSeconds["chains"]);
         stage.settings.chainSeeds = std::make_shared<const ChainSeeds>(*stage.scene, pool);
     }
+    if (stage.techniques.hits && stage.techniques.connects && stage.techniques.refractions) {
+        const Stopwatch phase(stage.phaseSeconds["glass"]);
+        stage.settings.smoothGlass = std::make_shared<const SmoothGlass>(*stage.scene);
+    }
     stage.phaseSeconds["load"] = loadSeconds;
     stage.setupSeconds = secondsSince(start);
     return stage;

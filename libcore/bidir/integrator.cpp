@@ -20,8 +20,10 @@ std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
 std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
     const Techniques& techniques = setup.techniques;
     if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
-    auto lamps = std::make_unique<const RefractedLamps>(setup.walker);
-    return lamps->empty() ? nullptr : std::move(lamps);
+    std::shared_ptr<const SmoothGlass> glass = setup.settings.smoothGlass;
+    if (!glass) glass = std::make_shared<const SmoothGlass>(setup.scene);
+    if (glass->empty()) return nullptr;
+    return std::make_unique<const RefractedLamps>(setup.walker, std::move(glass));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
 /// Of deep vertices there are many, and each carries little.
 double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
     constexpr double kByOrder[] = {1.0, 0.5, 0.25};
-    return kByOrder[std::min(order, 3) - 1] * shadows_.triesAt(z.position);
+    return kByOrder[std::min(order, 3) - 1] * glass_->shadows().triesAt(z.position);
 }
 
 /// The one chain that the straight ray leads to, or from within glass a guess: a function of the two, whichever
@@ -31,13 +31,15 @@ std::optional<RefractedLamps::Joined> RefractedLamps::straight(const PathVertex&
                                                                const PathVertex& y0,
                                                                RayTally& tally) const {
     const Vec3 way = y0.infinite() ? y0.position : y0.position - z.position;
+    if (!(lengthSquared(way) > 0.0f)) return std::nullopt;
     if (!z.bsdf.transmits() && leadsBehind(z, way)) return std::nullopt;
-    if (!glass_.mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
+    if (!glass_->boxes().mayLieOn(z.position, way, y0.infinite())) return std::nullopt;
     const ChainQuery query = queryOf(z, y0);
     const Vec3d straightOn = normalize(query.target.wayFrom(Vec3d(z.position)));
     std::optional<FoundChain> found = solver_.throughGlass(query, straightOn, tally);
     if (!found) {
-        const GlassBodies::WaysOut guesses = bodies_.roughWaysOut(z.position, query.target);
+        const GlassBodies::WaysOut guesses =
+            glass_->bodies().roughWaysOut(z.position, query.target);
         for (std::size_t i = 0; i < guesses.size() && !found; ++i) {
             found = solver_.throughGlass(query, guesses[i].direction, tally);
         }
@@ -60,7 +62,7 @@ std::optional<RefractedLamps::Joined> RefractedLamps::out(const GlassBodies::Way
 std::optional<RefractedLamps::Joined> RefractedLamps::drawBetween(const PathVertex& z,
                                                                   const PathVertex& y0, double u,
                                                                   RayTally& tally) const {
-    const GlassBodies::WaysOut ways = bodies_.waysOut(z.position, queryOf(z, y0).target);
+    const GlassBodies::WaysOut ways = glass_->bodies().waysOut(z.position, queryOf(z, y0).target);
     if (ways.size() == 0) return straight(z, y0, tally);
     const auto i = std::min(ways.size() - 1, std::size_t(u * double(ways.size())));
     return out(ways, ways[i], z, y0, tally);
@@ -71,14 +73,14 @@ std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& no
                                                                   const PathVertex& z,
                                                                   const PathVertex& y0,
                                                                   RayTally& tally) const {
-    const GlassBodies::WaysOut ways = bodies_.waysOut(z.position, queryOf(z, y0).target);
+    const GlassBodies::WaysOut ways = glass_->bodies().waysOut(z.position, queryOf(z, y0).target);
     if (ways.size() == 0) return straight(z, y0, tally);
     const GlassBodies::WayOut* way = ways.through(normal);
     return way ? out(ways, *way, z, y0, tally) : std::nullopt;
 }
 
-/// p(y_0) and the chain's pmf over what an eye walk that leaves z along the chain has for it, but for the direction's density
-/// at z: the events' probabilities, and how far the chain spreads a solid angle.
+/// p(y_0) and the chain's pmf over what an eye walk that leaves z along the chain has for it, but for the
+/// direction's density at z: the events' probabilities, and how far the chain spreads a solid angle.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
                                  const Joined& joined) const {
     const Lights& lights = walker_.lights();

@@ -4,26 +4,23 @@
 // their paths with it by weights. (theory.md, "Next event through glass")
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "libcore/bidir/close.h"
 #include "libcore/specular/chain_solver.h"
-#include "libcore/specular/glass_bodies.h"
-#include "libcore/specular/glass_boxes.h"
-#include "libcore/specular/glass_shadows.h"
+#include "libcore/specular/smooth_glass.h"
 
 namespace lacuna {
 
 class RefractedLamps {
   public:
-    /// `walker` must outlive it.
-    explicit RefractedLamps(const Walker& walker)
-        : RefractedLamps(walker, glassInBoxes(walker.scene())) {}
-
-    /// The scene has no lamp with a size and no sky, or no smooth glass.
-    bool empty() const { return shadows_.empty(); }
+    /// `walker` must outlive it. `glass`: of its scene, not empty.
+    RefractedLamps(const Walker& walker, std::shared_ptr<const SmoothGlass> glass)
+        : walker_(walker), solver_(walker.scene()), glass_(std::move(glass)) {}
 
     /// A path from an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2, through glass to a lamp; mostly
     /// none. Fills `light`, y_0 .. y_{s-1} with a refraction at each but y_0, and `path`.
@@ -38,18 +35,13 @@ class RefractedLamps {
     double ratioOf(const FullPath& path, RayTally& tally, bool anew = false) const;
 
     /// Whether there may be anything to sample at z: mostly, in most scenes, there is not.
-    bool mayBring(const PathVertex& z) const { return !z.infinite() && shadows_.reach(z.position); }
+    bool mayBring(const PathVertex& z) const {
+        return !z.infinite() && glass_->shadows().reach(z.position);
+    }
     /// n(z), the expected number of samples at an eye vertex of this order: the same, whichever walk made z.
     double samplesAt(const PathVertex& z, int order) const;
 
   private:
-    RefractedLamps(const Walker& walker, std::span<const BoxedTriangles> glass)
-        : walker_(walker),
-          solver_(walker.scene()),
-          glass_(glass),
-          bodies_(walker.scene()),
-          shadows_(walker.scene(), glass) {}
-
     struct Joined {
         FoundChain found;
         double pmf;  // of this one of all chains between the two
@@ -69,9 +61,7 @@ class RefractedLamps {
 
     const Walker& walker_;
     ChainSolver solver_;
-    GlassBoxes glass_;
-    GlassBodies bodies_;
-    GlassShadows shadows_;
+    std::shared_ptr<const SmoothGlass> glass_;
 };
 
 }  // namespace lacuna

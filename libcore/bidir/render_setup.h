@@ -14,6 +14,7 @@
 #include "libcore/bidir/scene_paths.h"
 #include "libcore/bidir/walk.h"
 #include "libcore/specular/chain_seeds.h"
+#include "libcore/specular/smooth_glass.h"
 
 namespace lacuna {
 
@@ -26,7 +27,8 @@ struct RenderSettings {
     std::uint64_t blockIterations = BlockPlan::kEndless;
     Sampling sampling = Sampling::Independent;
     Guides guides = {};
-    std::shared_ptr<const ChainSeeds> chainSeeds = {};  ///< of the scene; null: made where needed
+    std::shared_ptr<const ChainSeeds> chainSeeds = {};    ///< of the scene; null: made where needed
+    std::shared_ptr<const SmoothGlass> smoothGlass = {};  ///< likewise
     /// Leaves out the environment where the lens sees it: paths of one edge. (coverage_film.h)
     bool transparentBackground = false;
 };

@@ -8,18 +8,6 @@ namespace {
 
 using Triangle = std::array<Vec3, 3>;
 
-Box enclose(std::span<const Triangle> triangles, float margin) {
-    Box box{triangles[0][0], triangles[0][0]};
-    for (const Triangle& triangle : triangles) {
-        for (const Vec3& corner : triangle) {
-            box.low = min(box.low, corner);
-            box.high = max(box.high, corner);
-        }
-    }
-    const Vec3 wide{margin, margin, margin};
-    return Box{box.low - wide, box.high + wide};
-}
-
 std::size_t longestAxis(const Box& box) {
     const Vec3 size = box.high - box.low;
     return size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
@@ -29,7 +17,7 @@ std::size_t longestAxis(const Box& box) {
 void divide(std::span<Triangle> part, int divisions, float margin,
             std::vector<BoxedTriangles>& out) {
     if (part.empty()) return;
-    const Box box = enclose(part, margin);
+    const Box box = around(part, margin);
     const std::size_t axis = longestAxis(box);
     const float middle = 0.5f * (box.low[axis] + box.high[axis]);
     const auto second = std::stable_partition(part.begin(), part.end(), [&](const Triangle& t) {
@@ -50,6 +38,18 @@ std::vector<BoxedTriangles> inBoxes(std::vector<Triangle> triangles, int divisio
     std::vector<BoxedTriangles> parts;
     divide(triangles, divisions, margin, parts);
     return parts;
+}
+
+Box around(std::span<const Triangle> triangles, float margin) {
+    Box box{triangles[0][0], triangles[0][0]};
+    for (const Triangle& triangle : triangles) {
+        for (const Vec3& corner : triangle) {
+            box.low = min(box.low, corner);
+            box.high = max(box.high, corner);
+        }
+    }
+    const Vec3 wide{margin, margin, margin};
+    return Box{box.low - wide, box.high + wide};
 }
 
 Box around(std::span<const BoxedTriangles> parts) {

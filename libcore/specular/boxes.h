@@ -24,6 +24,9 @@ struct BoxedTriangles {
 std::vector<BoxedTriangles> inBoxes(std::vector<std::array<Vec3, 3>> triangles, int divisions,
                                     float margin);
 
+/// The box of some triangles, of which there must be one, and `margin` wider on each side.
+Box around(std::span<const std::array<Vec3, 3>> triangles, float margin);
+
 /// The box of some boxes, of which there must be one.
 Box around(std::span<const BoxedTriangles> parts);
 

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <unordered_map>
+
+#include "libcore/base/union_find.h"
 
 namespace lacuna {
 
@@ -15,9 +16,9 @@ namespace {
 using Triangle = std::array<Vec3, 3>;
 
 constexpr std::size_t kMostBodies = 64, kMostSides = 64;
-constexpr double kSlack = 1e-5;  // of the scene's radius
-constexpr double kSameFace =
-    1e-6;  // one minus the cosine between normals: a thousandth of a radian
+constexpr double kSlack = 1e-5;     // of the scene's radius
+constexpr double kSameFace = 1e-6;  // 1 - cosine between normals: a thousandth of a radian
+constexpr float kWider = 0.1f;      // of a side's box: it is not flat
 
 struct HashOfPlace {
     std::size_t operator()(const Vec3& p) const {
@@ -51,21 +52,16 @@ std::vector<std::array<std::uint32_t, 3>> cornersOf(std::span<const Triangle> tr
 /// What hangs together by shared corners, each as a list of triangles.
 std::vector<std::vector<Triangle>> connectedParts(std::span<const Triangle> triangles) {
     const auto corners = cornersOf(triangles);
-    std::vector<std::uint32_t> leader(3 * triangles.size());
-    std::iota(leader.begin(), leader.end(), 0u);
-    const auto find = [&](std::uint32_t i) {
-        while (leader[i] != i) i = leader[i] = leader[leader[i]];
-        return i;
-    };
+    UnionFind sets(3 * triangles.size());
     for (const auto& [a, b, c] : corners) {
-        leader[find(b)] = find(a);
-        leader[find(c)] = find(a);
+        sets.join(a, b);
+        sets.join(a, c);
     }
     constexpr std::uint32_t kNone = ~0u;
-    std::vector<std::uint32_t> partOf(leader.size(), kNone);
+    std::vector<std::uint32_t> partOf(3 * triangles.size(), kNone);
     std::vector<std::vector<Triangle>> parts;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        std::uint32_t& part = partOf[find(corners[i][0])];
+        std::uint32_t& part = partOf[sets.find(corners[i][0])];
         if (part == kNone) {
             part = std::uint32_t(parts.size());
             parts.emplace_back();
@@ -82,23 +78,6 @@ Vec3d middleOf(std::span<const Triangle> triangles) {
     return sum * (1.0 / (3.0 * double(triangles.size())));
 }
 
-Box boxAround(std::span<const Triangle> triangles) {
-    Box box{triangles[0][0], triangles[0][0]};
-    for (const Triangle& triangle : triangles) {
-        for (const Vec3& corner : triangle) {
-            box.low = min(box.low, corner);
-            box.high = max(box.high, corner);
-        }
-    }
-    return box;
-}
-
-/// A tenth of its size wider to each side, and by `slack`.
-Box widened(const Box& box, float slack) {
-    const Vec3 wide = (box.high - box.low) * 0.1f + Vec3{slack, slack, slack};
-    return {box.low - wide, box.high + wide};
-}
-
 bool contains(const Box& box, const Vec3& point) {
     return point.x >= box.low.x && point.x <= box.high.x && point.y >= box.low.y &&
            point.y <= box.high.y && point.z >= box.low.z && point.z <= box.high.z;
@@ -113,6 +92,13 @@ double volumeOf(const Box& box) {
 double areaOf(const Box& box) {
     const Vec3d size = Vec3d(box.high) - Vec3d(box.low);
     return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/// Where a ray meets a plane.
+Vec3d placeOn(const Interface& plane, const Vec3d& start, const Vec3d& direction) {
+    const double distance =
+        (plane.offset - dot(start, plane.normal)) / dot(direction, plane.normal);
+    return start + direction * distance;
 }
 
 /// Whether each edge is that of two triangles.
@@ -138,7 +124,7 @@ bool GlassBodies::Body::contains(const Vec3d& point, double slack) const {
 /// None where it is not convex, not closed, or round.
 std::optional<GlassBodies::Body> GlassBodies::bodyOf(std::span<const Triangle> triangles,
                                                      double index, double slack) {
-    Body body{boxAround(triangles), {}};
+    Body body{around(triangles, float(slack)), {}};
     const Vec3d middle = middleOf(triangles);
     for (const auto& [a, b, c] : triangles) {
         Vec3d n = normalize(cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)));
@@ -156,8 +142,6 @@ std::optional<GlassBodies::Body> GlassBodies::bodyOf(std::span<const Triangle> t
         }
     }
     if (!isClosed(triangles)) return std::nullopt;
-    const Vec3 wide = Vec3{1, 1, 1} * float(slack);
-    body.box = {body.box.low - wide, body.box.high + wide};
     return body;
 }
 
@@ -187,7 +171,7 @@ GlassBodies::GlassBodies(const Scene& scene) : slack_(kSlack * double(scene.radi
 
 /// By the axis, of six, that triangles look along most.
 void GlassBodies::addSides(std::span<const Triangle> triangles, double index) {
-    const Box whole = boxAround(triangles);
+    const Box whole = around(triangles, 0.0f);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const double sign : {-1.0, 1.0}) {
             Vec3d normal, middle;  // weighed by area, which the length of n is twice
@@ -204,8 +188,10 @@ void GlassBodies::addSides(std::span<const Triangle> triangles, double index) {
             }
             if (!(area > 0.0)) continue;
             normal = normalize(normal);
-            sides_.push_back(
-                {{normal, dot(normal, middle) / area, index}, boxAround(those), whole});
+            Box box = around(those, float(slack_));
+            const Vec3 wide = (box.high - box.low) * kWider;
+            box = {box.low - wide, box.high + wide};
+            sides_.push_back({{normal, dot(normal, middle) / area, index}, box, whole});
         }
     }
 }
@@ -221,15 +207,13 @@ const GlassBodies::WayOut* GlassBodies::WaysOut::through(const Vec3& normal) con
 GlassBodies::WaysOut GlassBodies::waysOut(const Vec3& from, const ChainTarget& target) const {
     WaysOut ways;
     const Vec3d start(from);
-    const auto around = std::ranges::find_if(bodies_, [&](const Body& body) {
-        return lacuna::contains(body.box, from) && body.contains(start, slack_);
-    });
-    if (around == bodies_.end()) return ways;
-    for (const Interface& face : around->faces) {
+    const auto body = std::ranges::find_if(
+        bodies_, [&](const Body& b) { return contains(b.box, from) && b.contains(start, slack_); });
+    if (body == bodies_.end()) return ways;
+    for (const Interface& face : body->faces) {
         const std::optional<Vec3d> way = refractedWay(start, face, target);
         if (!way) continue;
-        const double distance = (face.offset - dot(start, face.normal)) / dot(*way, face.normal);
-        if (!around->contains(start + *way * distance, slack_)) continue;
+        if (!body->contains(placeOn(face, start, *way), slack_)) continue;
         ways.ways_[ways.size_++] = {Vec3(face.normal), *way};
     }
     return ways;
@@ -243,9 +227,7 @@ GlassBodies::WaysOut GlassBodies::roughWaysOut(const Vec3& from, const ChainTarg
         if (!contains(side.around, from)) continue;
         const std::optional<Vec3d> way = refractedWay(start, side.plane, target);
         if (!way) continue;
-        const double distance =
-            (side.plane.offset - dot(start, side.plane.normal)) / dot(*way, side.plane.normal);
-        if (!contains(widened(side.box, float(slack_)), Vec3(start + *way * distance))) continue;
+        if (!contains(side.box, Vec3(placeOn(side.plane, start, *way)))) continue;
         ways.ways_[ways.size_++] = {Vec3(side.plane.normal), *way};
     }
     return ways;

@@ -17,6 +17,8 @@ class GlassBodies {
   public:
     static constexpr std::size_t kMostFaces = 24;  ///< of a body
 
+    /// None.
+    GlassBodies() = default;
     explicit GlassBodies(const Scene& scene);
 
     /// A way out of a body through one face.
@@ -54,7 +56,7 @@ class GlassBodies {
     /// What looks along one axis of a body that is round or hollow: a plane through its middle.
     struct Side {
         Interface plane;
-        Box box;     ///< around it
+        Box box;     ///< around it, and somewhat wider
         Box around;  ///< around the body
     };
     static std::optional<Body> bodyOf(std::span<const std::array<Vec3, 3>> triangles, double index,
@@ -63,7 +65,7 @@ class GlassBodies {
 
     std::vector<Body> bodies_;
     std::vector<Side> sides_;
-    double slack_;  // what coordinates may be off by
+    double slack_ = 0.0;  // what coordinates may be off by
 };
 
 }  // namespace lacuna

@@ -753,7 +753,7 @@ FAULTS = [
           {"material": "BsdfContract.*"}),
     Fault("ways-out-by-one-face", "what lies in a block of glass is lit through its first face alone",
           "libcore/specular/glass_bodies.cpp",
-          "    for (const Interface& face : around->faces) {\n", "    for (const Interface& face : around->faces) {\n        if (ways.size_ == 1) break;\n",
+          "    for (const Interface& face : body->faces) {\n", "    for (const Interface& face : body->faces) {\n        if (ways.size_ == 1) break;\n",
           {"acceptance": "RefractedLamps.*", "specular": "GlassBodies.*"}),
     Fault("ways-out-count-whole", "weights take each way out of a block as drawn every time",
           "libcore/bidir/refracted_lamps.cpp",
