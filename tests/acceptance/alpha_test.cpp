@@ -30,7 +30,10 @@ double coverageOf(std::size_t pixel) {
 }
 
 class TransparentBackground : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, TransparentBackground, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, TransparentBackground, testing::ValuesIn(rowNames(Rows::OfTheTool)),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, TransparentBackground, testing::ValuesIn(rowNames(Rows::OfTests)),
+                         ByParameter());
 
 TEST_P(TransparentBackground, holdsThingsByTheirShareOfThePixel) {
     const auto scene = sheetUnderTheSky().build();

@@ -25,7 +25,7 @@ TEST(EvenNumbersSlow, everyRowAgreesWithIndependentPathTracing) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);
     addLight(b, LightChoice::Sphere);
-    expectIndependentPathTracing(*b.build(), rowNames());
+    expectIndependentPathTracing(*b.build(), rowNames(Rows::OfTheTool));
 }
 
 TEST(EvenNumbersSlow, theSkyIsTheSame) {

@@ -12,7 +12,8 @@ namespace lacuna::test {
 namespace {
 
 class Exact : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, Exact, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, Exact, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, Exact, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
 /// Closed room with things in it, every surface of albedo a and emission 1 - a: radiance is
 /// 1 - a^depth where paths end after `depth` edges.

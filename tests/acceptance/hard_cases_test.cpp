@@ -24,7 +24,10 @@ class HardCases : public RowTest {
         expectSame(render(*scene, row(), shot), reference, row().name + ", " + what);
     }
 };
-INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::ValuesIn(rowNames(Rows::OfTheTool)),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, HardCases, testing::ValuesIn(rowNames(Rows::OfTests)),
+                         ByParameter());
 
 void expectBlack(const SceneBuilder& builder, const MethodRow& row, const std::string& what) {
     const Picture p = render(*builder.build(), row, quickShot(4));

@@ -22,7 +22,8 @@ class Limits : public RowTest {
                    Judge::BlocksAndMean);
     }
 };
-INSTANTIATE_TEST_SUITE_P(All, Limits, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, Limits, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, Limits, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
 // Materials
 // ----------------------------------------------------------------------------------------

@@ -14,7 +14,8 @@ namespace lacuna::test {
 namespace {
 
 class Panes : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, Panes, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, Panes, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, Panes, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
 double openOf(double cosine) {
     return 1 - fresnelDielectric(cosine, 1.5);

@@ -17,9 +17,9 @@ bool refracts(const MethodRow& row) {
     return t.hits && t.connects && t.refractions;
 }
 
-std::vector<std::string> rowsWithRefractions() {
+std::vector<std::string> rowsWithRefractions(Rows rows) {
     std::vector<std::string> names;
-    for (const std::string& name : rowNames()) {
+    for (const std::string& name : rowNames(rows)) {
         if (refracts(rowNamed(name))) names.push_back(name);
     }
     return names;
@@ -31,8 +31,10 @@ MethodRow withoutRefractions(MethodRow row) {
 }
 
 class RefractedLampsOf : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, RefractedLampsOf, testing::ValuesIn(rowsWithRefractions()),
-                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, RefractedLampsOf,
+                         testing::ValuesIn(rowsWithRefractions(Rows::OfTheTool)), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, RefractedLampsOf,
+                         testing::ValuesIn(rowsWithRefractions(Rows::OfTests)), ByParameter());
 
 /// A floor under a slab of glass under an even sky: what both faces let through, from everywhere. Of such a sky
 /// next event leaves all to hits, unless a guide tells where to look.
@@ -138,11 +140,11 @@ void comparedWithWalks(SceneBuilder b, const Lit& lit) {
     const auto scene = b.build();
     Shot shot;
     shot.maxDepth = 7;
-    shot.iterations = 8000;
+    shot.iterations = 4000;
     shot.seed = 100;
     const Picture walks = render(*scene, withoutRefractions(rowNamed("pt")), shot);
     shot.seed = 1;
-    shot.iterations = 2000;
+    shot.iterations = 1000;
     for (const char* name : {"pt", "bpt", "spcbpt", "vcm"}) {
         expectSame(render(*scene, rowNamed(name), shot), walks,
                    std::string(name) + ", " + lit.name + " behind glass", Judge::BlocksAndMean);

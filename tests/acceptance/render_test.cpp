@@ -279,9 +279,9 @@ double worstDeviation() {
     return current ? worstSoFar.share : 0.0;
 }
 
-std::vector<std::string> rowNames() {
+std::vector<std::string> rowNames(Rows rows) {
     std::vector<std::string> names;
-    for (const MethodRow& row : allRows()) {
+    for (const MethodRow& row : rowsOf(rows)) {
         const Merging merging = row.create(resolve(row, {}))->merging();
         if (merging.where != Merges::FirstFromEye) names.push_back(row.name);
     }

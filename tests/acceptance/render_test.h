@@ -127,7 +127,7 @@ inline constexpr const char* kOfAllowed = "of the deviation allowed";
 
 /// Those that every test of pictures is for: photon mapping alone is left out. What few photons in a
 /// small radius give is too noisy to judge, and merging_test.cpp is for the rest.
-std::vector<std::string> rowNames();
+std::vector<std::string> rowNames(Rows rows);
 /// With photon mapping, and all that merge as they are set: for tests of weights.
 std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);
@@ -160,7 +160,6 @@ Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
 bool mergesBetweenDeltas(const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
-/// The test's own rows, whose weights believe nonsense on purpose.
 bool isTestRow(const MethodRow& row);
 /// pt, its lamps picked by power: what rows do that pick by sight is judged by what does not.
 const MethodRow& pathTracer();

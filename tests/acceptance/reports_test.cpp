@@ -19,7 +19,8 @@ class Reports : public RowTest {
         return render(*builder.build(), pathTracer(), shot);
     }
 };
-INSTANTIATE_TEST_SUITE_P(All, Reports, testing::ValuesIn(rowNames()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, Reports, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, Reports, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
 /// Connections of vertices that nearly touch are as bright as they like, unless the weights know
 /// of it. Inside a coarse sphere with smooth normals there are such pairs everywhere.

@@ -33,6 +33,7 @@ SceneBuilder objects(const lacuna::Material& material) {
 struct Kind {
     std::string name;
     lacuna::Material (*make)(float roughness);
+    Rows rows = Rows::OfTheTool;
 };
 void PrintTo(const Kind& k, std::ostream* out) {
     *out << k.name;
@@ -63,7 +64,7 @@ TEST_P(RoughnessSlow, rowsAgreeDownToTheDelta) {
     for (const float roughness : {1.0f, 0.3f, 0.1f, kLimit, 1e-3f, 1e-4f, 0.0f}) {
         const auto scene = objects(GetParam().make(roughness)).build();
         const Picture reference = render(*scene, pathTracer(), shot(100, 200));
-        for (const std::string& name : rowNames()) {
+        for (const std::string& name : rowNames(GetParam().rows)) {
             const MethodRow row = rowNamed(name);
             const std::string what = name + ", roughness " + std::to_string(roughness);
             if (!seesThroughDeltas(row) && roughness < kSplatsSee) {
@@ -79,7 +80,7 @@ TEST_P(RoughnessSlow, rowsAgreeDownToTheDelta) {
 TEST_P(RoughnessSlow, theLimitMeetsTheDelta) {
     const auto rough = objects(GetParam().make(kLimit)).build();
     const auto delta = objects(GetParam().make(0)).build();
-    for (const std::string& name : rowNames()) {
+    for (const std::string& name : rowNames(GetParam().rows)) {
         const MethodRow row = rowNamed(name);
         if (!seesThroughDeltas(row)) continue;
         expectSame(render(*rough, row, shot(1, 150)), render(*delta, row, shot(2, 150)),
@@ -91,6 +92,11 @@ TEST_P(RoughnessSlow, theLimitMeetsTheDelta) {
 INSTANTIATE_TEST_SUITE_P(All, RoughnessSlow,
                          testing::Values(Kind{"metal", makeMetal}, Kind{"glass", makeGlass},
                                          Kind{"coat", makeCoat}),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, RoughnessSlow,
+                         testing::Values(Kind{"metal", makeMetal, Rows::OfTests},
+                                         Kind{"glass", makeGlass, Rows::OfTests},
+                                         Kind{"coat", makeCoat, Rows::OfTests}),
                          ByParameter());
 
 }  // namespace

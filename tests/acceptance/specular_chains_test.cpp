@@ -14,9 +14,9 @@
 namespace lacuna::test {
 namespace {
 
-std::vector<std::string> rowsWithChains() {
+std::vector<std::string> rowsWithChains(Rows rows) {
     std::vector<std::string> names;
-    for (const std::string& name : rowNames()) {
+    for (const std::string& name : rowNames(rows)) {
         const MethodRow row = rowNamed(name);
         const MethodRow set = asSet(row, resolve(row, {}));
         if (set.techniques.connects && set.techniques.chains) names.push_back(name);
@@ -25,7 +25,10 @@ std::vector<std::string> rowsWithChains() {
 }
 
 class SpecularChainsOf : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, SpecularChainsOf, testing::ValuesIn(rowsWithChains()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(All, SpecularChainsOf, testing::ValuesIn(rowsWithChains(Rows::OfTheTool)),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, SpecularChainsOf, testing::ValuesIn(rowsWithChains(Rows::OfTests)),
+                         ByParameter());
 
 /// How far a ray at an angle to the vertical, by its sine, comes to the side through slabs and air.
 struct Stack {

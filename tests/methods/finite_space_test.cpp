@@ -13,8 +13,10 @@ namespace lacuna::test {
 namespace {
 
 /// Two-sided 4.5 standard errors: a false alarm in 7e-6 of the comparisons, of which there are
-/// fewer than 50 here. With the error asked for, a bias of 0.1 % is seen almost surely.
+/// fewer than 250 here.
 constexpr double kStandardErrors = 4.5;
+/// How well the mean is known: a bias of 0.65 % is seen in 98 of 100 cases, or one of 1.3 %.
+constexpr double kError = 1e-3, kCoarseError = 2e-3;
 
 std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
     std::vector<std::string> settings = smallSettings(row, candidates);
@@ -54,6 +56,7 @@ void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
 struct Case {
     MethodRow row;
     std::vector<std::string> settings;
+    double relativeError = kError;
 };
 void PrintTo(const Case& c, std::ostream* out) {
     *out << c.row.name;
@@ -64,23 +67,29 @@ class FiniteSpaceRow : public testing::TestWithParam<Case> {};
 class FiniteSpacePoolsSlow : public testing::TestWithParam<Case> {};
 
 TEST_P(FiniteSpaceRow, meetsTheEnumeratedTruth) {
-    expectTruth(GetParam().row, GetParam().settings, 1e-3);
+    expectTruth(GetParam().row, GetParam().settings, GetParam().relativeError);
 }
 
 TEST_P(FiniteSpacePoolsSlow, meetsTheEnumeratedTruth) {
-    expectTruth(GetParam().row, GetParam().settings, 1e-3);
+    expectTruth(GetParam().row, GetParam().settings, GetParam().relativeError);
 }
 
-/// Every row as it is, with next event switched where it can be, with every other choice that a
-/// parameter offers (where it has cache points that are weighted, also with several around an eye
-/// vertex, with and without a reserve), and where it has cache points with more of them than the
-/// space has states. Guides are left out: they are of walks, and the space's are its own.
+/// Every row as it is.
 std::vector<Case> everyRow() {
     std::vector<Case> cases;
-    for (const MethodRow& row : allRows()) {
-        cases.push_back({row, settingsOf(row, 4)});
+    for (const MethodRow& row : allRows()) cases.push_back({row, settingsOf(row, 4)});
+    return cases;
+}
+
+/// Every row with next event switched where it can be, with every other choice that a parameter
+/// offers (where it has cache points that are weighted, also with several around an eye vertex, with
+/// and without a reserve), and where it has cache points with more of them than the space has states.
+/// Guides are left out: they are of walks, and the space's are its own.
+std::vector<Case> everyChoice(Rows rows, double relativeError) {
+    std::vector<Case> cases;
+    for (const MethodRow& row : rowsOf(rows)) {
         const auto add = [&](const std::string& setting) {
-            cases.push_back({row, settingsOf(row, 4)});
+            cases.push_back({row, settingsOf(row, 4), relativeError});
             cases.back().settings.push_back(setting);
         };
         bool nextEvent = true;
@@ -119,9 +128,8 @@ std::vector<Case> everyRow() {
 
 /// Every row as it is, and with merging where it is a switch.
 std::vector<Case> withMerging() {
-    std::vector<Case> cases;
+    std::vector<Case> cases = everyRow();
     for (const MethodRow& row : allRows()) {
-        cases.push_back({row, settingsOf(row, 4)});
         for (const Option& p : row.options) {
             if (p.name != "merge") continue;
             cases.push_back({row, settingsOf(row, 4)});
@@ -132,9 +140,9 @@ std::vector<Case> withMerging() {
 }
 
 /// Pools of one and two subpaths: there a density that reads the pool it weighs is off by percents.
-std::vector<Case> tinyPools() {
+std::vector<Case> tinyPools(Rows rows) {
     std::vector<Case> cases;
-    for (const MethodRow& row : allRows()) {
+    for (const MethodRow& row : rowsOf(rows)) {
         if (smallSettings(row, 1).empty()) continue;
         for (const int candidates : {1, 2}) cases.push_back({row, settingsOf(row, candidates)});
     }
@@ -150,7 +158,16 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FiniteSpaceRow, testing::ValuesIn(everyRow()), nameOf);
-INSTANTIATE_TEST_SUITE_P(All, FiniteSpacePoolsSlow, testing::ValuesIn(tinyPools()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Coarse, FiniteSpaceRow,
+                         testing::ValuesIn(everyChoice(Rows::OfTheTool, kCoarseError)), nameOf);
+INSTANTIATE_TEST_SUITE_P(Night, FiniteSpaceRow,
+                         testing::ValuesIn(everyChoice(Rows::OfTheTool, kError)), nameOf);
+INSTANTIATE_TEST_SUITE_P(NightOfTests, FiniteSpaceRow,
+                         testing::ValuesIn(everyChoice(Rows::OfTests, kError)), nameOf);
+INSTANTIATE_TEST_SUITE_P(All, FiniteSpacePoolsSlow, testing::ValuesIn(tinyPools(Rows::OfTheTool)),
+                         nameOf);
+INSTANTIATE_TEST_SUITE_P(NightOfTests, FiniteSpacePoolsSlow,
+                         testing::ValuesIn(tinyPools(Rows::OfTests)), nameOf);
 
 /// The counterexample [Nabata20a Fig. 3]: with the Q of the pool that is weighed, two subpaths lose
 /// 1.2 % of the picture (that of earlier pools loses nothing). The error asked for shows it in
@@ -160,13 +177,13 @@ TEST(FiniteSpaceBiased, qOfTheCurrentPoolIsSeen) {
     EXPECT_TRUE(current.biased);
     for (const MethodRow& row : allRows()) EXPECT_NE(row.name, current.name);
     const FiniteSpace space(3);
-    constexpr double kError = 1.5e-3;
+    constexpr double kEnough = 1.5e-3;
     const std::vector<std::string> settings = {"candidates=2", "preset=paper"};
-    const FiniteEstimate e = estimate(space, current, settings, 11, kError);
-    EXPECT_LT(e.standardError, 1.01 * kError * e.truth) << "too noisy to judge";
+    const FiniteEstimate e = estimate(space, current, settings, 11, kEnough);
+    EXPECT_LT(e.standardError, 1.01 * kEnough * e.truth) << "too noisy to judge";
     EXPECT_LT(e.mean, e.truth - kStandardErrors * e.standardError) << e.mean / e.truth;
     EXPECT_GT(e.mean, 0.97 * e.truth) << "a defect, not the correlation";
-    expectTruth(findMethod("risbpt"), settings, kError);
+    expectTruth(findMethod("risbpt"), settings, kEnough);
 }
 
 /// The method's density as it stands after its warm-up, on random paths of the space.
