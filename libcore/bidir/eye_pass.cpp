@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 
 namespace lacuna {
@@ -215,8 +216,10 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
         const Subpath eye = paths.eye.first(t);
         if (!SpecularChains::begin(eye, iteration.counts)) continue;
         if (share < 1.0 && rng.uniformDouble() >= share) continue;
-        const auto closed = chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath);
-        if (closed) deliver(*closed, paths, iteration, worker, result, 1.0 / share);
+        const auto bring = [&](const Closed& closed) {
+            deliver(closed, paths, iteration, worker, result, 1.0 / share);
+        };
+        chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath, std::ref(bring));
         result.clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
     }
 }

@@ -43,31 +43,38 @@ bool SpecularChains::reach(const FullPath& path) {
     return deltas > 0 && deltas <= Chain::kMost && int(deltas) + 1 < path.edges;
 }
 
-std::optional<Closed> SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally,
-                                             std::vector<PathVertex>& light, FullPath& path) const {
+void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<PathVertex>& light,
+                            FullPath& path,
+                            const std::function<void(const Closed&)>& deliver) const {
     const PathVertex& z = eye.back();
     const int left = walker_.limits().maxDepth - int(eye.size());
-    if (left < 1) return std::nullopt;
+    if (left < 1) return;
     const std::size_t most = std::min(std::size_t(left), Chain::kMost);
 
     const DiscreteDistribution::Pick pick = byPower_.sample(rng.uniformDouble());
     PathVertex y0;
-    if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return std::nullopt;
+    if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
-    const std::span<const ChainSeed> known = seeds_->near(y0.light, z.position, sideOfPath(z));
-    const std::optional<FoundChain> found = search_.draw(query, known, rng, tally);
-    if (!found) return std::nullopt;
+    const auto bring = [&](const FoundChain& found, const auto& repeats) {
+        light.assign(1, y0);
+        appendChain(walker_, found.chain, light);
+        const BsdfEvaluation atEye =
+            walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
+        const Rgb contribution = broughtBy(walker_, found, light, z, atEye.f);
+        if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return;
+        deliver(closeChain(walker_, light, eye, atEye.f, contribution * float(repeats()), path));
+    };
 
-    light.assign(1, y0);
-    appendChain(walker_, found->chain, light);
-    const BsdfEvaluation atEye =
-        walker_.scattering(z, z.toPrevious, Vec3(found->chain.firstDirection()));
-    const Rgb contribution = broughtBy(walker_, *found, light, z, atEye.f);
-    if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
+    const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
+    const std::vector<FoundChain> usual = search_.usual(query, ways, tally);
+    for (const FoundChain& found : usual) bring(found, [] { return 1.0; });
 
-    const double repeats = search_.reciprocalProbability(*found, query, known, rng, tally);
-    return closeChain(walker_, light, eye, atEye.f, contribution * float(repeats), path);
+    const std::optional<FoundChain> drawn = search_.draw(query, ways.all, rng, tally);
+    const auto isDrawn = [&](const FoundChain& found) { return isSame(found, *drawn); };
+    if (!drawn || std::ranges::any_of(usual, isDrawn)) return;
+    bring(*drawn,
+          [&] { return search_.reciprocalProbability(*drawn, query, ways.all, rng, tally); });
 }
 
 }  // namespace lacuna

@@ -3,8 +3,8 @@
 // makes them, the weight one. (theory.md, "Specular chains")
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "libcore/base/discrete.h"
@@ -29,11 +29,11 @@ class SpecularChains {
     /// Whether a path that no edge can be joined on ends in a chain to its light that sample() finds.
     static bool reach(const FullPath& path);
 
-    /// A path through one chain, mostly none: E of what is found is the light of all chains of up to
-    /// Chain::kMost vertices. Fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and
-    /// `path`.
-    std::optional<Closed> sample(Subpath eye, Rng& rng, RayTally& tally,
-                                 std::vector<PathVertex>& light, FullPath& path) const;
+    /// Paths through chains to one light: E of them all is the light of all chains of up to Chain::kMost
+    /// vertices. For each, fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and `path`,
+    /// and calls `deliver`.
+    void sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<PathVertex>& light,
+                FullPath& path, const std::function<void(const Closed&)>& deliver) const;
 
   private:
     const Walker& walker_;

@@ -1,5 +1,6 @@
 #include "libcore/specular/chain_search.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacuna {
@@ -8,9 +9,10 @@ namespace {
 
 constexpr double kSame = 1e-5;  // two chains, by the miss that would lie between them
 
-/// Whether two searches for the same target, of the same events, found the same chain.
-bool same(const FoundChain& a, const FoundChain& b) {
-    if (!onSameSideOfFold(a.missBy, b.missBy)) return false;
+}  // namespace
+
+bool isSame(const FoundChain& a, const FoundChain& b) {
+    if (!a.chain.sameEventsAs(b.chain) || !onSameSideOfFold(a.missBy, b.missBy)) return false;
     const Vec3d apart = b.chain.firstDirection() - a.chain.firstDirection();
     const auto& axes = a.chain.first().directionBy;
     const double u = dot(apart, axes[0]), v = dot(apart, axes[1]);
@@ -18,8 +20,6 @@ bool same(const FoundChain& a, const FoundChain& b) {
            std::hypot(a.missBy[0][0] * u + a.missBy[0][1] * v,
                       a.missBy[1][0] * u + a.missBy[1][1] * v) < kSame;
 }
-
-}  // namespace
 
 /// A third of the rays each: straight to the light, since glass before it turns rays a little; to the
 /// surfaces where chains may begin, wherever they are; and to what the start sees, so that what is near
@@ -85,6 +85,20 @@ std::optional<Chain> ChainSearch::seed(const ChainQuery& query, std::span<const 
     return along(known[rng.below(std::uint32_t(known.size()))], query, tally);
 }
 
+std::vector<FoundChain> ChainSearch::usual(const ChainQuery& query, const WaysNearby& ways,
+                                           RayTally& tally) const {
+    std::vector<FoundChain> chains;
+    chains.reserve(ways.kinds.size());
+    for (const std::uint8_t kind : ways.kinds) {
+        const auto from = along(ways.all[kind], query, tally);
+        const auto found = from ? solver_.solve(query, *from, tally) : std::nullopt;
+        if (!found) continue;
+        const auto isFound = [&](const FoundChain& other) { return isSame(other, *found); };
+        if (std::ranges::none_of(chains, isFound)) chains.push_back(*found);
+    }
+    return chains;
+}
+
 std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query,
                                             std::span<const ChainSeed> known, Rng& rng,
                                             RayTally& tally) const {
@@ -104,7 +118,7 @@ double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQu
         // Newton's method keeps the events.
         if (from && from->sameEventsAs(found.chain)) {
             const std::optional<FoundChain> again = solver_.solve(query, *from, tally);
-            if (again && same(found, *again)) return sum;
+            if (again && isSame(found, *again)) return sum;
         }
         if (n >= kAll && (n & (n - 1)) == 0) {
             if (rng.uniform() < 0.5f) return sum;

@@ -1,9 +1,12 @@
 // The chains of mirrors and smooth glass that join a point with a light that no ray can hit: one is
-// searched from a random ray by Newton's method [Hanika15], and its probability estimated by
-// searching until it is found again [Zeltner20]. (theory.md, "Specular chains")
+// searched along the ways that light is known to come, and from a random ray, by Newton's method
+// [Hanika15]. The probability of what a random ray found is estimated by searching until it is found
+// again [Zeltner20]. (theory.md, "Specular chains")
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "libcore/base/rng.h"
 #include "libcore/specular/chain_seeds.h"
@@ -11,6 +14,9 @@
 #include "libcore/specular/triangles_by_area.h"
 
 namespace lacuna {
+
+/// Whether two searches for the same target found the same chain.
+bool isSame(const FoundChain& a, const FoundChain& b);
 
 class ChainSearch {
   public:
@@ -21,8 +27,12 @@ class ChainSearch {
     /// Nothing in the scene that a chain could begin at.
     bool empty() const { return triangles_.empty(); }
 
+    // Whether a chain sees its start and the light is for the caller to ask.
+
+    /// The chains that one way of each kind leads to, each chain once.
+    std::vector<FoundChain> usual(const ChainQuery& query, const WaysNearby& ways,
+                                  RayTally& tally) const;
     /// One search from a random ray; empty where it finds no chain.
-    /// Whether the chain sees its start and the light is for the caller to ask.
     /// `known`, ways to places nearby, may be any, as long as reciprocalProbability is given the same.
     std::optional<FoundChain> draw(const ChainQuery& query, std::span<const ChainSeed> known,
                                    Rng& rng, RayTally& tally) const;

@@ -14,6 +14,7 @@ constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
 constexpr std::size_t kNear = 16;  // seeds that a place has
 constexpr int kBits = 9;           // of a code, for each coordinate
+constexpr float kAlike = 0.98f;    // cosine between ways of one kind
 
 /// Where a way ended, and the way.
 struct Arrival {
@@ -103,7 +104,51 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
             byLight_[light].codes.push_back(code);
             byLight_[light].seeds.push_back(*seed);
         }
+        const std::span<const ChainSeed> seeds = byLight_[light].seeds;
+        const std::size_t most = std::min(kNear, seeds.size());
+        byLight_[light].kinds.resize(seeds.size() - most + 1);
+        threads.forEach(byLight_[light].kinds.size(), [&](std::size_t first) {
+            byLight_[light].kinds[first] = kindsOf(seeds.subspan(first, most));
+        });
     }
+}
+
+/// Ways are of a kind by their events and by where they come from; the one in the middle stands for it.
+ChainSeeds::Kinds ChainSeeds::kindsOf(std::span<const ChainSeed> ways) {
+    struct Kind {
+        std::uint8_t place;
+        Vec3 direction;
+        int count;
+    };
+    const auto fromMiddle = [&](std::size_t place) {
+        return place > ways.size() / 2 ? place - ways.size() / 2 : ways.size() / 2 - place;
+    };
+    std::array<Kind, kNear> kinds;
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        const ChainSeed& way = ways[i];
+        const Vec3 direction = normalize(way.towards - way.end);
+        const auto end = kinds.begin() + std::ptrdiff_t(size);
+        const auto kind = std::find_if(kinds.begin(), end, [&](const Kind& k) {
+            const ChainSeed& other = ways[k.place];
+            return other.size == way.size && other.events == way.events &&
+                   dot(k.direction, direction) > kAlike;
+        });
+        if (kind == end) {
+            kinds[size++] = {std::uint8_t(i), direction, 1};
+        } else {
+            ++kind->count;
+            if (fromMiddle(i) < fromMiddle(kind->place)) kind->place = std::uint8_t(i);
+        }
+    }
+    const std::span found = std::span(kinds).first(size);
+    std::ranges::stable_sort(found, std::ranges::greater(), &Kind::count);
+    Kinds often;
+    for (const Kind& kind : found) {
+        if (kind.count < 2 || often.size == often.places.size()) break;
+        often.places[often.size++] = kind.place;
+    }
+    return often;
 }
 
 /// The axis that the side lies nearest to, then a Morton code: what is near in these is mostly near in
@@ -120,15 +165,15 @@ std::uint32_t ChainSeeds::codeOf(const Vec3& place, const Vec3& side) const {
            spread(cell(place.y)) << 1 | spread(cell(place.z)) << 2;
 }
 
-std::span<const ChainSeed> ChainSeeds::near(std::uint32_t light, const Vec3& place,
-                                            const Vec3& side) const {
+WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {
     if (byLight_.empty()) return {};
     const OfLight& of = byLight_[light];
     const std::size_t most = std::min(kNear, of.seeds.size());
     const auto at =
         std::size_t(std::ranges::lower_bound(of.codes, codeOf(place, side)) - of.codes.begin());
     const std::size_t first = std::min(at - std::min(at, kNear / 2), of.seeds.size() - most);
-    return std::span(of.seeds).subspan(first, most);
+    const Kinds& kinds = of.kinds[first];
+    return {std::span(of.seeds).subspan(first, most), std::span(kinds.places).first(kinds.size)};
 }
 
 }  // namespace lacuna

@@ -93,14 +93,17 @@ TEST_P(SpecularChainsOf, pointLightThroughSolidGlassSeenThroughSolidGlass) {
 
 /// A floor that a mirror shows the sun to, seen in another mirror: against the sun's image itself.
 TEST_P(SpecularChainsOf, sunInAMirrorSeenInAMirror) {
-    const auto stage = [](bool mirrored) {
+    const Vec3d way{1.0, -0.8, 0};
+    const double reflected = 0.8 + 0.2 * std::pow(1 - normalize(way).x, 5);
+    const auto stage = [&](bool mirrored) {
         SceneBuilder b;
         b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
         b.add(quad({-9, 0, -3}, {18, 0, 0}, {0, 9, 0}, b.add(mirror(Rgb(0.9f)))));
         // A wall keeps the sun from the floor but for the mirror opposite.
         b.add(quad({-1.5f, 0, 2}, {0, 3, 0}, {0, 0, -4}));
         if (mirrored) b.add(quad({3, 0, 9}, {0, 9, 0}, {0, 0, -18}, b.add(mirror(Rgb(0.8f)))));
-        b.add(directionalLight({mirrored ? 1.0 : -1.0, -0.8, 0}, Rgb(mirrored ? 3.0f : 2.4f)));
+        b.add(directionalLight({mirrored ? way.x : -way.x, way.y, way.z},
+                               Rgb(float(mirrored ? 3.0 : 3.0 * reflected))));
         b.add(lookAt({0, 0.6f, 3}, {0, 0.2f, -3}, 0.8));
         return b.build();
     };

@@ -1,6 +1,7 @@
 // Chains of mirrors and smooth glass: how they move with their first ray, and how many a search finds.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -209,7 +210,7 @@ TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     const ChainTarget lamp = lampAt(*scene, {0.3, 2, 0.2});
     const ThreadPool threads(1);
     const ChainSeeds seeds(*scene, threads);
-    const auto known = seeds.near(1, floorOf(*scene).position, {0, 1, 0});
+    const auto known = seeds.near(1, floorOf(*scene).position, {0, 1, 0}).all;
     EXPECT_EQ(known.size(), 16u);
     ChainSeed nowhere{{5, 5, 5}, {5, 4, 5}, {}, 3}, here{floorOf(*scene).position, {}, {}, 1};
     here.towards = here.end;
@@ -239,12 +240,68 @@ TEST(ChainSeeds, areWaysThatLightComes) {
             start.position =
                 start.position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.4f;
             const ChainQuery query{start, targets[light], Chain::kMost};
-            const auto near = seeds.near(light, start.position, {0, 1, 0});
+            const auto near = seeds.near(light, start.position, {0, 1, 0}).all;
             found[0] += search.draw(query, {}, rng, tally) ? 1 : 0;
             found[1] += search.draw(query, near, rng, tally) ? 1 : 0;
         }
         EXPECT_GT(found[1], 1.2 * found[0]);
     }
+}
+
+bool areAlike(const ChainSeed& a, const ChainSeed& b) {
+    return a.size == b.size && a.events == b.events &&
+           dot(normalize(a.towards - a.end), normalize(b.towards - b.end)) > 0.98f;
+}
+
+/// A kind came twice at least, and is no other's.
+TEST(ChainSeeds, comeInKinds) {
+    const auto scene = litThroughGlass().build();
+    const ThreadPool threads(2);
+    const ChainSeeds seeds(*scene, threads);
+    Rng rng(7, 0, StreamKind::User, 0);
+    int several = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 place =
+            floorOf(*scene).position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.8f;
+        const WaysNearby ways = seeds.near(1, place, {0, 1, 0});
+        ASSERT_FALSE(ways.kinds.empty());
+        several += ways.kinds.size() > 1 ? 1 : 0;
+        for (const std::uint8_t k : ways.kinds) {
+            const ChainSeed& way = ways.all[k];
+            const auto isLike = [&](const ChainSeed& other) { return areAlike(way, other); };
+            EXPECT_GE(std::ranges::count_if(ways.all, isLike), 2);
+            EXPECT_EQ(std::ranges::count(ways.kinds, k), 1);
+        }
+    }
+    EXPECT_GT(several, 20);
+}
+
+/// Chains that known ways lead to, and those that are drawn beside them, are all that there are: the four of
+/// the test before.
+TEST(ChainSearch, findsTheRestBesideWhatIsUsual) {
+    const auto scene = litThroughGlass().build();
+    const ChainQuery query{floorOf(*scene), lampAt(*scene, {0.3, 2, 0.2}), 2};
+    const ThreadPool threads(1);
+    const ChainSeeds seeds(*scene, threads);
+    const WaysNearby ways = seeds.near(1, query.start.position, {0, 1, 0});
+    const ChainSearch search(*scene);
+    RayTally tally;
+    const std::vector<FoundChain> usual = search.usual(query, ways, tally);
+    EXPECT_GE(usual.size(), 1u);
+    Rng rng(8, 0, StreamKind::User, 0);
+    Moments rest;
+    for (int i = 0; i < 20000; ++i) {
+        const auto found = search.draw(query, ways.all, rng, tally);
+        const auto isFound = [&](const FoundChain& other) { return isSame(other, *found); };
+        const bool isNew = found && std::ranges::none_of(usual, isFound);
+        rest.add(isNew ? search.reciprocalProbability(*found, query, ways.all, rng, tally) : 0.0);
+    }
+    const double all = double(usual.size()) + rest.mean();
+    EXPECT_LT(std::fabs(all - 4), 5 * rest.standardError())  // 6e-7 by chance
+        << usual.size() << " and " << rest.mean() << " +- " << rest.standardError();
+    // A kind that came twice leads to a chain that is there once.
+    const std::array<std::uint8_t, 2> twice{ways.kinds[0], ways.kinds[0]};
+    EXPECT_EQ(search.usual(query, {ways.all, twice}, tally).size(), 1u);
 }
 
 /// They are those of the light that is asked for, and of one side of a thin sheet.
@@ -258,7 +315,7 @@ TEST(ChainSeeds, knowSidesAndLights) {
             // Each lamp shines on one face.
             const bool shines = (light == 2) == (up > 0);
             int ends = 0;
-            for (const ChainSeed& seed : seeds.near(light, sheet, {0, up, 0})) {
+            for (const ChainSeed& seed : seeds.near(light, sheet, {0, up, 0}).all) {
                 ends += length(seed.end - sheet) < 0.5f && (seed.towards.y - seed.end.y) * up > 0;
             }
             EXPECT_EQ(ends, shines ? 16 : 0) << "light " << light << ", side " << up;
@@ -267,7 +324,7 @@ TEST(ChainSeeds, knowSidesAndLights) {
     SceneBuilder noGlass;
     noGlass.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, noGlass.add(matte(Rgb(0.5f)))));
     noGlass.add(pointLight({0, 1, 0}, Rgb(1)));
-    EXPECT_TRUE(ChainSeeds(*noGlass.build(), threads).near(0, {}, {0, 1, 0}).empty());
+    EXPECT_TRUE(ChainSeeds(*noGlass.build(), threads).near(0, {}, {0, 1, 0}).all.empty());
 }
 
 /// A convex mirror shows a lamp once from anywhere.
