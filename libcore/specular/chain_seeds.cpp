@@ -166,7 +166,7 @@ std::uint32_t ChainSeeds::codeOf(const Vec3& place, const Vec3& side) const {
 }
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {
-    if (byLight_.empty()) return {};
+    if (byLight_.empty() || byLight_[light].seeds.empty()) return {};
     const OfLight& of = byLight_[light];
     const std::size_t most = std::min(kNear, of.seeds.size());
     const auto at =

@@ -47,7 +47,7 @@ class ChainSeeds {
     struct OfLight {
         std::vector<std::uint32_t> codes;  // ascending
         std::vector<ChainSeed> seeds;      // in that order
-        std::vector<Kinds> kinds;          // of the seeds from each one on
+        std::vector<Kinds> kinds;          // of the ways that a place has, by the first of them
     };
     std::vector<OfLight> byLight_;  // of all lights; empty: there are none
     float half_ = 1.0f;             // of the cube that places lie in
