@@ -71,8 +71,7 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     for (const FoundChain& found : usual) bring(found, [] { return 1.0; });
 
     const std::optional<FoundChain> drawn = search_.draw(query, ways.all, rng, tally);
-    const auto isDrawn = [&](const FoundChain& found) { return isSame(found, *drawn); };
-    if (!drawn || std::ranges::any_of(usual, isDrawn)) return;
+    if (!drawn || isAmong(usual, *drawn)) return;
     bring(*drawn,
           [&] { return search_.reciprocalProbability(*drawn, query, ways.all, rng, tally); });
 }

@@ -9,8 +9,7 @@ namespace {
 
 constexpr double kSame = 1e-5;  // two chains, by the miss that would lie between them
 
-}  // namespace
-
+/// Whether two searches for the same target found the same chain.
 bool isSame(const FoundChain& a, const FoundChain& b) {
     if (!a.chain.sameEventsAs(b.chain) || !onSameSideOfFold(a.missBy, b.missBy)) return false;
     const Vec3d apart = b.chain.firstDirection() - a.chain.firstDirection();
@@ -19,6 +18,12 @@ bool isSame(const FoundChain& a, const FoundChain& b) {
     return lengthSquared(apart) < 1e-2 &&
            std::hypot(a.missBy[0][0] * u + a.missBy[0][1] * v,
                       a.missBy[1][0] * u + a.missBy[1][1] * v) < kSame;
+}
+
+}  // namespace
+
+bool isAmong(std::span<const FoundChain> chains, const FoundChain& found) {
+    return std::ranges::any_of(chains, [&](const FoundChain& c) { return isSame(c, found); });
 }
 
 /// A third of the rays each: straight to the light, since glass before it turns rays a little; to the
@@ -92,9 +97,7 @@ std::vector<FoundChain> ChainSearch::usual(const ChainQuery& query, const WaysNe
     for (const std::uint8_t kind : ways.kinds) {
         const auto from = along(ways.all[kind], query, tally);
         const auto found = from ? solver_.solve(query, *from, tally) : std::nullopt;
-        if (!found) continue;
-        const auto isFound = [&](const FoundChain& other) { return isSame(other, *found); };
-        if (std::ranges::none_of(chains, isFound)) chains.push_back(*found);
+        if (found && !isAmong(chains, *found)) chains.push_back(*found);
     }
     return chains;
 }

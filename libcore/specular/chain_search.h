@@ -15,8 +15,8 @@
 
 namespace lacuna {
 
-/// Whether two searches for the same target found the same chain.
-bool isSame(const FoundChain& a, const FoundChain& b);
+/// Whether a chain is one of those that other searches for the same target found.
+bool isAmong(std::span<const FoundChain> chains, const FoundChain& found);
 
 class ChainSearch {
   public:

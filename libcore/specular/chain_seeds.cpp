@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "libcore/specular/triangles_by_area.h"
@@ -121,7 +122,7 @@ ChainSeeds::Kinds ChainSeeds::kindsOf(std::span<const ChainSeed> ways) {
         int count;
     };
     const auto fromMiddle = [&](std::size_t place) {
-        return place > ways.size() / 2 ? place - ways.size() / 2 : ways.size() / 2 - place;
+        return std::abs(int(place) - int(ways.size() / 2));
     };
     std::array<Kind, kNear> kinds;
     std::size_t size = 0;

@@ -2,6 +2,7 @@
 // density that reads the current pool is off by about 0.8 % at one subpath and hides above.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -33,11 +34,16 @@ Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, do
     return picture;
 }
 
-std::vector<std::string> pooledRowsOfANight() {
+std::vector<std::string> rowsOfADay() {
+    return {"spcbpt", "sharebpt"};
+}
+std::vector<std::string> rowsOfANight() {
+    const std::vector<std::string> day = rowsOfADay();
     std::vector<std::string> names;
     for (const MethodRow& row : allRows()) {
         const bool pooled = !smallSettings(row, 1).empty() && !mergesBetweenDeltas(row);
-        if (pooled && row.name != "spcbpt" && row.name != "sharebpt") names.push_back(row.name);
+        const bool byDay = std::ranges::find(day, row.name) != day.end();
+        if (pooled && !byDay) names.push_back(row.name);
     }
     return names;
 }
@@ -81,9 +87,8 @@ double worstOfTinyPools(const std::string& name) {
 
 /// FiniteSpacePoolsSlow holds every row to the same; here rows have the caches of a scene.
 class TinyPoolsSlow : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Day, TinyPoolsSlow, testing::Values("spcbpt", "sharebpt"), ByParameter());
-INSTANTIATE_TEST_SUITE_P(Night, TinyPoolsSlow, testing::ValuesIn(pooledRowsOfANight()),
-                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Day, TinyPoolsSlow, testing::ValuesIn(rowsOfADay()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, TinyPoolsSlow, testing::ValuesIn(rowsOfANight()), ByParameter());
 TEST_P(TinyPoolsSlow, giveTheMeanOfALargePool) {
     const double worst = worstOfTinyPools(GetParam());
     if (isTestRow(rowNamed(GetParam()))) {

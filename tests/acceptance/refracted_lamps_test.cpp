@@ -140,11 +140,11 @@ void comparedWithWalks(SceneBuilder b, const Lit& lit) {
     const auto scene = b.build();
     Shot shot;
     shot.maxDepth = 7;
-    shot.iterations = 4000;
+    shot.iterations = 8000;
     shot.seed = 100;
     const Picture walks = render(*scene, withoutRefractions(rowNamed("pt")), shot);
     shot.seed = 1;
-    shot.iterations = 1000;
+    shot.iterations = 2000;
     for (const char* name : {"pt", "bpt", "spcbpt", "vcm"}) {
         expectSame(render(*scene, rowNamed(name), shot), walks,
                    std::string(name) + ", " + lit.name + " behind glass", Judge::BlocksAndMean);

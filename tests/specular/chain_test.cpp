@@ -292,8 +292,7 @@ TEST(ChainSearch, findsTheRestBesideWhatIsUsual) {
     Moments rest;
     for (int i = 0; i < 20000; ++i) {
         const auto found = search.draw(query, ways.all, rng, tally);
-        const auto isFound = [&](const FoundChain& other) { return isSame(other, *found); };
-        const bool isNew = found && std::ranges::none_of(usual, isFound);
+        const bool isNew = found && !isAmong(usual, *found);
         rest.add(isNew ? search.reciprocalProbability(*found, query, ways.all, rng, tally) : 0.0);
     }
     const double all = double(usual.size()) + rest.mean();
