@@ -52,7 +52,10 @@ std::string methodHelp(const MethodRow& row) {
             "vertex, where nothing else joins the path";
     }
     if (t.hits && t.connects && t.refractions) {
-        text += "\n  refractions    smooth glass between a lamp or the sky and an eye vertex";
+        text +=
+            "\n  refractions    smooth glass between a lamp or the sky and an eye vertex, and "
+            "mirrors where "
+            "nothing else joins the path";
     }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {

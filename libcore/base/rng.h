@@ -24,6 +24,7 @@ enum class StreamKind : std::uint32_t {
     Mattes,      ///< coverage by objects and materials, index = pixel
     Refraction,  ///< next event through glass along an eye path, index = pixel
     Sharing,     ///< what a pixel takes of the eye walks of others, index = pixel
+    KnownWay,    ///< next event along known ways, along an eye path, index = pixel
 };
 
 /// A point of a sequence whose points lie evenly (owen.h).

@@ -62,6 +62,20 @@ Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, cons
     return z.throughput * atEye * through * y0.scatter * y0.throughput * float(spread);
 }
 
+double walkDensity(const Walker& walker, const FoundChain& found, const PathVertex& y0) {
+    const Chain& chain = found.chain;
+    double walk = found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
+                  double(walker.lights().opacity(y0.light, y0.lightUv));
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const ChainVertex& v = chain[i];
+        // Guided walks go on by such an event more seldom, where there are others.
+        const BsdfEvaluation e =
+            walker.scattering(vertexOf(walker, v), v.toEye, v.toLight, v.event.event);
+        walk *= double(e.pdfWToLight) / v.measure;
+    }
+    return walk;
+}
+
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally) {
     for (std::size_t i = 0; i < light.size(); ++i) {
         const PathVertex& end = i + 1 < light.size() ? light[i + 1] : z;

@@ -19,6 +19,9 @@ float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVert
 /// densities of y_0 and of z's own walk. `light` ends with the chain.
 Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, const PathVertex& z,
               const Rgb& atEye);
+/// Density of the walk from z along the chain to y_0, per what its direction at z has: by the events'
+/// probabilities, and by how far the chain spreads a solid angle.
+double walkDensity(const Walker& walker, const FoundChain& found, const PathVertex& y0);
 /// Whether all edges from y_0 to z are open, by a ray each.
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally);
 

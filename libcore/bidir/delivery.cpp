@@ -1,6 +1,6 @@
 #include "libcore/bidir/delivery.h"
 
-#include "libcore/bidir/refracted_lamps.h"
+#include "libcore/bidir/known_ways.h"
 
 namespace lacuna {
 
@@ -32,9 +32,7 @@ PathObserver Delivery::setObserver(PathObserver observer) {
 Delivery::Weighed Delivery::weigh(const Contribution& c, const TechniqueCounts& counts,
                                   RayTally& tally) const {
     const Lights& lights = setup_.walker.lights();
-    if (counts.refractedLamps && !c.closed.technique.refracts()) {
-        c.path.refracted = counts.refractedLamps->ratioOf(c.path, tally);
-    }
+    if (!c.closed.technique.refracts()) c.path.refracted = refractedRatioOf(c.path, counts, tally);
     const double weight = misWeight(c.path, counts, c.closed.technique);
     const Rgb scaled = c.closed.contribution * float(c.scale);
     return {weight, lights.inFileUnits(scaled * float(weight)),

@@ -9,9 +9,6 @@ namespace lacuna {
 
 namespace {
 constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
-/// Of the vertices that chains begin at, those that search where that is nearly every one: searches at
-/// all of them would take more than three times as long as the rest of the path.
-constexpr double kShareWithoutSplats = 0.25;
 /// Side of the squares whose pixels share walks.
 constexpr int kSide = 4;
 static_assert(kSide * kSide == kTile);
@@ -184,6 +181,7 @@ void EyePass::searchBehindGlass(const PixelPaths& paths, const Iteration& iterat
         chain(paths, iteration, worker, result);
     }
     if (iteration.counts.refractedLamps) refract(paths, iteration, worker, result);
+    if (iteration.counts.knownWays) goKnownWays(paths, iteration, worker, result);
 }
 
 /// An eye subpath's last vertex with the photons around it.
@@ -210,7 +208,7 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
 /// The eye path's vertices with lights that no ray can hit, over mirrors and through smooth glass.
 void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                     TaskResult& result) const {
-    const double share = iteration.counts.onlyDirect() ? kShareWithoutSplats : 1.0;
+    const double share = SpecularChains::shareOfVertices(iteration.counts);
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Chain, paths.sample.number);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
@@ -239,6 +237,21 @@ void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worke
         }
         const auto closed = lamps.sample(eye, *rng, result.tally, worker.chain, worker.fullPath);
         if (closed) deliver(*closed, paths, iteration, worker, result);
+        result.clock.lap([&] { return TechniqueGroup::ofRefraction(connectionOrder(eye)); });
+    }
+}
+
+/// And over the chains that light is known to come by.
+void EyePass::goKnownWays(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                          TaskResult& result) const {
+    Rng rng = setup_.sampler.stream(iteration.number, StreamKind::KnownWay, paths.sample.number);
+    for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
+        const Subpath eye = paths.eye.first(t);
+        const auto bring = [&](const Closed& closed) {
+            deliver(closed, paths, iteration, worker, result);
+        };
+        iteration.counts.knownWays->sample(eye, iteration.counts, rng, result.tally, worker.chain,
+                                           worker.fullPath, std::ref(bring));
         result.clock.lap([&] { return TechniqueGroup::ofRefraction(connectionOrder(eye)); });
     }
 }

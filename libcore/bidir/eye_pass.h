@@ -1,6 +1,7 @@
 // The eye subpaths of an iteration, one per pixel: hits, picks, connections, merges, chains.
 #pragma once
 
+#include "libcore/bidir/known_ways.h"
 #include "libcore/bidir/light_pass.h"
 #include "libcore/bidir/photon_grid.h"
 #include "libcore/bidir/refracted_lamps.h"
@@ -108,6 +109,8 @@ class EyePass {
                TaskResult& result) const;
     void refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                  TaskResult& result) const;
+    void goKnownWays(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
+                     TaskResult& result) const;
     void select(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                 TaskResult& result) const;
     void open(const PixelPaths& paths, Joints& joints, const Iteration& iteration,

@@ -35,8 +35,8 @@ struct FullPath {
     bool hittable = false;            ///< an eye walk can run into this light
     bool splattable = true;           ///< k = 1 under a punctual light is not splatted
     std::span<const Rgb> absorption;  ///< of the scene, by material (absorption.h)
-    /// How many times as likely next event through smooth glass makes this path as an eye walk does
-    /// without roulette, s = 0; zero where it cannot (refracted_lamps.h).
+    /// How many times as likely next event through smooth glass or along known ways makes this path as an
+    /// eye walk does without roulette, s = 0; zero where it cannot (refracted_lamps.h, known_ways.h).
     double refracted = 0.0;
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;

@@ -17,6 +17,15 @@ std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
     return chains->empty() ? nullptr : std::move(chains);
 }
 
+std::unique_ptr<const KnownWays> knownWaysOf(const RenderSetup& setup) {
+    const Techniques& techniques = setup.techniques;
+    if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
+    std::shared_ptr<const ChainSeeds> seeds = setup.settings.chainSeeds;
+    if (!seeds) seeds = std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
+    if (!seeds->anyOfLamps()) return nullptr;
+    return std::make_unique<const KnownWays>(setup.walker, std::move(seeds));
+}
+
 std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
     const Techniques& techniques = setup.techniques;
     if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
@@ -36,6 +45,7 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
       workers_(threads, settings.limits.maxDepth),
       chains_(chainsOf(setup_)),
       refractedLamps_(refractedLampsOf(setup_)),
+      knownWays_(knownWaysOf(setup_)),
       eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), delivery_, workers_) {}
 
 Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,
@@ -53,6 +63,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     counts.merges = method_->merging().where;
     counts.mergeSamples = double(pooledSubpaths()) * mergeArea(mergeRadius);
     counts.refractedLamps = refractedLamps_.get();
+    if (counts.merges == Merges::Nowhere) counts.knownWays = knownWays_.get();
     counts.sharing = method_->sharing();
     counts.rouletteDepth = setup_.settings.limits.rouletteDepth;
     return counts;

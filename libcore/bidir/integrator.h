@@ -75,6 +75,7 @@ class BidirIntegrator {
     PhotonGrid photons_;
     std::unique_ptr<const SpecularChains> chains_;          // null: the row or the scene has none
     std::unique_ptr<const RefractedLamps> refractedLamps_;  // likewise
+    std::unique_ptr<const KnownWays> knownWays_;            // likewise
     EyePass eyePass_;
     std::optional<double> footprint_;  // once a radius comes from it
 };

@@ -79,7 +79,7 @@ double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t
 }
 
 double refractedSamples(const FullPath& path, const TechniqueCounts& counts) {
-    if (!counts.refractedLamps || path.refracted == 0.0) return 0.0;
+    if (path.refracted == 0.0) return 0.0;
     double survival = path.eyeRoulette(0, counts.rouletteDepth);
     for (int i = 1; path.delta[std::size_t(i)]; ++i) {
         survival *= path.eyeRoulette(i, counts.rouletteDepth);

@@ -19,15 +19,16 @@
 
 namespace lacuna {
 
+class KnownWays;
 class RefractedLamps;
 
 /// What made a path, by its t vertices from the eye.
 struct Technique {
     enum class By : std::uint8_t {
-        Strategy,    ///< s = edges + 1 - t from the light
-        Merge,       ///< of light's last vertex with the eye's
-        Chain,       ///< specular, which no other technique makes (specular_chains.h)
-        Refraction,  ///< next event through glass (refracted_lamps.h)
+        Strategy,  ///< s = edges + 1 - t from the light
+        Merge,     ///< of light's last vertex with the eye's
+        Chain,     ///< specular, which no other technique makes (specular_chains.h)
+        Refraction,  ///< next event through glass (refracted_lamps.h), along known ways (known_ways.h)
     };
     int t;
     By by = By::Strategy;
@@ -56,6 +57,7 @@ struct TechniqueCounts {
     /// in which photons count. Times the densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;
     const RefractedLamps* refractedLamps = nullptr;  ///< null: no next event through glass
+    const KnownWays* knownWays = nullptr;            ///< null: no next event along known ways
     Sharing sharing = {};                            ///< of eye walks, by pixels
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
@@ -96,7 +98,7 @@ inline double mergedSamples(const FullPath& path, const TechniqueCounts& counts,
     return path.mergesAt(i, counts.merges) ? counts.mergeSamples : 0.0;
 }
 
-/// Of next event through glass, in samples of s = 0; zero where it does not exist.
+/// Of next event through glass and along known ways, in samples of s = 0; zero where it does not exist.
 double refractedSamples(const FullPath& path, const TechniqueCounts& counts);
 
 /// Weight of the technique that made the path (1 <= t <= edges + 1; merges: 2 <= t <= edges), in

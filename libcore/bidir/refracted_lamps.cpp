@@ -83,18 +83,9 @@ std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& no
 /// direction's density at z: the events' probabilities, and how far the chain spreads a solid angle.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
                                  const Joined& joined) const {
-    const Lights& lights = walker_.lights();
-    const Chain& chain = joined.found.chain;
-    double walk = joined.found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
-                  double(lights.opacity(y0.light, y0.lightUv));
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-        const ChainVertex& v = chain[i];
-        // Guided walks go on by such an event more seldom, where there are others.
-        const BsdfEvaluation e =
-            walker_.scattering(vertexOf(walker_, v), v.toEye, v.toLight, v.event.event);
-        walk *= double(e.pdfWToLight) / v.measure;
-    }
-    const double samples = double(lightPointOf(lights, y0).pdf) * seenSamples * joined.pmf;
+    const double walk = walkDensity(walker_, joined.found, y0);
+    const double samples =
+        double(lightPointOf(walker_.lights(), y0).pdf) * seenSamples * joined.pmf;
     return walk > 0.0 ? samples / walk : 0.0;
 }
 

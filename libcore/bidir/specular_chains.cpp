@@ -36,6 +36,17 @@ bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
     return true;
 }
 
+bool SpecularChains::begin(const FullPath& path, std::size_t i, const TechniqueCounts& counts) {
+    const PathVertex& z = *path.vertex[i];
+    if (z.kind != VertexKind::Surface || !z.connectable()) return false;
+    const bool connects = counts.connectsIndirect();
+    for (std::size_t k = std::size_t(path.edges); i < k; ++i) {
+        const bool joined = i + 1 == k ? counts.splats > 0.0 : connects;
+        if (joined && !path.delta[i] && !path.delta[i + 1]) return false;
+    }
+    return true;
+}
+
 bool SpecularChains::reach(const FullPath& path) {
     if (path.hittable) return false;
     std::size_t deltas = 0;
@@ -67,7 +78,7 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     };
 
     const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
-    const std::vector<FoundChain> usual = search_.usual(query, ways, tally);
+    const std::vector<FoundChain> usual = search_.follower().usual(query, ways, tally);
     for (const FoundChain& found : usual) bring(found, [] { return 1.0; });
 
     const std::optional<FoundChain> drawn = search_.draw(query, ways.all, rng, tally);

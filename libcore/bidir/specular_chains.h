@@ -25,6 +25,14 @@ class SpecularChains {
     /// techniques that `counts` tells of could join an edge of a path that goes on from there through
     /// a chain.
     static bool begin(Subpath eye, const TechniqueCounts& counts);
+    /// The same of x_i on a full path, i < edges.
+    static bool begin(const FullPath& path, std::size_t i, const TechniqueCounts& counts);
+
+    /// Of the vertices that chains begin at, those that search: where that is nearly every one, searches at
+    /// all of them would take more than three times as long as the rest of the path.
+    static double shareOfVertices(const TechniqueCounts& counts) {
+        return counts.onlyDirect() ? 0.25 : 1.0;
+    }
 
     /// Whether a path that no edge can be joined on ends in a chain to its light that sample() finds.
     static bool reach(const FullPath& path);

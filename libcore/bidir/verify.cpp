@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "libcore/bidir/absorption.h"
-#include "libcore/bidir/refracted_lamps.h"
+#include "libcore/bidir/known_ways.h"
 
 namespace lacuna {
 
@@ -233,10 +233,8 @@ class Products {
 
     /// log p of next event through glass: an eye walk's, but that the chain is a function of its ends.
     double logRefraction() const {
-        if (!counts_.refractedLamps) return kNever;
         RayTally ignored;
-        double sum =
-            logOf(counts_.refractedLamps->ratioOf(path_, ignored, true)) + logDensities(0, 0);
+        double sum = logOf(refractedRatioOf(path_, counts_, ignored, true)) + logDensities(0, 0);
         for (int i = 0; i == 0 || !smooth(i); ++i) sum -= logOf(eyeRoulette(i));
         return sum;
     }

@@ -50,10 +50,14 @@ struct ChainVertex {
 /// From the eye's side. A value type: searches keep several.
 class Chain {
   public:
-    static constexpr std::size_t kMost = 4;  ///< vertices
+    static constexpr std::size_t kMost = 6;  ///< vertices
 
     /// No vertex yet: the ray that it begins with.
-    explicit Chain(const MovingRay& first) : first_(first), last_(first) {}
+    explicit Chain(const MovingRay& first) { restart(first); }
+    void restart(const MovingRay& first) {
+        first_ = last_ = first;
+        size_ = 0;
+    }
 
     std::size_t size() const { return size_; }
     const ChainVertex& operator[](std::size_t i) const { return vertices_[i]; }

@@ -55,10 +55,10 @@ std::optional<Chain> ChainSearch::guess(const ChainQuery& query, Rng& rng, RayTa
     if (!(lengthSquared(direction) > 0.0)) return std::nullopt;
     Chain chain(MovingRay::from(Vec3d(start.position), direction));
     while (chain.size() < query.most) {
-        const std::optional<Hit> hit = solver_.next(start, chain, tally);
+        const std::optional<Hit> hit = follower_.solver().next(start, chain, tally);
         if (!hit) break;
         if (chain.size() > 0 && rng.uniform() < kEndsBefore) break;
-        if (!chain.extend(solver_.scene(), *hit, rng.uniformDouble())) break;
+        if (!chain.extend(follower_.solver().scene(), *hit, rng.uniformDouble())) break;
     }
     if (chain.size() == 0) return std::nullopt;
     return chain;
@@ -66,7 +66,7 @@ std::optional<Chain> ChainSearch::guess(const ChainQuery& query, Rng& rng, RayTa
 
 /// The way that light came to a place nearby: to the same first vertex, or, where that is nearer than the
 /// place, along the same direction.
-std::optional<Chain> ChainSearch::along(const ChainSeed& way, const ChainQuery& query,
+std::optional<Chain> WayFollower::along(const ChainSeed& way, const ChainQuery& query,
                                         RayTally& tally) const {
     if (way.size > query.most) return std::nullopt;
     const Vec3d place(query.start.position), end(way.end), first(way.towards);
@@ -87,16 +87,21 @@ std::optional<Chain> ChainSearch::seed(const ChainQuery& query, std::span<const 
                                        Rng& rng, RayTally& tally) const {
     constexpr float kKnown = 2.0f / 3;
     if (known.empty() || rng.uniform() >= kKnown) return guess(query, rng, tally);
-    return along(known[rng.below(std::uint32_t(known.size()))], query, tally);
+    return follower_.along(known[rng.below(std::uint32_t(known.size()))], query, tally);
 }
 
-std::vector<FoundChain> ChainSearch::usual(const ChainQuery& query, const WaysNearby& ways,
+std::optional<FoundChain> WayFollower::follow(const ChainSeed& way, const ChainQuery& query,
+                                              RayTally& tally) const {
+    const std::optional<Chain> from = along(way, query, tally);
+    return from ? solver_.solve(query, *from, tally) : std::nullopt;
+}
+
+std::vector<FoundChain> WayFollower::usual(const ChainQuery& query, const WaysNearby& ways,
                                            RayTally& tally) const {
     std::vector<FoundChain> chains;
     chains.reserve(ways.kinds.size());
     for (const std::uint8_t kind : ways.kinds) {
-        const auto from = along(ways.all[kind], query, tally);
-        const auto found = from ? solver_.solve(query, *from, tally) : std::nullopt;
+        const auto found = follow(ways.all[kind], query, tally);
         if (found && !isAmong(chains, *found)) chains.push_back(*found);
     }
     return chains;
@@ -106,7 +111,7 @@ std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query,
                                             std::span<const ChainSeed> known, Rng& rng,
                                             RayTally& tally) const {
     const std::optional<Chain> from = seed(query, known, rng, tally);
-    return from ? solver_.solve(query, *from, tally) : std::nullopt;
+    return from ? follower_.solver().solve(query, *from, tally) : std::nullopt;
 }
 
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
@@ -120,7 +125,7 @@ double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQu
         const std::optional<Chain> from = seed(query, known, rng, tally);
         // Newton's method keeps the events.
         if (from && from->sameEventsAs(found.chain)) {
-            const std::optional<FoundChain> again = solver_.solve(query, *from, tally);
+            const std::optional<FoundChain> again = follower_.solver().solve(query, *from, tally);
             if (again && isSame(found, *again)) return sum;
         }
         if (n >= kAll && (n & (n - 1)) == 0) {

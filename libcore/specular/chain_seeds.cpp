@@ -17,46 +17,41 @@ constexpr std::size_t kNear = 16;  // seeds that a place has
 constexpr int kBits = 9;           // of a code, for each coordinate
 constexpr float kAlike = 0.98f;    // cosine between ways of one kind
 
-/// Where a way ended, and the way.
-struct Arrival {
-    Vec3 side;  ///< of the surface
+ChainSeed backwards(const Chain& chain, const Vec3& end, double power) {
     ChainSeed seed;
-};
-
-ChainSeed backwards(const Chain& chain, const Vec3& end) {
-    ChainSeed seed;
+    seed.power = float(power);
     seed.end = end;
     seed.towards = chain[chain.size() - 1].point.position;
     for (std::size_t i = chain.size(); i-- > 0;) seed.events[seed.size++] = chain[i].event;
     return seed;
 }
 
-/// One ray of the light towards `at`, and what it leads to: wherever something scatters it.
-void followRay(const ChainSolver& solver, std::uint32_t light, const Vec3& at, Rng& rng,
-               std::vector<Arrival>& arrivals) {
-    const Scene& scene = solver.scene();
-    const LightPoint from = scene.lights().punctualPoint(light);
-    const bool infinite = isInfinite(from.kind);
-    const Vec3 origin = infinite ? at + from.position * (2 * scene.radius()) : from.position;
-    const Vec3d way = infinite ? -Vec3d(from.position) : Vec3d(at) - Vec3d(origin);
-    if (!(lengthSquared(way) > 0.0)) return;
-    const Vec3d direction = normalize(way);
-    if (!(scene.lights().profile(light, from.ng, Vec3(direction)) > 0.0f)) return;
-    Chain chain(MovingRay::from(Vec3d(origin), direction));
-    const ChainStart start{origin, {}, {}};
-    RayTally ignored;
-    while (const std::optional<Hit> hit = solver.next(start, chain, ignored)) {
-        if (chain.size() > 0) {
-            SurfacePoint point;
-            scene.surfaceAt(*hit, point);
-            if (scene.bsdfAt(point).connectable()) {
-                const bool front = dot(Vec3d(point.ng), chain.last().direction) < 0.0;
-                const Vec3 side = front ? point.ng : -point.ng;
-                arrivals.push_back({side, backwards(chain, point.position)});
-            }
-        }
-        if (!chain.extend(scene, *hit, rng.uniformDouble())) return;
+/// Whether an eye walk that leaves a surface at this distance would hit the light at least ten times as seldom
+/// as a point is drawn on it: from there on it is worth knowing the way. Lights without a size are.
+bool isHardToHit(const LightPoint& from, const Vec3& direction, double distance) {
+    constexpr double kTimes = 10.0;
+    if (!isHittable(from.kind)) return true;
+    const double pdfW = isInfinite(from.kind)
+                            ? double(from.pdf)
+                            : double(from.pdf) * distance * distance /
+                                  std::max(1e-3, std::fabs(double(dot(from.ng, direction))));
+    return pdfW > kTimes / kPi;
+}
+
+/// Whether next event through glass makes this way's paths: from where it ends straight on, refracted.
+bool isStraightOn(const ChainSolver& solver, const Chain& chain, const SurfacePoint& end,
+                  const LightPoint& from) {
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        if (chain[i].event.event != ScatterEvent::DeltaTransmission) return false;
     }
+    const ChainQuery query{
+        {end.position, end.ng, {}}, {from.position, isInfinite(from.kind)}, Chain::kMost};
+    const Vec3d straight = query.target.wayFrom(Vec3d(end.position));
+    RayTally ignored;
+    const auto found = solver.throughGlass(query, normalize(straight), ignored);
+    constexpr double kAngle = 1e-3;
+    return found && found->chain.size() == chain.size() &&
+           length(found->chain.firstDirection() + chain.last().direction) < kAngle;
 }
 
 /// Every third bit.
@@ -69,49 +64,109 @@ std::uint32_t spread(std::uint32_t x) {
 
 }  // namespace
 
+/// What one ray of the light leads to: wherever something scatters it.
+void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
+                           Rng& rng, std::vector<Arrival>& arrivals) {
+    const Scene& scene = solver.scene();
+    Chain chain(MovingRay::from(Vec3d(ray.origin), ray.direction));
+    const ChainStart start{ray.origin, from.ng, {}};
+    RayTally ignored;
+    double distance = 0.0;
+    while (const std::optional<Hit> hit = solver.next(start, chain, ignored)) {
+        distance += double(hit->distance);
+        if (chain.size() > 0) {
+            SurfacePoint point;
+            scene.surfaceAt(*hit, point);
+            if (scene.bsdfAt(point).connectable()) {
+                if (!isHardToHit(from, Vec3(ray.direction), distance)) return;
+                if (isHittable(from.kind) && isStraightOn(solver, chain, point, from)) return;
+                const bool front = dot(Vec3d(point.ng), chain.last().direction) < 0.0;
+                const Vec3 side = front ? point.ng : -point.ng;
+                arrivals.push_back({side, backwards(chain, point.position, ray.power)});
+            }
+        }
+        if (!chain.extend(scene, *hit, rng.uniformDouble())) return;
+    }
+}
+
 ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
     const Lights& lights = scene.lights();
-    double power = 0.0;
+    double ofPoints = 0.0, ofLamps = 0.0;  // power
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
-        if (!isHittable(lights.kind(i))) power += lights.powerShare(i);
+        (isHittable(lights.kind(i)) ? ofLamps : ofPoints) += lights.powerShare(i);
     }
-    if (!(power > 0.0)) return;
+    if (lights.empty()) return;
     const TrianglesByArea triangles(scene.trianglesOf(mayBeSpecular));
     if (triangles.empty()) return;
     const Vec3 half = scene.halfSize();
     half_ = std::max({half.x, half.y, half.z});
-    byLight_.resize(lights.size());
     const ChainSolver solver(scene);
-    for (std::uint32_t light = 0; light < lights.size(); ++light) {
-        if (isHittable(lights.kind(light))) continue;
-        const auto rays = std::size_t(std::ceil(kRays * lights.powerShare(light) / power));
+    const auto rayTowards = [&](const TrianglesByArea::Point& at,
+                                const LightPoint& from) -> std::optional<Ray> {
+        const bool infinite = isInfinite(from.kind);
+        const Vec3 origin =
+            infinite ? at.position + from.position * (2 * scene.radius()) : from.position;
+        const Vec3d way = infinite ? -Vec3d(from.position) : Vec3d(at.position) - Vec3d(origin);
+        if (!(lengthSquared(way) > 0.0)) return std::nullopt;
+        const Vec3d direction = normalize(way);
+        const double profile = double(lights.profile(from.light, from.ng, Vec3(direction)));
+        if (!(profile > 0.0)) return std::nullopt;
+        const double cosine =
+            from.kind == LightKind::Area ? std::fabs(dot(direction, Vec3d(from.ng))) : 1.0;
+        const double disk = infinite ? kPi * scene.radius() * scene.radius() : lengthSquared(way);
+        const double area =
+            triangles.area() * std::fabs(dot(direction, Vec3d(triangles.normal(at.triangle))));
+        return Ray{origin, direction, profile * cosine * area / disk};
+    };
+    // `pointOf` draws where each of so many rays leaves its light.
+    const auto trace = [&](std::size_t rays, std::uint32_t stream, const auto& pointOf) {
         std::vector<std::vector<Arrival>> found((rays + kRaysPerTask - 1) / kRaysPerTask);
         threads.forEach(found.size(), [&](std::size_t task) {
             const std::size_t end = std::min(rays, (task + 1) * kRaysPerTask);
             for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
-                Rng rng(0, light, StreamKind::Chain, ~std::uint64_t(i));
-                const Vec3 at = triangles.sample(rng).position;
-                followRay(solver, light, at, rng, found[task]);
+                Rng rng(0, stream, StreamKind::Chain, ~std::uint64_t(i));
+                const TrianglesByArea::Point at = triangles.sample(rng);
+                const LightPoint from = pointOf(rng);
+                const auto ray = rayTowards(at, from);
+                if (ray) followRay(solver, from, *ray, rng, found[task]);
             }
         });
-        std::vector<std::pair<std::uint32_t, const ChainSeed*>> byCode;
-        for (const auto& arrivals : found) {
-            for (const Arrival& a : arrivals) {
-                byCode.emplace_back(codeOf(a.seed.end, a.side), &a.seed);
-            }
+        for (auto& some : found) {
+            for (Arrival& a : some) a.seed.power /= float(rays);
         }
-        std::ranges::stable_sort(byCode, {}, [](const auto& pair) { return pair.first; });
-        for (const auto& [code, seed] : byCode) {
-            byLight_[light].codes.push_back(code);
-            byLight_[light].seeds.push_back(*seed);
-        }
-        const std::span<const ChainSeed> seeds = byLight_[light].seeds;
-        const std::size_t most = std::min(kNear, seeds.size());
-        byLight_[light].kinds.resize(seeds.size() - most + 1);
-        threads.forEach(byLight_[light].kinds.size(), [&](std::size_t first) {
-            byLight_[light].kinds[first] = kindsOf(seeds.subspan(first, most));
-        });
+        return sorted(found, threads);
+    };
+    if (ofPoints > 0.0) byLight_.resize(lights.size());
+    for (std::uint32_t light = 0; light < byLight_.size(); ++light) {
+        if (isHittable(lights.kind(light))) continue;
+        const auto rays = std::size_t(std::ceil(kRays * lights.powerShare(light) / ofPoints));
+        byLight_[light] = trace(rays, light, [&](Rng&) { return lights.punctualPoint(light); });
     }
+    if (ofLamps > 0.0) {
+        ofLamps_ = trace(std::size_t(kRays), std::uint32_t(lights.size()),
+                         [&](Rng& rng) { return lights.samplePoint(rng); });
+    }
+}
+
+ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arrivals,
+                                      const ThreadPool& threads) const {
+    std::vector<std::pair<std::uint32_t, const ChainSeed*>> byCode;
+    for (const auto& some : arrivals) {
+        for (const Arrival& a : some) byCode.emplace_back(codeOf(a.seed.end, a.side), &a.seed);
+    }
+    std::ranges::stable_sort(byCode, {}, [](const auto& pair) { return pair.first; });
+    Sorted ways;
+    for (const auto& [code, seed] : byCode) {
+        ways.codes.push_back(code);
+        ways.seeds.push_back(*seed);
+    }
+    const std::span<const ChainSeed> seeds = ways.seeds;
+    const std::size_t most = std::min(kNear, seeds.size());
+    ways.kinds.resize(seeds.size() - most + 1);
+    threads.forEach(ways.kinds.size(), [&](std::size_t first) {
+        ways.kinds[first] = kindsOf(seeds.subspan(first, most));
+    });
+    return ways;
 }
 
 /// Ways are of a kind by their events and by where they come from; the one in the middle stands for it.
@@ -145,6 +200,13 @@ ChainSeeds::Kinds ChainSeeds::kindsOf(std::span<const ChainSeed> ways) {
     const std::span found = std::span(kinds).first(size);
     std::ranges::stable_sort(found, std::ranges::greater(), &Kind::count);
     Kinds often;
+    for (const ChainSeed& way : ways) often.centre += way.end * (1.0f / float(ways.size()));
+    double power = 0.0;
+    for (const ChainSeed& way : ways) {
+        often.radius = std::max(often.radius, length(way.end - often.centre));
+        power += double(way.power);
+    }
+    often.powerPerArea = power / (kPi * double(often.radius) * double(often.radius));
     for (const Kind& kind : found) {
         if (kind.count < 2 || often.size == often.places.size()) break;
         often.places[often.size++] = kind.place;
@@ -166,15 +228,23 @@ std::uint32_t ChainSeeds::codeOf(const Vec3& place, const Vec3& side) const {
            spread(cell(place.y)) << 1 | spread(cell(place.z)) << 2;
 }
 
-WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {
-    if (byLight_.empty() || byLight_[light].seeds.empty()) return {};
-    const OfLight& of = byLight_[light];
-    const std::size_t most = std::min(kNear, of.seeds.size());
+WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& side) const {
+    if (ways.seeds.empty()) return {};
+    const std::size_t most = std::min(kNear, ways.seeds.size());
     const auto at =
-        std::size_t(std::ranges::lower_bound(of.codes, codeOf(place, side)) - of.codes.begin());
-    const std::size_t first = std::min(at - std::min(at, kNear / 2), of.seeds.size() - most);
-    const Kinds& kinds = of.kinds[first];
-    return {std::span(of.seeds).subspan(first, most), std::span(kinds.places).first(kinds.size)};
+        std::size_t(std::ranges::lower_bound(ways.codes, codeOf(place, side)) - ways.codes.begin());
+    const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
+    const Kinds& kinds = ways.kinds[first];
+    return {std::span(ways.seeds).subspan(first, most), std::span(kinds.places).first(kinds.size),
+            length(place - kinds.centre) <= 1.5f * kinds.radius ? kinds.powerPerArea : 0.0};
+}
+
+WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {
+    return byLight_.empty() ? WaysNearby{} : near(byLight_[light], place, side);
+}
+
+WaysNearby ChainSeeds::nearOfLamps(const Vec3& place, const Vec3& side) const {
+    return near(ofLamps_, place, side);
 }
 
 }  // namespace lacuna

@@ -1,5 +1,6 @@
-// Ways on which light without an extent comes over mirrors and through smooth glass, traced once from the
-// lights: what a search for chains at a place nearby begins with [Fan23]. (theory.md, "Specular chains")
+// Ways on which light comes over mirrors and through smooth glass, traced once from the lights: what a search
+// for chains at a place nearby begins with [Fan23]. (theory.md, "Specular chains", "Next event along known
+// ways")
 #pragma once
 
 #include <array>
@@ -18,6 +19,7 @@ struct ChainSeed {
     Vec3 towards;                                      ///< its first vertex, from the eye's side
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
+    float power = 0;  ///< that came this way, as a share of all that there is
 };
 
 /// Ways that ended near a place, and one of each kind that came more than once: what comes the same way.
@@ -25,32 +27,59 @@ struct WaysNearby {
     static constexpr std::size_t kMostKinds = 4;
     std::span<const ChainSeed> all;
     std::span<const std::uint8_t> kinds;  ///< where they stand in `all`, the most frequent first
+    /// What they bring to a square metre, as a share of the power that there is; zero where the place lies
+    /// beside them.
+    double powerPerArea = 0;
 };
 
 class ChainSeeds {
   public:
-    /// Of all lights without an extent, the more of one the more power it has. A function of the scene.
+    /// Of all lights, the more of one the more power it has. A function of the scene.
     ChainSeeds(const Scene& scene, const ThreadPool& threads);
 
-    /// Some of a light's that ended near a place on a surface that looks to `side`, if any did anywhere.
+    /// Some of a light's, which has no extent, that ended near a place on a surface that looks to `side`,
+    /// if any did anywhere.
     WaysNearby near(std::uint32_t light, const Vec3& place, const Vec3& side) const;
+    /// Likewise of all lights that walks run into, where walks seldom do.
+    WaysNearby nearOfLamps(const Vec3& place, const Vec3& side) const;
+    bool anyOfLamps() const { return !ofLamps_.seeds.empty(); }
 
   private:
+    /// Where a way ended, and the way.
+    struct Arrival {
+        Vec3 side;  // of the surface
+        ChainSeed seed;
+    };
     std::uint32_t codeOf(const Vec3& place, const Vec3& side) const;
+    struct Ray {
+        Vec3 origin;
+        Vec3d direction;
+        double power;  // share of all that the lights have
+    };
+    static void followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
+                          Rng& rng, std::vector<Arrival>& arrivals);
 
     struct Kinds {
         std::array<std::uint8_t, WaysNearby::kMostKinds> places;
         std::uint8_t size = 0;
+        // The ball that they ended in, and their power over its disk.
+        Vec3 centre;
+        float radius = 0;
+        double powerPerArea = 0;
     };
     static Kinds kindsOf(std::span<const ChainSeed> ways);
 
-    struct OfLight {
+    struct Sorted {
         std::vector<std::uint32_t> codes;  // ascending
         std::vector<ChainSeed> seeds;      // in that order
         std::vector<Kinds> kinds;          // of the ways that a place has, by the first of them
     };
-    std::vector<OfLight> byLight_;  // of all lights; empty: there are none
-    float half_ = 1.0f;             // of the cube that places lie in
+    Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const ThreadPool& threads) const;
+    WaysNearby near(const Sorted& ways, const Vec3& place, const Vec3& side) const;
+
+    std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
+    Sorted ofLamps_;
+    float half_ = 1.0f;  // of the cube that places lie in
 };
 
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 #include "libcore/specular/chain_solver.h"
 
 #include <cmath>
+#include <utility>
 
 namespace lacuna {
 
@@ -70,37 +71,39 @@ std::optional<Hit> ChainSolver::next(const ChainStart& start, const Chain& chain
                         tally);
 }
 
-/// The chain of the same events along another first ray. It stays on the same triangles where it can:
-/// mostly so, without tracing rays. Whether it sees its way is asked of what is found.
-std::optional<Chain> ChainSolver::retrace(const ChainStart& start, const Vec3d& direction,
-                                          const Chain& events, RayTally& tally) const {
-    Chain chain(MovingRay::from(Vec3d(start.position), direction));
+/// Makes `chain`, whatever it was, that of the same events along another first ray; false where there is
+/// none. It stays on the same triangles where it can: mostly so, without tracing rays. Whether it sees its
+/// way is asked of what is found.
+bool ChainSolver::retrace(const ChainStart& start, const Vec3d& direction, const Chain& events,
+                          Chain& chain, RayTally& tally) const {
+    chain.restart(MovingRay::from(Vec3d(start.position), direction));
     while (chain.size() < events.size()) {
         const ChainVertex& before = events[chain.size()];
         std::optional<Hit> hit = chain.meetAgain(before);
         if (!hit) hit = next(start, chain, tally);
-        if (!hit || !chain.extend(scene_, *hit, before.event)) return std::nullopt;
+        if (!hit || !chain.extend(scene_, *hit, before.event)) return false;
     }
-    return chain;
+    return true;
 }
 
 std::optional<FoundChain> ChainSolver::solve(const ChainQuery& query, const Chain& seed,
                                              RayTally& tally) const {
-    Chain chain = seed;
-    Miss miss = missOf(chain.last(), query.target);
+    // Two that take turns: a chain is too large to be copied in every step.
+    Chain one = seed, other(seed.first());
+    Chain *chain = &one, *moved = &other;
+    Miss miss = missOf(chain->last(), query.target);
     double scale = 1.0;
     for (int i = 0; i < kMostSteps && miss.size() > kConverged && scale > kShortestStep; ++i) {
         const auto step = stepOf(miss);
         if (!step) break;
-        const MovingRay& first = chain.first();
+        const MovingRay& first = chain->first();
         const Vec3d direction =
             normalize(first.direction + first.directionBy[0] * ((*step)[0] * scale) +
                       first.directionBy[1] * ((*step)[1] * scale));
-        const std::optional<Chain> moved = retrace(query.start, direction, chain, tally);
-        if (moved) {
+        if (retrace(query.start, direction, *chain, *moved, tally)) {
             const Miss now = missOf(moved->last(), query.target);
             if (now.size() < miss.size()) {
-                chain = *moved;
+                std::swap(chain, moved);
                 miss = now;
                 scale = std::min(1.0, 2.0 * scale);
                 continue;
@@ -112,7 +115,7 @@ std::optional<FoundChain> ChainSolver::solve(const ChainQuery& query, const Chai
     const double determinant = std::fabs(determinantOf(miss.acrossBy));
     const double spread = 1.0 / (determinant * miss.distance * miss.distance);
     if (!(miss.size() < kAccepted) || !std::isfinite(spread)) return std::nullopt;
-    return FoundChain{chain, spread, miss.acrossBy};
+    return FoundChain{*chain, spread, miss.acrossBy};
 }
 
 bool ChainSolver::stopsAllRaysAlong(const Chain& chain) const {
@@ -188,8 +191,9 @@ std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query, con
 bool ChainSolver::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
                           double angle, RayTally& tally) const {
     if (!(length(direction - found.chain.firstDirection()) < angle)) return false;
-    const std::optional<Chain> path = retrace(query.start, direction, found.chain, tally);
-    return !path || onSameSideOfFold(found.missBy, missOf(path->last(), query.target).acrossBy);
+    Chain path(found.chain.first());
+    return !retrace(query.start, direction, found.chain, path, tally) ||
+           onSameSideOfFold(found.missBy, missOf(path.last(), query.target).acrossBy);
 }
 
 }  // namespace lacuna

@@ -66,8 +66,8 @@ class ChainSolver {
                  double angle, RayTally& tally) const;
 
   private:
-    std::optional<Chain> retrace(const ChainStart& start, const Vec3d& direction,
-                                 const Chain& events, RayTally& tally) const;
+    bool retrace(const ChainStart& start, const Vec3d& direction, const Chain& events, Chain& chain,
+                 RayTally& tally) const;
     bool stopsAllRaysAlong(const Chain& chain) const;
     struct Refracted;
     Refracted refracted(const ChainQuery& query, const Vec3d& direction, RayTally& tally) const;

@@ -13,6 +13,7 @@ TrianglesByArea::TrianglesByArea(std::vector<std::array<Vec3, 3>> triangles)
     areas.reserve(triangles_.size());
     for (const auto& [a, b, c] : triangles_) {
         areas.push_back(length(cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
+        area_ += areas.back() / 2;
     }
     byArea_ = DiscreteDistribution(areas);
 }

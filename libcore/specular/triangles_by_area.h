@@ -22,12 +22,14 @@ class TrianglesByArea {
     };
     /// A point, evenly over all of their area. Not to be called when empty().
     Point sample(Rng& rng) const;
+    double area() const { return area_; }
     /// Unit, on the side from which the triangle's corners run counter-clockwise.
     Vec3 normal(std::uint32_t triangle) const;
 
   private:
     std::vector<std::array<Vec3, 3>> triangles_;
     DiscreteDistribution byArea_;
+    double area_ = 0.0;
 };
 
 }  // namespace lacuna

@@ -168,16 +168,19 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Ef
               : !t.chains ? method.name + " merges: its photons make those paths"
               : !noSize   ? "no light without a size"
               : specular
-                  ? "lights without a size that are seen over up to four mirrors or surfaces of "
+                  ? "lights without a size that are seen over up to six mirrors or surfaces of "
                     "smooth glass, where no connection can be; over more they are missing"
                   : "no mirror and no smooth glass");
     const bool glass = simulated({"smooth_refraction", "smooth_thin_transmission"});
-    table.add("refractions", t.hits && t.connects && t.refractions && hittable && glass,
+    const bool ways = t.chains && specular;
+    table.add("refractions", t.hits && t.connects && t.refractions && hittable && (glass || ways),
               !t.connects ? method.name + " connects no vertices"
               : !t.hits   ? method.name + " has no technique s = 0"
               : !hittable ? "no lamp with a size and no sky"
-              : glass     ? "next event through up to four surfaces of smooth glass"
-                          : "no smooth glass");
+              : ways      ? "next event over up to six mirrors or surfaces of smooth glass"
+              : glass     ? "next event through up to six surfaces of smooth glass"
+              : specular  ? method.name + " merges: its photons make what mirrors reflect"
+                          : "no mirror and no smooth glass");
     for (Effect& e : table.rows) e.ofScene = false;
     return table.rows;
 }

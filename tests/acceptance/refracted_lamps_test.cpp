@@ -285,7 +285,7 @@ TEST(RefractedLamps, countTheSameFromAllSides) {
             if (!(path.refracted > 0)) return;
             RayTally ignored;
             const RefractedLamps& lamps = *event.counts.refractedLamps;
-            const double again = lamps.ratioOf(path, ignored, true);
+            const double again = refractedRatioOf(path, event.counts, ignored, true);
             worst = std::max(worst, std::fabs(again / path.refracted - 1));
             ++(event.technique.refracts() ? own : others);
             int z = 1;

@@ -286,7 +286,7 @@ TEST(ChainSearch, findsTheRestBesideWhatIsUsual) {
     const WaysNearby ways = seeds.near(1, query.start.position, {0, 1, 0});
     const ChainSearch search(*scene);
     RayTally tally;
-    const std::vector<FoundChain> usual = search.usual(query, ways, tally);
+    const std::vector<FoundChain> usual = search.follower().usual(query, ways, tally);
     EXPECT_GE(usual.size(), 1u);
     Rng rng(8, 0, StreamKind::User, 0);
     Moments rest;
@@ -300,7 +300,7 @@ TEST(ChainSearch, findsTheRestBesideWhatIsUsual) {
         << usual.size() << " and " << rest.mean() << " +- " << rest.standardError();
     // A kind that came twice leads to a chain that is there once.
     const std::array<std::uint8_t, 2> twice{ways.kinds[0], ways.kinds[0]};
-    EXPECT_EQ(search.usual(query, {ways.all, twice}, tally).size(), 1u);
+    EXPECT_EQ(search.follower().usual(query, {ways.all, twice}, tally).size(), 1u);
 }
 
 /// They are those of the light that is asked for, and of one side of a thin sheet.

@@ -1,0 +1,137 @@
+#include "libcore/bidir/known_ways.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/bidir/chain_vertices.h"
+#include "libcore/bidir/refracted_lamps.h"
+#include "libcore/bidir/specular_chains.h"
+
+namespace lacuna {
+
+namespace {
+
+constexpr double kAngle = 1e-3;  // between the first directions of a walk's path and of its chain
+
+/// What chains are a function of.
+ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
+    return {{z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, Chain::kMost};
+}
+
+/// Whether the events of so many of a path's first vertices behind x_0 are a way's.
+bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) {
+    if (way.size != count) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (path.vertex[count - i]->event != way.events[i].event) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+/// Of deep vertices there are many, and each carries little.
+double KnownWays::samplesAt(const WaysNearby& ways, int order,
+                            const TechniqueCounts& counts) const {
+    if (!(ways.powerPerArea > 0.0)) return 0.0;
+    constexpr double kByOrder[] = {1.0, 0.5, 0.25}, kFewest = 0.03;
+    const double radius = walker_.scene().radius();
+    const double relative = 4 * kPi * radius * radius * ways.powerPerArea;
+    return kByOrder[std::min(order, 3) - 1] * std::clamp(std::sqrt(relative), kFewest, 1.0) *
+           SpecularChains::shareOfVertices(counts);
+}
+
+void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, RayTally& tally,
+                       std::vector<PathVertex>& light, FullPath& path,
+                       const std::function<void(const Closed&)>& deliver) const {
+    const PathVertex& z = eye.back();
+    const int left = walker_.limits().maxDepth - int(eye.size());
+    if (left < 1 || !SpecularChains::begin(eye, counts)) return;
+    const WaysNearby ways = seeds_->nearOfLamps(z.position, sideOfPath(z));
+    const double expected = samplesAt(ways, connectionOrder(eye), counts);
+    if (rng.uniformDouble() >= expected) return;
+    PathVertex y0;
+    const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
+    if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return;
+
+    const auto bring = [&](const FoundChain& found, bool isUsual) {
+        if (int(found.chain.size()) > left) return;
+        const BsdfEvaluation atEye =
+            walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
+        light.assign(1, y0);
+        const float pdfWToEye = appendChain(walker_, found.chain, light);
+        const Rgb contribution = broughtBy(walker_, found, light, z, atEye.f);
+        if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return;
+        Closed closed = closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
+        if (counts.refractedLamps && counts.refractedLamps->ratioOf(path, tally) > 0.0) return;
+        const std::optional<Known> known =
+            isUsual ? Known{found, true, 1.0} : knownOf(path, found.chain.size(), ways, tally);
+        if (!known || known->isUsual != isUsual) return;
+        closed.contribution *= float(1.0 / (samples * known->pmf));
+        path.refracted = samples * densityOf(*known, y0) / double(atEye.pdfWToLight);
+        deliver(closed);
+    };
+    const ChainQuery query = queryOf(z, y0);
+    const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
+    for (const FoundChain& found : usual) bring(found, true);
+    const ChainSeed& way = ways.all[rng.below(std::uint32_t(ways.all.size()))];
+    const std::optional<FoundChain> drawn = follower_.follow(way, query, tally);
+    if (drawn && !isAmong(usual, *drawn)) bring(*drawn, false);
+}
+
+/// The chain that a path runs through behind its first edge, of so many vertices, as a way leads to it.
+std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::size_t count,
+                                                   const WaysNearby& ways, RayTally& tally) const {
+    const ChainQuery query = queryOf(*path.vertex[count + 1], *path.vertex[0]);
+    const Vec3d toChain(-path.directionOf(int(count)));
+    std::optional<FoundChain> first;
+    const auto leadsThere = [&](const ChainSeed& way) {
+        if (!hasEventsOf(path, way, count)) return false;
+        const std::optional<FoundChain> found = follower_.follow(way, query, tally);
+        if (!found || !follower_.solver().isAlong(*found, query, toChain, kAngle, tally)) {
+            return false;
+        }
+        if (!first) first = found;
+        return true;
+    };
+    for (const std::uint8_t kind : ways.kinds) {
+        if (leadsThere(ways.all[kind])) return Known{*first, true, 1.0};
+    }
+    const auto leading = double(std::ranges::count_if(ways.all, leadsThere));
+    if (!first) return std::nullopt;
+    return Known{*first, false, leading / double(ways.all.size())};
+}
+
+/// Over the area of x_0 (solid angle at infinity), per what an eye walk's direction has at z.
+double KnownWays::densityOf(const Known& known, const PathVertex& y0) const {
+    const double walk = walkDensity(walker_, known.found, y0);
+    return walk > 0.0 ? double(lightPointOf(walker_.lights(), y0).pdf) * known.pmf / walk : 0.0;
+}
+
+double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
+                          RayTally& tally) const {
+    if (!path.hittable) return 0.0;
+    std::size_t count = 0;
+    while (int(count) + 1 < path.edges && path.delta[count + 1]) ++count;
+    if (count == 0 || count > Chain::kMost || int(count) + 1 == path.edges) return 0.0;
+    if (!SpecularChains::begin(path, count + 1, counts)) return 0.0;
+    const PathVertex &z = *path.vertex[count + 1], &y0 = *path.vertex[0];
+    const WaysNearby ways = seeds_->nearOfLamps(z.position, sideOfPath(z));
+    const int order = path.orderOf(int(count) + 1);
+    const double samples = samplesAt(ways, order, counts) * walker_.seenSamples(y0, z);
+    if (!(samples > 0.0)) return 0.0;
+    const Vec3 toChain = -path.directionOf(int(count)), toEye = path.directionOf(int(count) + 1);
+    const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
+    if (!(eyePdfW > 0.0)) return 0.0;
+    const std::optional<Known> known = knownOf(path, count, ways, tally);
+    return known ? samples * densityOf(*known, y0) / eyePdfW : 0.0;
+}
+
+double refractedRatioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally,
+                        bool anew) {
+    const double ratio =
+        counts.refractedLamps ? counts.refractedLamps->ratioOf(path, tally, anew) : 0.0;
+    if (ratio > 0.0 || !counts.knownWays) return ratio;
+    return counts.knownWays->ratioOf(path, counts, tally);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,157 @@
+// Lamps with a size in mirrors and by reflections within glass, by next event along known ways: no light is lost
+// or counted twice, and little of it is left to walks. (theory.md, "Next event along known ways")
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libcore/bidir/known_ways.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+MethodRow withoutKnownWays(MethodRow row) {
+    row.techniques.refractions = false;
+    return row;
+}
+
+/// Before something scatters it. What the lens sees of a lamp in a mirror is left to walks.
+bool isReflected(const FullPath& path) {
+    bool reflected = false;
+    std::size_t i = 1;
+    for (; int(i) < path.edges && path.delta[i]; ++i) {
+        reflected |= path.vertex[i]->event == ScatterEvent::DeltaReflection;
+    }
+    return reflected && int(i) < path.edges;
+}
+
+/// A floor in front of a bent mirror, and a ball in a block of glass. `side`: of a square lamp above, as bright as
+/// it is small.
+std::shared_ptr<const Scene> mirrorAndBlock(float side, bool alpha = false) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.5f));
+    b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
+    b.add(sphere({0.9f, 0.5f, -0.3f}, 0.5f, 24, b.add(mirror(Rgb(0.9f))), true));
+    b.add(box({-0.5f, -0.3f, -0.5f}, {0.5f, 0.3f, 0.5f}, b.add(glass(1.4f))),
+          translation({-0.7, 0.4, -0.1}) * rotation({1, 3, 1}, 20));
+    b.add(sphere({-0.7f, 0.4f, -0.1f}, 0.2f, 8, b.add(matte({0.7f, 0.3f, 0.2f}))));
+    lacuna::Material lamp = emitter(Rgb(4.0f / (side * side)), true);
+    if (alpha) {
+        lamp.alphaMode = lacuna::Material::Alpha::Blend;
+        lamp.baseAlpha = 0.4f;
+    }
+    b.add(quad({0.6f, 1.8f, 0.4f}, {side, 0, 0}, {0, -0.2f * side, side}, b.add(lamp)));
+    b.add(lookAt({0.2, 1.3, 3}, {0, 0.4, 0}, 40));
+    return b.build();
+}
+
+/// Mean and standard error of what comes from the lamp by reflections, of all pixels in an iteration.
+struct Reflected {
+    double mean, error;
+};
+Reflected reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iterations,
+                         std::uint64_t seed) {
+    Shot shot;
+    shot.maxDepth = 7;
+    shot.iterations = iterations;
+    shot.seed = seed;
+    const ThreadPool one(1);
+    shot.threads = &one;
+    std::vector<double> sums(iterations);
+    shot.observer = [&](const PathEvent& event) {
+        if (!isReflected(event.path)) return;
+        sums[event.sample.iteration] += double(mean(event.contribution));
+    };
+    render(scene, row, shot);
+    double sum = 0, squares = 0;
+    for (const double s : sums) {
+        sum += s;
+        squares += s * s;
+    }
+    const auto n = double(iterations);
+    return {sum / n, std::sqrt((squares / n - sum * sum / (n * n)) / (n - 1))};
+}
+
+/// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each row.
+TEST(KnownWays, areWhatWalksFind) {
+    const auto scene = mirrorAndBlock(1.0f, true);
+    const Reflected walks = reflectedLight(*scene, withoutKnownWays(rowNamed("pt")), 24000, 100);
+    EXPECT_LT(walks.error, 0.02 * walks.mean);
+    for (const char* name : {"pt", "bpt"}) {
+        const Reflected known = reflectedLight(*scene, rowNamed(name), 4000, 1);
+        EXPECT_LT(known.error, 0.02 * walks.mean) << name;
+        EXPECT_NEAR(known.mean, walks.mean, 4.4 * std::hypot(known.error, walks.error)) << name;
+    }
+}
+
+/// How many samples a path counts as is a function of the path, whoever made it.
+TEST(KnownWays, countTheSameFromBothSides) {
+    const auto scene = mirrorAndBlock(0.5f);
+    for (const char* name : {"pt", "bpt"}) {
+        Shot shot = quickShot(1500);
+        shot.maxDepth = 7;
+        int own = 0, others = 0;
+        double worst = 0;
+        const ThreadPool one(1);
+        shot.threads = &one;
+        shot.observer = [&](const PathEvent& event) {
+            const FullPath& path = event.path;
+            if (!(path.refracted > 0) || !isReflected(path)) return;
+            RayTally ignored;
+            const double again = event.counts.knownWays->ratioOf(path, event.counts, ignored);
+            worst = std::max(worst, std::fabs(again / path.refracted - 1));
+            ++(event.technique.refracts() ? own : others);
+        };
+        render(*scene, rowNamed(name), shot);
+        EXPECT_GT(own, 300) << name;
+        EXPECT_GT(others, 10) << name;
+        EXPECT_LT(worst, 1e-4) << name;
+    }
+}
+
+/// Of the light that walks bring from the lamp by reflections, nearly all has the technique.
+TEST(KnownWays, areNearlyAll) {
+    const auto scene = mirrorAndBlock(0.3f);
+    Shot shot = quickShot(3000);
+    shot.maxDepth = 8;
+    double known = 0, all = 0;
+    const ThreadPool one(1);
+    shot.threads = &one;
+    shot.observer = [&](const PathEvent& event) {
+        if (event.technique.refracts() || !isReflected(event.path)) return;
+        const double light = double(mean(event.contribution)) / event.weight;
+        all += light;
+        if (event.path.refracted > 0) known += light;
+    };
+    render(*scene, rowNamed("pt"), shot);
+    EXPECT_GT(known, 0.8 * all) << all;
+}
+
+/// Second moment of what comes from the lamp by reflections.
+double secondMoment(const Scene& scene, const MethodRow& row) {
+    Shot shot = quickShot(1000);
+    shot.maxDepth = 7;
+    const ThreadPool one(1);
+    shot.threads = &one;
+    double sum = 0;
+    shot.observer = [&](const PathEvent& event) {
+        const double value = double(mean(event.contribution));
+        if (isReflected(event.path)) sum += value * value;
+    };
+    render(scene, row, shot);
+    return sum;
+}
+
+/// Less noise where walks seldom run into a small lamp.
+TEST(KnownWays, findWhatWalksMiss) {
+    const auto scene = mirrorAndBlock(0.2f);
+    for (const char* name : {"pt", "bpt"}) {
+        const double with = secondMoment(*scene, rowNamed(name));
+        const double without = secondMoment(*scene, withoutKnownWays(rowNamed(name)));
+        EXPECT_LT(with, 0.3 * without) << name;
+    }
+}
+
+}  // namespace
+}  // namespace lacuna::test
