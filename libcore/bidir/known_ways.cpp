@@ -75,6 +75,7 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     for (const FoundChain& found : usual) bring(found, true);
     const ChainSeed& way = ways.all[rng.below(std::uint32_t(ways.all.size()))];
     const std::optional<FoundChain> drawn = follower_.follow(way, query, tally);
+    // What is usual would come to nothing, after some work.
     if (drawn && !isAmong(usual, *drawn)) bring(*drawn, false);
 }
 

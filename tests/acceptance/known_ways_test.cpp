@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "libcore/bidir/known_ways.h"
 #include "tests/acceptance/render_test.h"
@@ -16,14 +17,18 @@ MethodRow withoutKnownWays(MethodRow row) {
     return row;
 }
 
-/// Before something scatters it. What the lens sees of a lamp in a mirror is left to walks.
-bool isReflected(const FullPath& path) {
+/// How many mirrors and surfaces of glass light meets before something scatters it, if it is reflected by any;
+/// else zero. What the lens sees of a lamp in a mirror is left to walks.
+std::size_t lengthOfReflectedWay(const FullPath& path) {
     bool reflected = false;
     std::size_t i = 1;
     for (; int(i) < path.edges && path.delta[i]; ++i) {
         reflected |= path.vertex[i]->event == ScatterEvent::DeltaReflection;
     }
-    return reflected && int(i) < path.edges;
+    return reflected && int(i) < path.edges ? i - 1 : 0;
+}
+bool isReflected(const FullPath& path) {
+    return lengthOfReflectedWay(path) > 0;
 }
 
 /// A floor in front of a bent mirror, and a ball in a block of glass. `side`: of a square lamp above, as bright as
@@ -46,43 +51,81 @@ std::shared_ptr<const Scene> mirrorAndBlock(float side, bool alpha = false) {
     return b.build();
 }
 
-/// Mean and standard error of what comes from the lamp by reflections, of all pixels in an iteration.
-struct Reflected {
-    double mean, error;
+struct Mean {
+    double value, error;
 };
-Reflected reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iterations,
-                         std::uint64_t seed) {
+
+/// Of each iteration.
+class Sums {
+  public:
+    explicit Sums(std::uint64_t iterations) : sums_(iterations) {}
+
+    void add(std::uint32_t iteration, double value) { sums_[iteration] += value; }
+    /// With its standard error.
+    Mean mean() const {
+        double sum = 0, squares = 0;
+        for (const double s : sums_) {
+            sum += s;
+            squares += s * s;
+        }
+        const auto n = double(sums_.size());
+        return {sum / n, std::sqrt((squares / n - sum * sum / (n * n)) / (n - 1))};
+    }
+
+  private:
+    std::vector<double> sums_;
+};
+
+/// What comes from the lamp by reflections, of all pixels in an iteration.
+Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iterations,
+                    std::uint64_t seed) {
     Shot shot;
     shot.maxDepth = 7;
     shot.iterations = iterations;
     shot.seed = seed;
     const ThreadPool one(1);
     shot.threads = &one;
-    std::vector<double> sums(iterations);
+    Sums sums(iterations);
     shot.observer = [&](const PathEvent& event) {
         if (!isReflected(event.path)) return;
-        sums[event.sample.iteration] += double(mean(event.contribution));
+        sums.add(event.sample.iteration, double(mean(event.contribution)));
     };
     render(scene, row, shot);
-    double sum = 0, squares = 0;
-    for (const double s : sums) {
-        sum += s;
-        squares += s * s;
-    }
-    const auto n = double(iterations);
-    return {sum / n, std::sqrt((squares / n - sum * sum / (n * n)) / (n - 1))};
+    return sums.mean();
 }
 
 /// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each row.
 TEST(KnownWays, areWhatWalksFind) {
     const auto scene = mirrorAndBlock(1.0f, true);
-    const Reflected walks = reflectedLight(*scene, withoutKnownWays(rowNamed("pt")), 24000, 100);
-    EXPECT_LT(walks.error, 0.02 * walks.mean);
+    const Mean walks = reflectedLight(*scene, withoutKnownWays(rowNamed("pt")), 24000, 100);
+    EXPECT_LT(walks.error, 0.02 * walks.value);
     for (const char* name : {"pt", "bpt"}) {
-        const Reflected known = reflectedLight(*scene, rowNamed(name), 4000, 1);
-        EXPECT_LT(known.error, 0.02 * walks.mean) << name;
-        EXPECT_NEAR(known.mean, walks.mean, 4.4 * std::hypot(known.error, walks.error)) << name;
+        const Mean known = reflectedLight(*scene, rowNamed(name), 4000, 1);
+        EXPECT_LT(known.error, 0.02 * walks.value) << name;
+        EXPECT_NEAR(known.value, walks.value, 4.4 * std::hypot(known.error, walks.error)) << name;
     }
+}
+
+/// Long chains are mostly those of ways that are drawn. What these make, unweighted, is what walks make of the
+/// same paths. False alarms: one of 10^5.
+TEST(KnownWays, areDrawnAsOftenAsTheySay) {
+    const auto scene = mirrorAndBlock(1.0f);
+    Shot shot;
+    shot.maxDepth = 9;
+    shot.iterations = 16000;
+    const ThreadPool one(1);
+    shot.threads = &one;
+    Sums known(shot.iterations), walks(shot.iterations);
+    shot.observer = [&](const PathEvent& event) {
+        if (!(event.path.refracted > 0) || lengthOfReflectedWay(event.path) < 5) return;
+        Sums& sums = event.technique.refracts() ? known : walks;
+        sums.add(event.sample.iteration, double(mean(event.contribution)) / event.weight);
+    };
+    render(*scene, rowNamed("pt"), shot);
+    const Mean a = known.mean(), b = walks.mean();
+    fprintf(stderr, "AB %g %g %g %g\n", a.value, a.error, b.value, b.error);
+    EXPECT_LT(std::hypot(a.error, b.error), 0.15 * b.value);
+    EXPECT_NEAR(a.value, b.value, 4.4 * std::hypot(a.error, b.error));
 }
 
 /// How many samples a path counts as is a function of the path, whoever made it.
