@@ -13,16 +13,39 @@ namespace {
 
 constexpr double kAngle = 1e-3;  // between the first directions of a walk's path and of its chain
 
+/// ng on the side that z is seen from. Where pixels share walks, z may have been seen from elsewhere by its own.
+Vec3 sideOf(const PathVertex& z, const Vec3& toEye) {
+    return dot(z.ng, toEye) < 0.0f ? -z.ng : z.ng;
+}
+
 /// What chains are a function of.
-ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
-    return {{z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, Chain::kMost};
+ChainQuery queryOf(const PathVertex& z, const Vec3& side, const PathVertex& y0) {
+    return {{z.position, z.ng, z.bsdf.transmits() ? Vec3{} : side},
+            {y0.position, y0.infinite()},
+            Chain::kMost};
+}
+
+/// Whether the delta event at x_i is one about the geometric normal, by its directions (Bsdf::evaluateDelta).
+bool isAboutNg(const FullPath& path, std::size_t i) {
+    const PathVertex& v = *path.vertex[i];
+    const bool transmits = v.event == ScatterEvent::DeltaTransmission;
+    const Vec3 ns = v.bsdf.ns(), ng = v.bsdf.ng();
+    if (ns == ng || (transmits && !v.bsdf.bends())) return false;
+    const Vec3 toEye = path.directionOf(int(i)), toLight = -path.directionOf(int(i) - 1);
+    const Vec3 h = transmits ? toEye * v.bsdf.indexOn(dot(toEye, ng) > 0.0f) +
+                                   toLight * v.bsdf.indexOn(dot(toLight, ng) > 0.0f)
+                             : toEye + toLight;
+    return lengthSquared(cross(h, ng)) < lengthSquared(cross(h, ns));
 }
 
 /// Whether the events of so many of a path's first vertices behind x_0 are a way's.
 bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) {
     if (way.size != count) return false;
     for (std::size_t i = 0; i < count; ++i) {
-        if (path.vertex[count - i]->event != way.events[i].event) return false;
+        const SpecularEvent& event = way.events[i];
+        if (path.vertex[count - i]->event != event.event) return false;
+        // A clearcoat's normals are its own.
+        if (!event.onClearcoat && isAboutNg(path, count - i) != event.aboutNg) return false;
     }
     return true;
 }
@@ -46,13 +69,15 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const PathVertex& z = eye.back();
     const int left = walker_.limits().maxDepth - int(eye.size());
     if (left < 1 || !SpecularChains::begin(eye, counts)) return;
-    const WaysNearby ways = seeds_->nearOfLamps(z.position, sideOfPath(z));
+    const Vec3 side = sideOf(z, z.toPrevious);
+    const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
     const double expected = samplesAt(ways, connectionOrder(eye), counts);
     if (rng.uniformDouble() >= expected) return;
     PathVertex y0;
     const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return;
 
+    const ChainQuery query = queryOf(z, side, y0);
     const auto bring = [&](const FoundChain& found, bool isUsual) {
         if (int(found.chain.size()) > left) return;
         const BsdfEvaluation atEye =
@@ -64,13 +89,13 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
         Closed closed = closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
         if (counts.refractedLamps && counts.refractedLamps->ratioOf(path, tally) > 0.0) return;
         const std::optional<Known> known =
-            isUsual ? Known{found, true, 1.0} : knownOf(path, found.chain.size(), ways, tally);
+            isUsual ? Known{found, true, 1.0}
+                    : knownOf(path, found.chain.size(), query, ways, tally);
         if (!known || known->isUsual != isUsual) return;
         closed.contribution *= float(1.0 / (samples * known->pmf));
         path.refracted = samples * densityOf(*known, y0) / double(atEye.pdfWToLight);
         deliver(closed);
     };
-    const ChainQuery query = queryOf(z, y0);
     const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
     for (const FoundChain& found : usual) bring(found, true);
     const ChainSeed& way = ways.all[rng.below(std::uint32_t(ways.all.size()))];
@@ -79,27 +104,34 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     if (drawn && !isAmong(usual, *drawn)) bring(*drawn, false);
 }
 
-/// The chain that a path runs through behind its first edge, of so many vertices, as a way leads to it.
+/// The chain that a path runs through behind its first edge, of so many vertices, as ways lead to it. Where two
+/// facets of a smooth surface meet, chains may lie closer together than what floats know of a walk: the nearest.
 std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::size_t count,
-                                                   const WaysNearby& ways, RayTally& tally) const {
-    const ChainQuery query = queryOf(*path.vertex[count + 1], *path.vertex[0]);
-    const Vec3d toChain(-path.directionOf(int(count)));
-    std::optional<FoundChain> first;
-    const auto leadsThere = [&](const ChainSeed& way) {
-        if (!hasEventsOf(path, way, count)) return false;
-        const std::optional<FoundChain> found = follower_.follow(way, query, tally);
-        if (!found || !follower_.solver().isAlong(*found, query, toChain, kAngle, tally)) {
-            return false;
-        }
-        if (!first) first = found;
-        return true;
+                                                   const ChainQuery& query, const WaysNearby& ways,
+                                                   RayTally& tally) const {
+    struct Led {
+        std::size_t way;
+        FoundChain found;
     };
-    for (const std::uint8_t kind : ways.kinds) {
-        if (leadsThere(ways.all[kind])) return Known{*first, true, 1.0};
+    const Vec3d toChain(-path.directionOf(int(count)));
+    std::vector<Led> led;
+    for (std::size_t i = 0; i < ways.all.size(); ++i) {
+        if (!hasEventsOf(path, ways.all[i], count)) continue;
+        const std::optional<FoundChain> found = follower_.follow(ways.all[i], query, tally);
+        if (found && follower_.solver().isAlong(*found, query, toChain, kAngle, tally)) {
+            led.push_back({i, *found});
+        }
     }
-    const auto leading = double(std::ranges::count_if(ways.all, leadsThere));
-    if (!first) return std::nullopt;
-    return Known{*first, false, leading / double(ways.all.size())};
+    if (led.empty()) return std::nullopt;
+    const auto apart = [&](const Led& l) {
+        return lengthSquared(l.found.chain.firstDirection() - toChain);
+    };
+    const FoundChain own = std::ranges::min_element(led, {}, apart)->found;
+    std::erase_if(led, [&](const Led& l) { return !isAmong({&own, 1}, l.found); });
+    const bool isUsual = std::ranges::any_of(led, [&](const Led& l) {
+        return std::ranges::find(ways.kinds, l.way) != ways.kinds.end();
+    });
+    return Known{own, isUsual, isUsual ? 1.0 : double(led.size()) / double(ways.all.size())};
 }
 
 /// Over the area of x_0 (solid angle at infinity), per what an eye walk's direction has at z.
@@ -116,14 +148,15 @@ double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
     if (count == 0 || count > Chain::kMost || int(count) + 1 == path.edges) return 0.0;
     if (!SpecularChains::begin(path, count + 1, counts)) return 0.0;
     const PathVertex &z = *path.vertex[count + 1], &y0 = *path.vertex[0];
-    const WaysNearby ways = seeds_->nearOfLamps(z.position, sideOfPath(z));
+    const Vec3 toChain = -path.directionOf(int(count)), toEye = path.directionOf(int(count) + 1);
+    const Vec3 side = sideOf(z, toEye);
+    const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
     const int order = path.orderOf(int(count) + 1);
     const double samples = samplesAt(ways, order, counts) * walker_.seenSamples(y0, z);
     if (!(samples > 0.0)) return 0.0;
-    const Vec3 toChain = -path.directionOf(int(count)), toEye = path.directionOf(int(count) + 1);
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
     if (!(eyePdfW > 0.0)) return 0.0;
-    const std::optional<Known> known = knownOf(path, count, ways, tally);
+    const std::optional<Known> known = knownOf(path, count, queryOf(z, side, y0), ways, tally);
     return known ? samples * densityOf(*known, y0) / eyePdfW : 0.0;
 }
 

@@ -43,8 +43,8 @@ class KnownWays {
         bool isUsual;
         double pmf;  // of this one of all chains between the two
     };
-    std::optional<Known> knownOf(const FullPath& path, std::size_t count, const WaysNearby& ways,
-                                 RayTally& tally) const;
+    std::optional<Known> knownOf(const FullPath& path, std::size_t count, const ChainQuery& query,
+                                 const WaysNearby& ways, RayTally& tally) const;
     double densityOf(const Known& known, const PathVertex& y0) const;
 
     const Walker& walker_;

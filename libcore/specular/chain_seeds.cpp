@@ -78,11 +78,12 @@ void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, co
             SurfacePoint point;
             scene.surfaceAt(*hit, point);
             if (scene.bsdfAt(point).connectable()) {
-                if (!isHardToHit(from, Vec3(ray.direction), distance)) return;
-                if (isHittable(from.kind) && isStraightOn(solver, chain, point, from)) return;
+                const bool left =
+                    isHardToHit(from, Vec3(ray.direction), distance) &&
+                    !(isHittable(from.kind) && isStraightOn(solver, chain, point, from));
                 const bool front = dot(Vec3d(point.ng), chain.last().direction) < 0.0;
                 const Vec3 side = front ? point.ng : -point.ng;
-                arrivals.push_back({side, backwards(chain, point.position, ray.power)});
+                if (left) arrivals.push_back({side, backwards(chain, point.position, ray.power)});
             }
         }
         if (!chain.extend(scene, *hit, rng.uniformDouble())) return;
