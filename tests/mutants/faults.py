@@ -801,7 +801,7 @@ FAULTS = [
           {"acceptance": "KnownWays.*"}),
     Fault("drawn-ways-count-whole", "a known way that is drawn counts as one that is always gone",
           "libcore/bidir/known_ways.cpp",
-          "leading / double(ways.all.size())", "leading / std::max(1.0, leading)",
+          "double(led.size()) / double(ways.all.size())}", "1.0}",
           {"acceptance": "KnownWays.*"}),
     Fault("glass-in-narrow-boxes", "the boxes around glass end before it",
           "libcore/specular/boxes.cpp",
