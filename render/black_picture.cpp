@@ -138,7 +138,7 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
         "round or make its material doubleSided");
     add(!hittable && e.lightMeets > 0 && e.lightRough == 0 && e.eyeMeets > 0 && e.eyeRough == 0,
         "the lamps have no size, and there are mirrors or smooth glass before them and before the "
-        "camera: a way over more than four in a row is not found; use vcm if anything else lies "
+        "camera: a way over more than six in a row is not found; use vcm if anything else lies "
         "between them, or small emissive spheres, or make the glass a little rough");
     if (!text.empty()) return text;
     return "light meets surfaces (" + paths(e.lightMeets) +

@@ -132,7 +132,7 @@ TEST(SpecularChains, aBallAboutALampTakesNothingAway) {
     shot.iterations = 400;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
     const Vec3d from = Vec3d(camera.position()) + scene->centre();
-    const double inside = std::pow(fresnelDielectric(1.0, 1.5), 4);  // beyond four vertices
+    const double inside = std::pow(fresnelDielectric(1.0, 1.5), 4);  // beyond six edges
     const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
         const Vec3d toLamp = lamp - (from - d * (from.y / d.y));
         const double distance = length(toLamp);
@@ -185,7 +185,7 @@ void expectChainsAsSplats(const SceneBuilder& b, int maxDepth, int iterations,
 }
 
 TEST_P(Caustics, areTheSameByChainsAndBySplats) {
-    // Chains are of four vertices at most.
+    // Of no more edges than the longest chains make.
     expectChainsAsSplats(specularStage(GetParam()), 6, 3000, nameOf(GetParam()) + ", caustics");
 }
 
