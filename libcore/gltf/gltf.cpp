@@ -4,18 +4,23 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "libcore/gltf/blender.h"
 #include "libcore/gltf/document.h"
 #include "libcore/gltf/entities.h"
 #include "libcore/gltf/extras.h"
 #include "libcore/gltf/image.h"
+#include "libcore/gltf/in_parallel.h"
 #include "libcore/gltf/limits.h"
 #include "libcore/gltf/material.h"
 #include "libcore/gltf/mesh.h"
 #include "libcore/gltf/node.h"
 #include "libcore/gltf/skin.h"
+#include "libcore/scene/texture.h"
 
 namespace lacuna {
 namespace {
@@ -104,6 +109,29 @@ void addDefaultMaterial(SceneDescription& scene) {
     scene.materials.back().name = "default";
 }
 
+/// How smooth textures let materials be anywhere.
+void findLeastTexels(SceneDescription& scene) {
+    std::map<std::int32_t, float> least;
+    for (const Material& m : scene.materials) {
+        for (const TextureUse& use : {m.metallicRoughnessTexture, m.clearcoatRoughnessTexture}) {
+            if (use) least[use.value];
+        }
+    }
+    std::vector<std::pair<const std::int32_t, float>*> textures;
+    for (auto& entry : least) textures.push_back(&entry);
+    inParallel(textures, [&](auto* entry) {
+        entry->second = leastGreen(scene.textures[std::size_t(entry->first)]);
+    });
+    for (Material& m : scene.materials) {
+        if (m.metallicRoughnessTexture) {
+            m.leastRoughnessTexel = least[m.metallicRoughnessTexture.value];
+        }
+        if (m.clearcoatRoughnessTexture) {
+            m.leastClearcoatRoughnessTexel = least[m.clearcoatRoughnessTexture.value];
+        }
+    }
+}
+
 Bytes copyOf(std::span<const std::uint8_t> bytes) {
     Bytes copy{std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size()), bytes.size()};
     std::copy(bytes.begin(), bytes.end(), copy.data.get());
@@ -124,6 +152,7 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
     scene.phaseSeconds["parse"] = watch.lap();
 
     scene.textures = textures.decode(document);
+    findLeastTexels(scene);
     readExtras(document, scene, warnings);
     scene.phaseSeconds["decode"] = watch.lap();
 

@@ -25,15 +25,23 @@ float roughnessOf(const Material& m) {
 bool mayBeRough(const Material& m) {
     return isRough(roughnessOf(m));
 }
+/// Where it is smoothest by its texture too. Between texels floats may come out a little lower.
+float leastOf(float roughness, const TextureUse& texture, float leastTexel) {
+    return texture ? roughness * leastTexel * 0.9999f : roughness;
+}
+float leastRoughness(const Material& m) {
+    return leastOf(m.roughness, m.metallicRoughnessTexture, m.leastRoughnessTexel);
+}
 bool mayBeSmooth(const Material& m) {
     const bool alwaysBrushed = m.anisotropy > 0.0f && !m.anisotropyTexture;
-    return !alwaysBrushed && (!isRough(m.roughness) || m.metallicRoughnessTexture);
+    return !alwaysBrushed && !isRough(leastRoughness(m));
 }
 bool mayHaveRoughClearcoat(const Material& m) {
     return m.clearcoat > 0.0f && isRough(m.clearcoatRoughness);
 }
 bool mayHaveSmoothClearcoat(const Material& m) {
-    return m.clearcoat > 0.0f && (!mayHaveRoughClearcoat(m) || m.clearcoatRoughnessTexture);
+    return m.clearcoat > 0.0f && !isRough(leastOf(m.clearcoatRoughness, m.clearcoatRoughnessTexture,
+                                                  m.leastClearcoatRoughnessTexel));
 }
 
 bool mayBeGlossy(const Material& m) {
@@ -46,7 +54,8 @@ bool mayRefractRoughly(const Material& m) {
     return mayTransmit(m) && !m.thin && refractsRoughly(roughnessOf(m), m.ior);
 }
 bool mayRefractSmoothly(const Material& m) {
-    return mayTransmit(m) && !m.thin && (mayBeSmooth(m) || !refractsRoughly(m.roughness, m.ior));
+    return mayTransmit(m) && !m.thin &&
+           (mayBeSmooth(m) || !refractsRoughly(leastRoughness(m), m.ior));
 }
 bool mayPassRoughly(const Material& m) {
     return mayTransmit(m) && m.thin && mayBeRough(m);

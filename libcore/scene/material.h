@@ -50,6 +50,7 @@ struct Material {
     float metallic = 1.0f;
     float roughness = 1.0f;               ///< GGX alpha = roughness^2; 0 is a perfect mirror
     TextureUse metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
+    float leastRoughnessTexel = 0.0f;     ///< of its G; the loader finds out
     float specular = 1.0f;                ///< KHR_materials_specular factor; 0 = exactly Lambert
     TextureUse specularTexture;           ///< linear: alpha
     Rgb specularColor{1.0f};              ///< of the layer along its normal; may be above 1
@@ -57,8 +58,9 @@ struct Material {
     float clearcoat = 0.0f;  ///< KHR_materials_clearcoat: weight of a layer over everything else
     TextureUse clearcoatTexture;  ///< linear: R
     float clearcoatRoughness = 0.0f;
-    TextureUse clearcoatRoughnessTexture;  ///< linear: G
-    TextureUse clearcoatNormalTexture;     ///< as normalTexture; none: the mesh's own normals
+    TextureUse clearcoatRoughnessTexture;       ///< linear: G
+    float leastClearcoatRoughnessTexel = 0.0f;  ///< likewise
+    TextureUse clearcoatNormalTexture;          ///< as normalTexture; none: the mesh's own normals
     float clearcoatNormalScale = 1.0f;
     Rgb sheenColor;                ///< KHR_materials_sheen; black: none
     TextureUse sheenColorTexture;  ///< sRGB

@@ -1,5 +1,6 @@
 #include "libcore/scene/texture.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -67,12 +68,20 @@ const std::uint8_t* texelOf(const Texture& texture, int x, int y) {
     return texture.rgba.data() + (std::size_t(y) * std::size_t(texture.width) + std::size_t(x)) * 4;
 }
 
+const Decoder& decoder() {
+    static const Decoder tables;
+    return tables;
+}
+
+const std::array<float, 256>& tableOf(const Texture& texture) {
+    return texture.srgb ? decoder().srgb : decoder().linear;
+}
+
 }  // namespace
 
 Rgba sampleTexture(const Texture& texture, Vec2 uv) {
-    static const Decoder decoder;
-    const std::array<float, 256>& table = texture.srgb ? decoder.srgb : decoder.linear;
-
+    const std::array<float, 256>& table = tableOf(texture);
+    const std::array<float, 256>& linear = decoder().linear;
     const Footprint at(texture, uv);
     Rgba sum{Rgb{}, 0.0f};
     for (int j = 0; j < 2; ++j) {
@@ -80,10 +89,18 @@ Rgba sampleTexture(const Texture& texture, Vec2 uv) {
             const float w = (i ? at.fx : 1.0f - at.fx) * (j ? at.fy : 1.0f - at.fy);
             const std::uint8_t* t = texelOf(texture, at.x[i], at.y[j]);
             sum.rgb += Rgb{table[t[0]], table[t[1]], table[t[2]]} * w;
-            sum.alpha += decoder.linear[t[3]] * w;
+            sum.alpha += linear[t[3]] * w;
         }
     }
     return sum;
+}
+
+float leastGreen(const Texture& texture) {
+    std::uint8_t least = 255;
+    for (std::size_t i = 1; i < texture.rgba.size(); i += 4) {
+        least = std::min(least, texture.rgba[i]);
+    }
+    return tableOf(texture)[least];
 }
 
 void prefetchTexture(const Texture& texture, Vec2 uv) {

@@ -18,6 +18,9 @@ struct Rgba {
 /// half integers). The texture must have at least one texel.
 Rgba sampleTexture(const Texture& texture, Vec2 uv);
 
+/// The least of all texels' G, linear where the texture is: sampleTexture() gives nothing below but by rounding.
+float leastGreen(const Texture& texture);
+
 /// The texture that `use` names, at the point with these coordinates of either set.
 inline Rgba sampleTexture(std::span<const Texture> textures, const TextureUse& use, Vec2 uv,
                           Vec2 uv1) {

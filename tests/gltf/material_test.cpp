@@ -173,6 +173,40 @@ TEST(Material, ClearcoatAndItsTextures) {
     EXPECT_EQ(lacquers.materials[3].clearcoatNormalScale, 0.5f);
 }
 
+/// Files of games have a texture for everything: only where it has a texel that is smooth are there mirrors.
+TEST(Material, TexturesOfRoughnessTellWhereMirrorsMayBe) {
+    TriangleBuilder b;
+    const auto green = [&](std::uint8_t first, std::uint8_t second) {
+        const json texture = {
+            {"index", b.texture(png(2, 1, {0, first, 0, 255, 0, second, 0, 255}))}};
+        return texture;
+    };
+    const auto addMetal = [&](const json& texture, double factor) {
+        b.add("materials",
+              {{"pbrMetallicRoughness",
+                {{"metallicRoughnessTexture", texture}, {"roughnessFactor", factor}}}});
+    };
+    const auto addLacquer = [&](const json& texture) {
+        b.add("materials", {{"extensions",
+                             {{"KHR_materials_clearcoat",
+                               {{"clearcoatFactor", 1},
+                                {"clearcoatRoughnessFactor", 1},
+                                {"clearcoatRoughnessTexture", texture}}}}}});
+    };
+    const json rough = green(90, 200), smooth = green(200, 0);
+    addMetal(rough, 1);
+    addMetal(rough, 0.02);  // times 90 / 255 it is below .01
+    addMetal(smooth, 1);
+    addLacquer(rough);
+    addLacquer(smooth);
+    const SceneDescription scene = b.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    std::vector<bool> found;
+    for (const Material& m : scene.materials) found.push_back(mayBeSpecular(m));
+    EXPECT_EQ(found,
+              (std::vector<bool>{false, true, true, false, true, false}));  // and the default
+}
+
 TEST(Material, SheenAndItsTextures) {
     TriangleBuilder b;
     const json info = {{"index", b.texture(redBlue())}};
