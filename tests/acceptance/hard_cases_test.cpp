@@ -17,11 +17,9 @@ class HardCases : public RowTest {
   protected:
     /// This row against path tracing in `builder`'s scene.
     void expectReference(const SceneBuilder& builder, Shot shot, const std::string& what) const {
-        const auto scene = builder.build();
+        const Picture p = render(*builder.build(), row(), shot);
         shot.seed += 100;
-        const Picture reference = render(*scene, pathTracer(), shot);
-        shot.seed -= 100;
-        expectSame(render(*scene, row(), shot), reference, row().name + ", " + what);
+        expectSame(p, reference(builder, shot, what), row().name + ", " + what);
     }
 };
 INSTANTIATE_TEST_SUITE_P(All, HardCases, testing::ValuesIn(rowNames(Rows::OfTheTool)),
@@ -128,7 +126,7 @@ TEST_P(HardCases, oneTooBrightPixelDoesNotFollowAPointLight) {
 TEST_P(HardCases, degenerateTrianglesAndBrokenNormalsChangeNothing) {
     SceneBuilder clean = stage();
     addLight(clean, LightChoice::Quad);
-    const Picture reference = render(*clean.build(), pathTracer(), quickShot(150));
+    const Picture& whole = reference(clean, quickShot(150));
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);
     for (Mesh& m : b.d.meshes) {
@@ -143,7 +141,7 @@ TEST_P(HardCases, degenerateTrianglesAndBrokenNormalsChangeNothing) {
     }
     Shot shot = quickShot(150);
     shot.seed = 2;
-    expectSame(render(*b.build(), row(), shot), reference, row().name + ", degenerate triangles");
+    expectSame(render(*b.build(), row(), shot), whole, row().name + ", degenerate triangles");
     stabilityCase("broken-geometry", worstDeviation(), kOfAllowed);
 }
 
@@ -171,13 +169,13 @@ TEST_P(HardCases, scaleFromAThousandthToAThousand) {
         b.add(lookAt({0, 0, 0.98 * scale}, {0, -0.1 * scale, 0}, 75));
         return b;
     };
-    const Picture reference = render(*scaled(1).build(), pathTracer(), quickShot(200));
+    const Picture& unscaled = reference(scaled(1), quickShot(200));
     Shot shot = quickShot(100);
     shot.seed = 2;
     for (const double scale : {1e-3, 1e3}) {
         shot.gain = float(scale * scale);
         shot.radius = 0.01 * scale;
-        expectSame(render(*scaled(scale).build(), row(), shot), reference,
+        expectSame(render(*scaled(scale).build(), row(), shot), unscaled,
                    row().name + ", scaled by " + std::to_string(scale));
     }
     stabilityCase("scale", worstDeviation(), kOfAllowed);
@@ -216,18 +214,17 @@ TEST_P(HardCases, cropIsThatPartOfTheWholePicture) {
 }
 
 TEST_P(HardCases, onePixelIsTheMeanOfMany) {
-    const auto scene = diffuseBox().builder.build();
-    Shot many = quickShot(150);
-    const Picture reference = render(*scene, pathTracer(), many);
+    const SceneBuilder b = diffuseBox().builder;
+    const Picture& many = reference(b, quickShot(150));
     Shot one = quickShot(6000);
     one.width = one.height = 1;
     one.candidates = 16;
     one.lightPaths = 16;
-    const Picture p = render(*scene, row(), one);
-    const double allowed = 5 * std::hypot(p.standardError(), reference.standardError());
-    EXPECT_NEAR(p.mean(), reference.mean(), allowed);
+    const Picture p = render(*b.build(), row(), one);
+    const double allowed = 5 * std::hypot(p.standardError(), many.standardError());
+    EXPECT_NEAR(p.mean(), many.mean(), allowed);
     EXPECT_EQ(p.statistics.invalidSamples, 0u);
-    stabilityCase("one-pixel", std::fabs(p.mean() - reference.mean()) / allowed, kOfAllowed);
+    stabilityCase("one-pixel", std::fabs(p.mean() - many.mean()) / allowed, kOfAllowed);
 }
 
 TEST_P(HardCases, thinLensAndItsLimit) {
@@ -235,7 +232,7 @@ TEST_P(HardCases, thinLensAndItsLimit) {
     addLight(b, LightChoice::Quad);
     const auto scene = b.build();
     Shot shot = quickShot(150);
-    const Picture pinhole = render(*scene, pathTracer(), shot);
+    const Picture& pinhole = reference(b, shot, "pinhole");
     shot.seed = 2;
     shot.lens = {1e-5f, 2.5f};
     expectSame(render(*scene, row(), shot), pinhole, row().name + ", lens of 1e-5");
@@ -260,8 +257,8 @@ TEST_P(HardCases, shiftedFilmIsThatPartOfAWiderOne) {
         shot.width = shot.height = 48;
         shot.crop = {20, 36, 14, 30};
         shot.seed = 101;
-        expectSame(shifted, render(*wide.build(), pathTracer(), shot),
-                   row().name + (lens.radius > 0.0f ? ", lens" : ", pinhole"));
+        const std::string what = lens.radius > 0.0f ? ", lens" : ", pinhole";
+        expectSame(shifted, reference(wide, shot, what), row().name + what);
     }
 }
 

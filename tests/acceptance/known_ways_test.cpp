@@ -12,20 +12,15 @@
 namespace lacuna::test {
 namespace {
 
-MethodRow withoutKnownWays(MethodRow row) {
-    row.techniques.refractions = false;
-    return row;
-}
-
 /// How many mirrors and surfaces of glass light meets before something scatters it, if it is reflected by any;
 /// else zero. What the lens sees of a lamp in a mirror is left to walks.
 std::size_t lengthOfReflectedWay(const FullPath& path) {
-    bool reflected = false;
-    std::size_t i = 1;
-    for (; int(i) < path.edges && path.delta[i]; ++i) {
-        reflected |= path.vertex[i]->event == ScatterEvent::DeltaReflection;
+    const int length = path.deltasBehindLight();
+    for (int i = 1; i <= length; ++i) {
+        if (path.vertex[std::size_t(i)]->event == ScatterEvent::DeltaReflection)
+            return std::size_t(length);
     }
-    return reflected && int(i) < path.edges ? i - 1 : 0;
+    return 0;
 }
 bool isReflected(const FullPath& path) {
     return lengthOfReflectedWay(path) > 0;
@@ -83,8 +78,6 @@ Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iter
     shot.maxDepth = 7;
     shot.iterations = iterations;
     shot.seed = seed;
-    const ThreadPool one(1);
-    shot.threads = &one;
     Sums sums(iterations);
     shot.observer = [&](const PathEvent& event) {
         if (!isReflected(event.path)) return;
@@ -97,7 +90,7 @@ Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iter
 /// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each row.
 TEST(KnownWays, areWhatWalksFind) {
     const auto scene = mirrorAndBlock(1.0f, true);
-    const Mean walks = reflectedLight(*scene, withoutKnownWays(rowNamed("pt")), 24000, 100);
+    const Mean walks = reflectedLight(*scene, withoutRefractions(rowNamed("pt")), 24000, 100);
     EXPECT_LT(walks.error, 0.02 * walks.value);
     for (const char* name : {"pt", "bpt"}) {
         const Mean known = reflectedLight(*scene, rowNamed(name), 4000, 1);
@@ -113,8 +106,6 @@ TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     Shot shot;
     shot.maxDepth = 9;
     shot.iterations = 16000;
-    const ThreadPool one(1);
-    shot.threads = &one;
     Sums known(shot.iterations), walks(shot.iterations);
     shot.observer = [&](const PathEvent& event) {
         if (!(event.path.refracted > 0) || lengthOfReflectedWay(event.path) < 5) return;
@@ -123,7 +114,6 @@ TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     };
     render(*scene, rowNamed("pt"), shot);
     const Mean a = known.mean(), b = walks.mean();
-    fprintf(stderr, "AB %g %g %g %g\n", a.value, a.error, b.value, b.error);
     EXPECT_LT(std::hypot(a.error, b.error), 0.15 * b.value);
     EXPECT_NEAR(a.value, b.value, 4.4 * std::hypot(a.error, b.error));
 }
@@ -136,8 +126,6 @@ TEST(KnownWays, countTheSameFromBothSides) {
         shot.maxDepth = 7;
         int own = 0, others = 0;
         double worst = 0;
-        const ThreadPool one(1);
-        shot.threads = &one;
         shot.observer = [&](const PathEvent& event) {
             const FullPath& path = event.path;
             if (!(path.refracted > 0) || !isReflected(path)) return;
@@ -159,8 +147,6 @@ TEST(KnownWays, areNearlyAll) {
     Shot shot = quickShot(3000);
     shot.maxDepth = 8;
     double known = 0, all = 0;
-    const ThreadPool one(1);
-    shot.threads = &one;
     shot.observer = [&](const PathEvent& event) {
         if (event.technique.refracts() || !isReflected(event.path)) return;
         const double light = double(mean(event.contribution)) / event.weight;
@@ -175,8 +161,6 @@ TEST(KnownWays, areNearlyAll) {
 double secondMoment(const Scene& scene, const MethodRow& row) {
     Shot shot = quickShot(1000);
     shot.maxDepth = 7;
-    const ThreadPool one(1);
-    shot.threads = &one;
     double sum = 0;
     shot.observer = [&](const PathEvent& event) {
         const double value = double(mean(event.contribution));
@@ -191,7 +175,7 @@ TEST(KnownWays, findWhatWalksMiss) {
     const auto scene = mirrorAndBlock(0.2f);
     for (const char* name : {"pt", "bpt"}) {
         const double with = secondMoment(*scene, rowNamed(name));
-        const double without = secondMoment(*scene, withoutKnownWays(rowNamed(name)));
+        const double without = secondMoment(*scene, withoutRefractions(rowNamed(name)));
         EXPECT_LT(with, 0.3 * without) << name;
     }
 }

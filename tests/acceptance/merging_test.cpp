@@ -167,8 +167,6 @@ TEST(Merging, theRadiusOfAnIterationIsTheSameInEveryBlock) {
     std::vector<double> samples;
     Shot shot = quickShot(1);
     shot.observer = [&](const PathEvent& event) { samples.push_back(event.counts.mergeSamples); };
-    static const ThreadPool one(1);
-    shot.threads = &one;
     Render render(*scene, row, shot);
     render.warmUp();
     for (const std::uint32_t iteration : {0u, 255u, 0u}) {
@@ -192,8 +190,6 @@ TEST(Merging, theRadiusComesFromThePixels) {
     Shot shot = quickShot(1);
     shot.radius = 0;
     shot.observer = [&](const PathEvent& event) { samples = event.counts.mergeSamples; };
-    static const ThreadPool one(1);
-    shot.threads = &one;
     render(*scene, rowNamed("vcm"), shot);
     EXPECT_NEAR(samples, 144 * mergeArea(2 * footprint), 0.02 * samples);
 }

@@ -15,9 +15,7 @@ INSTANTIATE_TEST_SUITE_P(All, PixelFilter, testing::Values("pt", "lt", "bpt"), B
 /// Whatever a path brings, a splat too, is in the one pixel that its edge at the lens passes through.
 TEST_P(PixelFilter, keepsEachPathInItsPixel) {
     const auto scene = glossyBox().builder.build();
-    const ThreadPool one(1);
     Shot shot = quickShot(1);
-    shot.threads = &one;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
     std::vector<Vec3d> sums(std::size_t(shot.width * shot.height));
     int splats = 0;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "libcore/base/number_text.h"
 #include "tests/acceptance/scene_caches.h"
@@ -18,6 +19,12 @@ namespace {
 
 PixelRect cropOf(const Shot& shot) {
     return shot.crop == PixelRect{} ? PixelRect{0, shot.width, 0, shot.height} : shot.crop;
+}
+
+/// Films are small, and tests run side by side.
+const ThreadPool& threadsOf(const Shot& shot) {
+    static const ThreadPool one(1);
+    return shot.threads ? *shot.threads : one;
 }
 
 Settings settingsOf(const MethodRow& row, const Shot& shot) {
@@ -140,7 +147,7 @@ Render::Render(const Scene& scene, const MethodRow& row, const Shot& shot)
       camera_(scene.makeCamera("", {shot.width, shot.height}, shot.lens)),
       settings_(settingsOf(row, shot)),
       own_(row.create(settings_)) {
-    giveCaches(*own_, row, scene, shot.threads ? *shot.threads : pool());
+    giveCaches(*own_, row, scene, threadsOf(shot));
     start(scene, row, *own_);
 }
 
@@ -167,7 +174,7 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     }
     if (shot_.walkGuide != 0) r.guides.walks = randomWalkGuide(shot_.walkGuide);
     integrator_ = std::make_unique<BidirIntegrator>(scene, camera_, row.techniques, method, r,
-                                                    shot_.threads ? *shot_.threads : pool());
+                                                    threadsOf(shot_));
     integrator_->delivery().setTechniqueFilm(shot_.techniques);
     if (shot_.transparentBackground) {
         coverage_.emplace(r.crop.width(), r.crop.height());
@@ -194,7 +201,7 @@ void Render::iterate(std::uint32_t iteration) {
 Picture Render::run() {
     const PixelRect crop = cropOf(shot_);
     Picture picture(crop, {BlockPlan::kEndless, false, Sampler::groupOf(shot_.sampling)});
-    const ThreadPool& threads = shot_.threads ? *shot_.threads : pool();
+    const ThreadPool& threads = threadsOf(shot_);
     const int width = crop.width(), blocksX = picture.blocks.width();
     std::vector<Rgb> blocks(std::size_t(blocksX) * std::size_t(picture.blocks.height()));
     const int bx = std::min(4, width), by = std::min(4, crop.height());
@@ -342,6 +349,11 @@ bool isTestRow(const MethodRow& row) {
     return row.name.starts_with("test-");
 }
 
+MethodRow withoutRefractions(MethodRow row) {
+    row.techniques.refractions = row.techniques.knownWays = false;
+    return row;
+}
+
 const MethodRow& pathTracer() {
     static const MethodRow row = [] {
         MethodRow byPower = findMethod("pt");
@@ -351,6 +363,18 @@ const MethodRow& pathTracer() {
         return byPower;
     }();
     return row;
+}
+
+const Picture& RowTest::reference(const SceneBuilder& builder, const Shot& shot,
+                                  const std::string& what) {
+    static std::map<std::string, Picture> pictures;
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    const std::string name = test.name();  // "test/row"
+    const std::string key =
+        std::string(test.test_suite_name()) + "." + name.substr(0, name.find('/')) + " " + what;
+    if (!pictures.contains(key))
+        pictures.emplace(key, render(*builder.build(), pathTracer(), shot));
+    return pictures.at(key);
 }
 
 }  // namespace lacuna::test

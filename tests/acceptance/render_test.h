@@ -40,7 +40,7 @@ struct Shot {
     int candidates = 0;            ///< likewise; 0: one light subpath per pixel
     double radius = 0.01;          ///< likewise: what merging then blurs no test here can see
     std::vector<std::string> settings = {};
-    const ThreadPool* threads = nullptr;  ///< null: the shared pool
+    const ThreadPool* threads = nullptr;  ///< null: one, as observers may count on
     std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
     std::uint64_t walkGuide = 0;  ///< likewise of a guide that walks follow
     TechniqueFilm* techniques = nullptr;
@@ -135,6 +135,10 @@ MethodRow rowNamed(const std::string& name);
 class RowTest : public testing::TestWithParam<std::string> {
   protected:
     MethodRow row() const { return rowNamed(GetParam()); }
+    /// What path tracing makes of `builder`'s scene. All rows of a test are judged by the same pictures, `what`
+    /// tells them apart: rendered for the first of them alone.
+    static const Picture& reference(const SceneBuilder& builder, const Shot& shot,
+                                    const std::string& what = "");
 };
 std::string testName(const std::string& text);
 /// For INSTANTIATE_TEST_SUITE_P: names a test after its parameter, as PrintTo writes it.
@@ -161,6 +165,8 @@ bool mergesBetweenDeltas(const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
 bool isTestRow(const MethodRow& row);
+/// What it leaves out is left to walks that run into lamps.
+MethodRow withoutRefractions(MethodRow row);
 /// pt, its lamps picked by power: what rows do that pick by sight is judged by what does not.
 const MethodRow& pathTracer();
 

@@ -13,10 +13,9 @@ namespace {
 
 class Reports : public RowTest {
   protected:
-    /// Path tracing of `builder`'s scene.
-    static Picture reference(const SceneBuilder& builder, Shot shot) {
+    static const Picture& reference(const SceneBuilder& builder, Shot shot) {
         shot.seed += 100;
-        return render(*builder.build(), pathTracer(), shot);
+        return RowTest::reference(builder, shot);
     }
 };
 INSTANTIATE_TEST_SUITE_P(All, Reports, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());

@@ -25,7 +25,7 @@ TEST_P(SharedWalks, haveTheMeanOfWalksAlone) {
     const NamedScene named = weightScenes()[std::size_t(GetParam())];
     const auto scene = named.builder.build();
     Shot shot;
-    shot.iterations = 400;
+    shot.iterations = 250;
     shot.maxDepth = 5;
     const Picture alone = withShare(*scene, "1", shot);
     shot.seed = 2;

@@ -15,16 +15,10 @@ namespace {
 
 constexpr int kPaths = 10000;
 
-const ThreadPool& oneThread() {
-    static const ThreadPool pool(1);
-    return pool;
-}
-
 Shot weightShot() {
     Shot shot;
     shot.maxDepth = 7;
     shot.rouletteDepth = 2;
-    shot.threads = &oneThread();
     shot.lightPaths = 512;
     shot.radius = 0.2;  // no mean is looked at, and there must be merges
     return shot;
