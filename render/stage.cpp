@@ -53,12 +53,11 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     stage.settings.sampling = options.sampling;
     stage.settings.transparentBackground = options.transparentBackground;
     stage.settings.lightPaths = lightPathsOf(settings);
-    const bool toLamps = stage.techniques.hits && stage.techniques.refractions;
-    if (stage.techniques.connects && (stage.techniques.chains || toLamps)) {
+    if (stage.techniques.askForWays()) {
         const Stopwatch phase(stage.phaseSeconds["chains"]);
         stage.settings.chainSeeds = std::make_shared<const ChainSeeds>(*stage.scene, pool);
     }
-    if (stage.techniques.connects && toLamps) {
+    if (stage.techniques.refract()) {
         const Stopwatch phase(stage.phaseSeconds["glass"]);
         stage.settings.smoothGlass = std::make_shared<const SmoothGlass>(*stage.scene);
     }

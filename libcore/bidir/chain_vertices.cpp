@@ -1,7 +1,6 @@
 #include "libcore/bidir/chain_vertices.h"
 
 #include "libcore/bidir/absorption.h"
-#include "libcore/bidir/close.h"
 
 namespace lacuna {
 
@@ -62,7 +61,7 @@ Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, cons
     return z.throughput * atEye * through * y0.scatter * y0.throughput * float(spread);
 }
 
-double walkDensity(const Walker& walker, const FoundChain& found, const PathVertex& y0) {
+double densityOfNextEvent(const Walker& walker, const FoundChain& found, const PathVertex& y0) {
     const Chain& chain = found.chain;
     double walk = found.spread * measureCosine(y0, chain[chain.size() - 1].toLight) *
                   double(walker.lights().opacity(y0.light, y0.lightUv));
@@ -73,7 +72,7 @@ double walkDensity(const Walker& walker, const FoundChain& found, const PathVert
             walker.scattering(vertexOf(walker, v), v.toEye, v.toLight, v.event.event);
         walk *= double(e.pdfWToLight) / v.measure;
     }
-    return walk;
+    return walk > 0.0 ? double(lightPointOf(walker.lights(), y0).pdf) / walk : 0.0;
 }
 
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally) {
@@ -82,6 +81,20 @@ bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& 
         if (!connected(walker.scene(), light[i], end, RayKind::Chain, tally)) return false;
     }
     return true;
+}
+
+std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& found,
+                                        const PathVertex& y0, Subpath eye, RayTally& tally,
+                                        std::vector<PathVertex>& light, FullPath& path) {
+    const PathVertex& z = eye.back();
+    const BsdfEvaluation atEye =
+        walker.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
+    light.assign(1, y0);
+    const float pdfWToEye = appendChain(walker, found.chain, light);
+    const Rgb contribution = broughtBy(walker, found, light, z, atEye.f);
+    if (isBlack(contribution) || !isOpen(walker, light, z, tally)) return std::nullopt;
+    return NextEvent{closeRefraction(walker, light, pdfWToEye, eye, atEye, contribution, path),
+                     double(atEye.pdfWToLight)};
 }
 
 }  // namespace lacuna

@@ -1,9 +1,10 @@
 // A chain of mirrors and smooth glass as a light walk would have left it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "libcore/bidir/walk.h"
+#include "libcore/bidir/close.h"
 #include "libcore/specular/chain_solver.h"
 
 namespace lacuna {
@@ -19,10 +20,21 @@ float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVert
 /// densities of y_0 and of z's own walk. `light` ends with the chain.
 Rgb broughtBy(const Walker& walker, const FoundChain& found, Subpath light, const PathVertex& z,
               const Rgb& atEye);
-/// Density of the walk from z along the chain to y_0, per what its direction at z has: by the events'
-/// probabilities, and by how far the chain spreads a solid angle.
-double walkDensity(const Walker& walker, const FoundChain& found, const PathVertex& y0);
+/// p(y_0) of one sample by power over what an eye walk that leaves z along the chain has for it, but for the
+/// direction's density at z: the events' probabilities, and how far the chain spreads a solid angle. Zero where
+/// no walk goes there.
+double densityOfNextEvent(const Walker& walker, const FoundChain& found, const PathVertex& y0);
 /// Whether all edges from y_0 to z are open, by a ray each.
 bool isOpen(const Walker& walker, Subpath light, const PathVertex& z, RayTally& tally);
+
+/// A path over a chain from y_0 to an eye subpath's last vertex.
+struct NextEvent {
+    Closed closed;   ///< as if y_0 and the chain had density one
+    double eyePdfW;  ///< of the direction at that vertex, by its own walk
+};
+/// Empty where it carries nothing. Fills `light`, y_0 .. , and `path`, but for FullPath::refracted.
+std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& found,
+                                        const PathVertex& y0, Subpath eye, RayTally& tally,
+                                        std::vector<PathVertex>& light, FullPath& path);
 
 }  // namespace lacuna

@@ -63,6 +63,12 @@ struct FullPath {
     int orderOf(int i) const {
         return 1 + int(std::count(delta.begin() + i + 1, delta.begin() + edges, false));
     }
+    /// How many delta events follow x_0 before something scatters; zero where that is the lens alone.
+    int deltasBehindLight() const {
+        int i = 1;
+        while (i < edges && delta[std::size_t(i)]) ++i;
+        return i < edges ? i - 1 : 0;
+    }
     /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
     double lightRoulette(int i, int rouletteDepth) const {
         return ifPlayed(i - 1 >= rouletteDepth, survival[std::size_t(std::max(0, i - 1))]);

@@ -8,27 +8,28 @@ namespace lacuna {
 
 namespace {
 
-std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup) {
+std::shared_ptr<const ChainSeeds> waysOf(const RenderSetup& setup) {
+    if (!setup.techniques.askForWays() || setup.settings.chainSeeds)
+        return setup.settings.chainSeeds;
+    return std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
+}
+
+std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup,
+                                               const std::shared_ptr<const ChainSeeds>& ways) {
     const Techniques& techniques = setup.techniques;
     if (!techniques.connects || !techniques.chains) return nullptr;
-    std::shared_ptr<const ChainSeeds> seeds = setup.settings.chainSeeds;
-    if (!seeds) seeds = std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
-    auto chains = std::make_unique<const SpecularChains>(setup.walker, std::move(seeds));
+    auto chains = std::make_unique<const SpecularChains>(setup.walker, ways);
     return chains->empty() ? nullptr : std::move(chains);
 }
 
-std::unique_ptr<const KnownWays> knownWaysOf(const RenderSetup& setup) {
-    const Techniques& techniques = setup.techniques;
-    if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
-    std::shared_ptr<const ChainSeeds> seeds = setup.settings.chainSeeds;
-    if (!seeds) seeds = std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
-    if (!seeds->anyOfLamps()) return nullptr;
-    return std::make_unique<const KnownWays>(setup.walker, std::move(seeds));
+std::unique_ptr<const KnownWays> knownWaysOf(const RenderSetup& setup,
+                                             const std::shared_ptr<const ChainSeeds>& ways) {
+    if (!setup.techniques.goKnownWays() || !ways->anyOfLamps()) return nullptr;
+    return std::make_unique<const KnownWays>(setup.walker, ways);
 }
 
 std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
-    const Techniques& techniques = setup.techniques;
-    if (!techniques.hits || !techniques.connects || !techniques.refractions) return nullptr;
+    if (!setup.techniques.refract()) return nullptr;
     std::shared_ptr<const SmoothGlass> glass = setup.settings.smoothGlass;
     if (!glass) glass = std::make_shared<const SmoothGlass>(setup.scene);
     if (glass->empty()) return nullptr;
@@ -43,9 +44,10 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
     : setup_(scene, camera, techniques, settings, threads),
       method_(&method),
       workers_(threads, settings.limits.maxDepth),
-      chains_(chainsOf(setup_)),
+      ways_(waysOf(setup_)),
+      chains_(chainsOf(setup_, ways_)),
       refractedLamps_(refractedLampsOf(setup_)),
-      knownWays_(knownWaysOf(setup_)),
+      knownWays_(knownWaysOf(setup_, ways_)),
       eyePass_(setup_, lightPass_, pool_, photons_, chains_.get(), delivery_, workers_) {}
 
 Iteration BidirIntegrator::begin(std::uint32_t number, std::span<Rgb> pixels,

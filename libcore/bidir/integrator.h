@@ -73,6 +73,7 @@ class BidirIntegrator {
     CoverageFilm* coverage_ = nullptr;
     LightPool pool_;
     PhotonGrid photons_;
+    std::shared_ptr<const ChainSeeds> ways_;                // null: nothing asks for them
     std::unique_ptr<const SpecularChains> chains_;          // null: the row or the scene has none
     std::unique_ptr<const RefractedLamps> refractedLamps_;  // likewise
     std::unique_ptr<const KnownWays> knownWays_;            // likewise

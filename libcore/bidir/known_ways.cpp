@@ -13,11 +13,6 @@ namespace {
 
 constexpr double kAngle = 1e-3;  // between the first directions of a walk's path and of its chain
 
-/// ng on the side that z is seen from. Where pixels share walks, z may have been seen from elsewhere by its own.
-Vec3 sideOf(const PathVertex& z, const Vec3& toEye) {
-    return dot(z.ng, toEye) < 0.0f ? -z.ng : z.ng;
-}
-
 /// What chains are a function of.
 ChainQuery queryOf(const PathVertex& z, const Vec3& side, const PathVertex& y0) {
     return {{z.position, z.ng, z.bsdf.transmits() ? Vec3{} : side},
@@ -25,17 +20,11 @@ ChainQuery queryOf(const PathVertex& z, const Vec3& side, const PathVertex& y0) 
             Chain::kMost};
 }
 
-/// Whether the delta event at x_i is one about the geometric normal, by its directions (Bsdf::evaluateDelta).
+/// Whether the delta event at x_i is one about the geometric normal.
 bool isAboutNg(const FullPath& path, std::size_t i) {
     const PathVertex& v = *path.vertex[i];
-    const bool transmits = v.event == ScatterEvent::DeltaTransmission;
-    const Vec3 ns = v.bsdf.ns(), ng = v.bsdf.ng();
-    if (ns == ng || (transmits && !v.bsdf.bends())) return false;
     const Vec3 toEye = path.directionOf(int(i)), toLight = -path.directionOf(int(i) - 1);
-    const Vec3 h = transmits ? toEye * v.bsdf.indexOn(dot(toEye, ng) > 0.0f) +
-                                   toLight * v.bsdf.indexOn(dot(toLight, ng) > 0.0f)
-                             : toEye + toLight;
-    return lengthSquared(cross(h, ng)) < lengthSquared(cross(h, ns));
+    return v.bsdf.isAboutNg(toEye, toLight, v.event);
 }
 
 /// Whether the events of so many of a path's first vertices behind x_0 are a way's.
@@ -52,15 +41,19 @@ bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) 
 
 }  // namespace
 
-/// Of deep vertices there are many, and each carries little.
-double KnownWays::samplesAt(const WaysNearby& ways, int order,
-                            const TechniqueCounts& counts) const {
+/// The bound of n(z). Of deep vertices there are many, and each carries little.
+double KnownWays::mostSamples(int order, const TechniqueCounts& counts) {
+    constexpr double kByOrder[] = {1.0, 0.5, 0.25};
+    return kByOrder[std::min(order, 3) - 1] * SpecularChains::shareOfVertices(counts);
+}
+
+/// n(z) over its bound, by what comes by the ways to z over what all lights would bring to the sphere around the
+/// scene.
+double KnownWays::shareOfSamples(const WaysNearby& ways) const {
     if (!(ways.powerPerArea > 0.0)) return 0.0;
-    constexpr double kByOrder[] = {1.0, 0.5, 0.25}, kFewest = 0.03;
+    constexpr double kFewest = 0.03;
     const double radius = walker_.scene().radius();
-    const double relative = 4 * kPi * radius * radius * ways.powerPerArea;
-    return kByOrder[std::min(order, 3) - 1] * std::clamp(std::sqrt(relative), kFewest, 1.0) *
-           SpecularChains::shareOfVertices(counts);
+    return std::clamp(std::sqrt(4 * kPi * radius * radius * ways.powerPerArea), kFewest, 1.0);
 }
 
 void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, RayTally& tally,
@@ -69,10 +62,13 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const PathVertex& z = eye.back();
     const int left = walker_.limits().maxDepth - int(eye.size());
     if (left < 1 || !SpecularChains::begin(eye, counts)) return;
-    const Vec3 side = sideOf(z, z.toPrevious);
+    // By the bound first: ways lie anywhere in memory.
+    const double most = mostSamples(connectionOrder(eye), counts), u = rng.uniformDouble();
+    if (u >= most) return;
+    const Vec3 side = sideOfPath(z);
     const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
-    const double expected = samplesAt(ways, connectionOrder(eye), counts);
-    if (rng.uniformDouble() >= expected) return;
+    const double expected = most * shareOfSamples(ways);
+    if (u >= expected) return;
     PathVertex y0;
     const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return;
@@ -80,21 +76,16 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const ChainQuery query = queryOf(z, side, y0);
     const auto bring = [&](const FoundChain& found, bool isUsual) {
         if (int(found.chain.size()) > left) return;
-        const BsdfEvaluation atEye =
-            walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
-        light.assign(1, y0);
-        const float pdfWToEye = appendChain(walker_, found.chain, light);
-        const Rgb contribution = broughtBy(walker_, found, light, z, atEye.f);
-        if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return;
-        Closed closed = closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
+        auto event = closeNextEvent(walker_, found, y0, eye, tally, light, path);
+        if (!event) return;
         if (counts.refractedLamps && counts.refractedLamps->ratioOf(path, tally) > 0.0) return;
         const std::optional<Known> known =
             isUsual ? Known{found, true, 1.0}
                     : knownOf(path, found.chain.size(), query, ways, tally);
         if (!known || known->isUsual != isUsual) return;
-        closed.contribution *= float(1.0 / (samples * known->pmf));
-        path.refracted = samples * densityOf(*known, y0) / double(atEye.pdfWToLight);
-        deliver(closed);
+        event->closed.contribution *= float(1.0 / (samples * known->pmf));
+        path.refracted = samples * densityOf(*known, y0) / event->eyePdfW;
+        deliver(event->closed);
     };
     const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
     for (const FoundChain& found : usual) bring(found, true);
@@ -136,23 +127,22 @@ std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::si
 
 /// Over the area of x_0 (solid angle at infinity), per what an eye walk's direction has at z.
 double KnownWays::densityOf(const Known& known, const PathVertex& y0) const {
-    const double walk = walkDensity(walker_, known.found, y0);
-    return walk > 0.0 ? double(lightPointOf(walker_.lights(), y0).pdf) * known.pmf / walk : 0.0;
+    return densityOfNextEvent(walker_, known.found, y0) * known.pmf;
 }
 
 double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
                           RayTally& tally) const {
     if (!path.hittable) return 0.0;
-    std::size_t count = 0;
-    while (int(count) + 1 < path.edges && path.delta[count + 1]) ++count;
-    if (count == 0 || count > Chain::kMost || int(count) + 1 == path.edges) return 0.0;
+    const auto count = std::size_t(path.deltasBehindLight());
+    if (count == 0 || count > Chain::kMost) return 0.0;
     if (!SpecularChains::begin(path, count + 1, counts)) return 0.0;
     const PathVertex &z = *path.vertex[count + 1], &y0 = *path.vertex[0];
     const Vec3 toChain = -path.directionOf(int(count)), toEye = path.directionOf(int(count) + 1);
-    const Vec3 side = sideOf(z, toEye);
+    // Where pixels share walks, z's own walk may have come from elsewhere.
+    const Vec3 side = sideTowards(z, toEye);
     const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
-    const int order = path.orderOf(int(count) + 1);
-    const double samples = samplesAt(ways, order, counts) * walker_.seenSamples(y0, z);
+    const double samples = mostSamples(path.orderOf(int(count) + 1), counts) *
+                           shareOfSamples(ways) * walker_.seenSamples(y0, z);
     if (!(samples > 0.0)) return 0.0;
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
     if (!(eyePdfW > 0.0)) return 0.0;

@@ -34,10 +34,9 @@ class KnownWays {
     double ratioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally) const;
 
   private:
-    /// n(z), the expected number of samples at an eye vertex of this order. What comes by the ways to it is
-    /// measured by what all lights would bring to the sphere around the scene. Of deep vertices there are
-    /// many, and each carries little.
-    double samplesAt(const WaysNearby& ways, int order, const TechniqueCounts& counts) const;
+    // n(z), the expected number of samples at an eye vertex, is the product of these.
+    static double mostSamples(int order, const TechniqueCounts& counts);
+    double shareOfSamples(const WaysNearby& ways) const;
     struct Known {
         FoundChain found;
         bool isUsual;

@@ -84,6 +84,13 @@ struct Techniques {
     bool chains = true;
     /// With hits and connections: next event through smooth glass.
     bool refractions = true;
+    /// Likewise, and where nothing is merged: next event along known ways.
+    bool knownWays = true;
+
+    bool refract() const { return hits && connects && refractions; }
+    bool goKnownWays() const { return hits && connects && knownWays; }
+    /// Whether ChainSeeds are asked for.
+    bool askForWays() const { return (connects && chains) || goKnownWays(); }
 };
 
 class Method {

@@ -71,9 +71,13 @@ struct PathVertex {
 static_assert(std::is_trivially_copyable_v<PathVertex>);
 static_assert(sizeof(PathVertex) == 248);  // pools hold millions of them
 
+/// ng on the side that `direction` leads to.
+inline Vec3 sideTowards(const PathVertex& v, const Vec3& direction) {
+    return dot(v.ng, direction) < 0.0f ? -v.ng : v.ng;
+}
 /// ng on the side that a surface's own subpath comes from.
 inline Vec3 sideOfPath(const PathVertex& v) {
-    return dot(v.ng, v.toPrevious) < 0.0f ? -v.ng : v.ng;
+    return sideTowards(v, v.toPrevious);
 }
 
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface

@@ -79,14 +79,10 @@ std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& no
     return way ? out(ways, *way, z, y0, tally) : std::nullopt;
 }
 
-/// p(y_0) and the chain's pmf over what an eye walk that leaves z along the chain has for it, but for the
-/// direction's density at z: the events' probabilities, and how far the chain spreads a solid angle.
+/// p(y_0) and the chain's pmf, likewise.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
                                  const Joined& joined) const {
-    const double walk = walkDensity(walker_, joined.found, y0);
-    const double samples =
-        double(lightPointOf(walker_.lights(), y0).pdf) * seenSamples * joined.pmf;
-    return walk > 0.0 ? samples / walk : 0.0;
+    return densityOfNextEvent(walker_, joined.found, y0) * seenSamples * joined.pmf;
 }
 
 /// That of a path through so many refractions, `last` the one next to z.
@@ -154,19 +150,11 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
     const auto joined = drawBetween(z, y0, rng.uniformDouble(), tally);
     if (!joined || int(joined->found.chain.size()) > left) return std::nullopt;
-    const FoundChain& found = joined->found;
-
-    const BsdfEvaluation atEye =
-        walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
-    light.assign(1, y0);
-    const float pdfWToEye = appendChain(walker_, found.chain, light);
-    const Rgb contribution =
-        broughtBy(walker_, found, light, z, atEye.f) * float(1.0 / (samples * joined->pmf));
-    if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return std::nullopt;
-    const Closed closed =
-        closeRefraction(walker_, light, pdfWToEye, eye, atEye, contribution, path);
-    path.refracted = expected * densityAt(y0, seenSamples, *joined) / double(atEye.pdfWToLight);
-    return closed;
+    auto event = closeNextEvent(walker_, joined->found, y0, eye, tally, light, path);
+    if (!event) return std::nullopt;
+    event->closed.contribution *= float(1.0 / (samples * joined->pmf));
+    path.refracted = expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW;
+    return event->closed;
 }
 
 }  // namespace lacuna

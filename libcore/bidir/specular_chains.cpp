@@ -20,38 +20,44 @@ SpecularChains::SpecularChains(const Walker& walker, std::shared_ptr<const Chain
     byPower_ = DiscreteDistribution(powers);
 }
 
-bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
-    const PathVertex& z = eye.back();
-    if (z.kind != VertexKind::Surface || !z.connectable()) return false;
-    // The light's edges end in mirrors or glass; those of the eye's part are joined by splats, the
-    // first one, or by connections with s >= 2.
+namespace {
+
+/// Whether one of so many edges from the lens could be joined: the first one by splats, others by connections
+/// with s >= 2. `smooth` tells of their ends in turn, the lens being the first.
+template <class Smooth>
+bool joinsAny(std::size_t edges, const TechniqueCounts& counts, const Smooth& smooth) {
     const bool connects = counts.connectsIndirect();
-    const auto smooth = [&](std::size_t i) {
-        return i == 0 || i + 1 == eye.size() || !isDelta(eye[i].event);
-    };
-    for (std::size_t i = 0; i + 1 < eye.size(); ++i) {
+    for (std::size_t i = 0; i < edges; ++i) {
         const bool joined = i == 0 ? counts.splats > 0.0 : connects;
-        if (joined && smooth(i) && smooth(i + 1)) return false;
+        if (joined && smooth(i) && smooth(i + 1)) return true;
     }
-    return true;
+    return false;
+}
+
+bool mayBegin(const PathVertex& z) {
+    return z.kind == VertexKind::Surface && z.connectable();
+}
+
+}  // namespace
+
+// The light's edges end in mirrors or glass: those of the eye's part are left.
+bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
+    const std::size_t last = eye.size() - 1;
+    return mayBegin(eye[last]) && !joinsAny(last, counts, [&](std::size_t i) {
+               return i == 0 || i == last || !isDelta(eye[i].event);
+           });
 }
 
 bool SpecularChains::begin(const FullPath& path, std::size_t i, const TechniqueCounts& counts) {
-    const PathVertex& z = *path.vertex[i];
-    if (z.kind != VertexKind::Surface || !z.connectable()) return false;
-    const bool connects = counts.connectsIndirect();
-    for (std::size_t k = std::size_t(path.edges); i < k; ++i) {
-        const bool joined = i + 1 == k ? counts.splats > 0.0 : connects;
-        if (joined && !path.delta[i] && !path.delta[i + 1]) return false;
-    }
-    return true;
+    const auto lens = std::size_t(path.edges);
+    return mayBegin(*path.vertex[i]) && !joinsAny(lens - i, counts, [&](std::size_t fromLens) {
+               return !path.delta[lens - fromLens];
+           });
 }
 
 bool SpecularChains::reach(const FullPath& path) {
-    if (path.hittable) return false;
-    std::size_t deltas = 0;
-    for (int i = 1; i < path.edges && path.delta[std::size_t(i)]; ++i) ++deltas;
-    return deltas > 0 && deltas <= Chain::kMost && int(deltas) + 1 < path.edges;
+    const int deltas = path.deltasBehindLight();
+    return !path.hittable && deltas > 0 && deltas <= int(Chain::kMost);
 }
 
 void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<PathVertex>& light,

@@ -204,6 +204,9 @@ class Bsdf {
 
     Vec3 ng() const { return ng_; }
     Vec3 ns() const { return ns_; }
+    /// Whether the delta event that has these directions is one about ng and not about ns; those that go straight
+    /// on are about either, and not so called.
+    bool isAboutNg(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const;
 
   private:
     static constexpr float kNarrowAlpha = 0.1f;

@@ -290,18 +290,24 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         return deltaAbout(aboutNg(c), c, event);
     }
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
-    bool byNs = eyeNg < 1.0f;
-    bool byNg = eyeNg > 0.0f;
+    // Each normal has an event of its own, but where rays go straight on: the directions say which this is.
     const bool straight = event == ScatterEvent::DeltaTransmission && has(kThin);
-    if (byNs && byNg && !straight) {
-        // Each normal has an event of its own here: the directions say which this one is of.
-        const Vec3 h = c.reflects() ? toEye + toLight
-                                    : toEye * indexOn(c.eyeG > 0) + toLight * indexOn(c.lightG > 0);
-        byNg = lengthSquared(cross(h, ng_)) < lengthSquared(cross(h, ns_));
-        byNs = !byNg;
-    }
+    const bool byNg = straight ? eyeNg > 0.0f : isAboutNg(toEye, toLight, event);
+    const bool byNs = straight ? eyeNg < 1.0f : !byNg;
     return mixture(c, eyeNg, byNs, byNg,
                    [&](const Pair& pair) { return deltaAbout(pair, c, event); });
+}
+
+bool Bsdf::isAboutNg(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const {
+    // By the shares first: between normals that differ in their last bits alone, the directions cannot tell.
+    const float share = shareAboutNg(toEye);
+    if (share <= 0.0f || (event == ScatterEvent::DeltaTransmission && has(kThin))) return false;
+    if (share >= 1.0f) return true;
+    const Vec3 h =
+        event == ScatterEvent::DeltaReflection
+            ? toEye + toLight
+            : toEye * indexOn(dot(toEye, ng_) > 0) + toLight * indexOn(dot(toLight, ng_) > 0);
+    return lengthSquared(cross(h, ng_)) < lengthSquared(cross(h, ns_));
 }
 
 float Bsdf::shareAboutNg(const Vec3& toEye) const {

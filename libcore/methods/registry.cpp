@@ -118,7 +118,7 @@ bool isConsistentOnly(const MethodRow& row, const Settings& settings) {
 }
 
 MethodRow asSet(MethodRow row, const Settings& settings) {
-    if (isConsistentOnly(row, settings)) row.techniques.chains = false;
+    if (isConsistentOnly(row, settings)) row.techniques.chains = row.techniques.knownWays = false;
     return row;
 }
 

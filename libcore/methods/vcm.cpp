@@ -30,7 +30,8 @@ MethodRow vcmRow() {
                         .connects = true,
                         .splats = true,
                         .ownLightPath = true,
-                        .chains = false}},
+                        .chains = false,
+                        .knownWays = false}},
         table, [](const Options& o) {
             return makeOwnLightPath({o.nextEvent, o.lamps, {Merges::Everywhere, o.radius}});
         });

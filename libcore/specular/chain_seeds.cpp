@@ -163,15 +163,15 @@ ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arri
     }
     const std::span<const ChainSeed> seeds = ways.seeds;
     const std::size_t most = std::min(kNear, seeds.size());
-    ways.kinds.resize(seeds.size() - most + 1);
-    threads.forEach(ways.kinds.size(), [&](std::size_t first) {
-        ways.kinds[first] = kindsOf(seeds.subspan(first, most));
+    ways.windows.resize(seeds.size() - most + 1);
+    threads.forEach(ways.windows.size(), [&](std::size_t first) {
+        ways.windows[first] = windowOf(seeds.subspan(first, most));
     });
     return ways;
 }
 
 /// Ways are of a kind by their events and by where they come from; the one in the middle stands for it.
-ChainSeeds::Kinds ChainSeeds::kindsOf(std::span<const ChainSeed> ways) {
+ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> ways) {
     struct Kind {
         std::uint8_t place;
         Vec3 direction;
@@ -200,19 +200,19 @@ ChainSeeds::Kinds ChainSeeds::kindsOf(std::span<const ChainSeed> ways) {
     }
     const std::span found = std::span(kinds).first(size);
     std::ranges::stable_sort(found, std::ranges::greater(), &Kind::count);
-    Kinds often;
-    for (const ChainSeed& way : ways) often.centre += way.end * (1.0f / float(ways.size()));
+    Window window;
+    for (const ChainSeed& way : ways) window.centre += way.end * (1.0f / float(ways.size()));
     double power = 0.0;
     for (const ChainSeed& way : ways) {
-        often.radius = std::max(often.radius, length(way.end - often.centre));
+        window.radius = std::max(window.radius, length(way.end - window.centre));
         power += double(way.power);
     }
-    often.powerPerArea = power / (kPi * double(often.radius) * double(often.radius));
+    window.powerPerArea = power / (kPi * double(window.radius) * double(window.radius));
     for (const Kind& kind : found) {
-        if (kind.count < 2 || often.size == often.places.size()) break;
-        often.places[often.size++] = kind.place;
+        if (kind.count < 2 || window.size == window.kinds.size()) break;
+        window.kinds[window.size++] = kind.place;
     }
-    return often;
+    return window;
 }
 
 /// The axis that the side lies nearest to, then a Morton code: what is near in these is mostly near in
@@ -235,9 +235,9 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
     const auto at =
         std::size_t(std::ranges::lower_bound(ways.codes, codeOf(place, side)) - ways.codes.begin());
     const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
-    const Kinds& kinds = ways.kinds[first];
-    return {std::span(ways.seeds).subspan(first, most), std::span(kinds.places).first(kinds.size),
-            length(place - kinds.centre) <= 1.5f * kinds.radius ? kinds.powerPerArea : 0.0};
+    const Window& window = ways.windows[first];
+    return {std::span(ways.seeds).subspan(first, most), std::span(window.kinds).first(window.size),
+            length(place - window.centre) <= 1.5f * window.radius ? window.powerPerArea : 0.0};
 }
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {

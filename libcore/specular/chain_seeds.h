@@ -59,20 +59,21 @@ class ChainSeeds {
     static void followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
                           Rng& rng, std::vector<Arrival>& arrivals);
 
-    struct Kinds {
-        std::array<std::uint8_t, WaysNearby::kMostKinds> places;
+    /// What is known of as many ways as a place has.
+    struct Window {
+        std::array<std::uint8_t, WaysNearby::kMostKinds> kinds;  // WaysNearby::kinds
         std::uint8_t size = 0;
         // The ball that they ended in, and their power over its disk.
         Vec3 centre;
         float radius = 0;
         double powerPerArea = 0;
     };
-    static Kinds kindsOf(std::span<const ChainSeed> ways);
+    static Window windowOf(std::span<const ChainSeed> ways);
 
     struct Sorted {
         std::vector<std::uint32_t> codes;  // ascending
         std::vector<ChainSeed> seeds;      // in that order
-        std::vector<Kinds> kinds;          // of the ways that a place has, by the first of them
+        std::vector<Window> windows;       // by the first of their ways
     };
     Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const ThreadPool& threads) const;
     WaysNearby near(const Sorted& ways, const Vec3& place, const Vec3& side) const;

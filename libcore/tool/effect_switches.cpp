@@ -82,7 +82,7 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
     } else if (name == "chains") {
         to.techniques->chains = false;
     } else if (name == "refractions") {
-        to.techniques->refractions = false;
+        to.techniques->refractions = to.techniques->knownWays = false;
     }
     for (const LobeRow& row : lobeTable()) {
         if (name != row.name) continue;

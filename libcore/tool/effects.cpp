@@ -172,7 +172,7 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Ef
                     "smooth glass, where no connection can be; over more they are missing"
                   : "no mirror and no smooth glass");
     const bool glass = simulated({"smooth_refraction", "smooth_thin_transmission"});
-    const bool ways = t.chains && specular;
+    const bool ways = t.knownWays && specular;
     table.add("refractions", t.hits && t.connects && t.refractions && hittable && (glass || ways),
               !t.connects ? method.name + " connects no vertices"
               : !t.hits   ? method.name + " has no technique s = 0"

@@ -104,6 +104,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     techniques.splats &= stage.techniques.splats;
     techniques.chains &= stage.techniques.chains;
     techniques.refractions &= stage.techniques.refractions;
+    techniques.knownWays &= stage.techniques.knownWays;
     // Halves are independent where their iterations are even as well.
     std::vector<std::unique_ptr<BidirIntegrator>> integrators;
     for (const std::uint64_t ofHalf : {seed, ~seed}) {

@@ -62,7 +62,7 @@ def ring_caustic() -> SceneFile:
 
 def torus_in_glass() -> SceneFile:
     """The torus floats inside the block, so that no edge of L S D S E has an end that light or lens can be joined to. A
-    sun cannot be hit either: no path of bpt shows the torus lit directly."""
+    sun cannot be hit either: only specular chains and merging show the torus lit directly."""
     s = SceneFile("torus-in-glass", "Diffuse torus inside a block of smooth glass under a small sun", 480, 360)
     floor = s.material(m.lambert("floor", (0.62, 0.60, 0.56)))
     red = s.material(m.lambert("red", (0.75, 0.28, 0.16)))
