@@ -47,13 +47,13 @@ double KnownWays::mostSamples(int order, const TechniqueCounts& counts) {
     return kByOrder[std::min(order, 3) - 1] * SpecularChains::shareOfVertices(counts);
 }
 
-/// n(z) over its bound, by what comes by the ways to z over what all lights would bring to the sphere around the
-/// scene.
+/// n(z) over its bound: as the noise of walks that run into the light by the ways to z, in terms of what all lights
+/// would bring to the sphere around the scene.
 double KnownWays::shareOfSamples(const WaysNearby& ways) const {
-    if (!(ways.powerPerArea > 0.0)) return 0.0;
-    constexpr double kFewest = 0.03;
-    const double radius = walker_.scene().radius();
-    return std::clamp(std::sqrt(4 * kPi * radius * radius * ways.powerPerArea), kFewest, 1.0);
+    if (!(ways.deviationPerArea > 0.0)) return 0.0;
+    constexpr double kFewest = 0.02, kByNoise = 0.5;
+    const double radius = walker_.scene().radius(), sphere = 4 * kPi * radius * radius;
+    return std::clamp(kByNoise * sphere * ways.deviationPerArea, kFewest, 1.0);
 }
 
 void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, RayTally& tally,

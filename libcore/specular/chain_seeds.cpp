@@ -13,29 +13,28 @@ namespace {
 
 constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
-constexpr std::size_t kNear = 16;  // seeds that a place has
-constexpr int kBits = 9;           // of a code, for each coordinate
-constexpr float kAlike = 0.98f;    // cosine between ways of one kind
+constexpr std::size_t kNear = 16;   // seeds that a place has
+constexpr int kBits = 9;            // of a code, for each coordinate
+constexpr double kFewTimes = 10.0;  // from here on it is worth knowing the way to a lamp
+constexpr float kAlike = 0.98f;     // cosine between ways of one kind
 
-ChainSeed backwards(const Chain& chain, const Vec3& end, double power) {
+ChainSeed backwards(const Chain& chain, const Vec3& end, double deviation) {
     ChainSeed seed;
-    seed.power = float(power);
+    seed.deviation = float(deviation);
     seed.end = end;
     seed.towards = chain[chain.size() - 1].point.position;
     for (std::size_t i = chain.size(); i-- > 0;) seed.events[seed.size++] = chain[i].event;
     return seed;
 }
 
-/// Whether an eye walk that leaves a surface at this distance would hit the light at least ten times as seldom
-/// as a point is drawn on it: from there on it is worth knowing the way. Lights without a size are.
-bool isHardToHit(const LightPoint& from, const Vec3& direction, double distance) {
-    constexpr double kTimes = 10.0;
-    if (!isHittable(from.kind)) return true;
+/// How much more seldom an eye walk that leaves a surface at this distance would hit a lamp or a sky than a point
+/// is drawn there.
+double timesAsSeldom(const LightPoint& from, const Vec3& direction, double distance) {
     const double pdfW = isInfinite(from.kind)
                             ? double(from.pdf)
                             : double(from.pdf) * distance * distance /
                                   std::max(1e-3, std::fabs(double(dot(from.ng, direction))));
-    return pdfW > kTimes / kPi;
+    return kPi * pdfW;
 }
 
 /// Whether next event through glass makes this way's paths: from where it ends straight on, refracted.
@@ -78,12 +77,16 @@ void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, co
             SurfacePoint point;
             scene.surfaceAt(*hit, point);
             if (scene.bsdfAt(point).connectable()) {
-                const bool left =
-                    isHardToHit(from, Vec3(ray.direction), distance) &&
-                    !(isHittable(from.kind) && isStraightOn(solver, chain, point, from));
+                double deviation = 0.0;
+                bool isLeft = true;
+                if (isHittable(from.kind)) {
+                    const double times = timesAsSeldom(from, Vec3(ray.direction), distance);
+                    deviation = ray.power * std::sqrt(times);
+                    isLeft = times > kFewTimes && !isStraightOn(solver, chain, point, from);
+                }
                 const bool front = dot(Vec3d(point.ng), chain.last().direction) < 0.0;
                 const Vec3 side = front ? point.ng : -point.ng;
-                if (left) arrivals.push_back({side, backwards(chain, point.position, ray.power)});
+                if (isLeft) arrivals.push_back({side, backwards(chain, point.position, deviation)});
             }
         }
         if (!chain.extend(scene, *hit, rng.uniformDouble())) return;
@@ -133,7 +136,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
             }
         });
         for (auto& some : found) {
-            for (Arrival& a : some) a.seed.power /= float(rays);
+            for (Arrival& a : some) a.seed.deviation /= float(rays);
         }
         return sorted(found, threads);
     };
@@ -202,12 +205,12 @@ ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> ways) {
     std::ranges::stable_sort(found, std::ranges::greater(), &Kind::count);
     Window window;
     for (const ChainSeed& way : ways) window.centre += way.end * (1.0f / float(ways.size()));
-    double power = 0.0;
+    double deviation = 0.0;
     for (const ChainSeed& way : ways) {
         window.radius = std::max(window.radius, length(way.end - window.centre));
-        power += double(way.power);
+        deviation += double(way.deviation);
     }
-    window.powerPerArea = power / (kPi * double(window.radius) * double(window.radius));
+    window.deviationPerArea = deviation / (kPi * double(window.radius) * double(window.radius));
     for (const Kind& kind : found) {
         if (kind.count < 2 || window.size == window.kinds.size()) break;
         window.kinds[window.size++] = kind.place;
@@ -237,7 +240,7 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
     const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
     const Window& window = ways.windows[first];
     return {std::span(ways.seeds).subspan(first, most), std::span(window.kinds).first(window.size),
-            length(place - window.centre) <= 1.5f * window.radius ? window.powerPerArea : 0.0};
+            length(place - window.centre) <= 1.5f * window.radius ? window.deviationPerArea : 0.0};
 }
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {

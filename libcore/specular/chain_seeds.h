@@ -19,7 +19,9 @@ struct ChainSeed {
     Vec3 towards;                                      ///< its first vertex, from the eye's side
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
-    float power = 0;  ///< that came this way, as a share of all that there is
+    /// Root of the second moment that walks have which run into the lamp this way, over the power of all lights;
+    /// zero where lights have no size.
+    float deviation = 0;
 };
 
 /// Ways that ended near a place, and one of each kind that came more than once: what comes the same way.
@@ -27,9 +29,8 @@ struct WaysNearby {
     static constexpr std::size_t kMostKinds = 4;
     std::span<const ChainSeed> all;
     std::span<const std::uint8_t> kinds;  ///< where they stand in `all`, the most frequent first
-    /// What they bring to a square metre, as a share of the power that there is; zero where the place lies
-    /// beside them.
-    double powerPerArea = 0;
+    /// Of all that they bring to a square metre; zero where the place lies beside them.
+    double deviationPerArea = 0;
 };
 
 class ChainSeeds {
@@ -66,7 +67,7 @@ class ChainSeeds {
         // The ball that they ended in, and their power over its disk.
         Vec3 centre;
         float radius = 0;
-        double powerPerArea = 0;
+        double deviationPerArea = 0;
     };
     static Window windowOf(std::span<const ChainSeed> ways);
 

@@ -105,7 +105,7 @@ TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     const auto scene = mirrorAndBlock(1.0f);
     Shot shot;
     shot.maxDepth = 9;
-    shot.iterations = 16000;
+    shot.iterations = 20000;
     Sums known(shot.iterations), walks(shot.iterations);
     shot.observer = [&](const PathEvent& event) {
         if (!(event.path.refracted > 0) || lengthOfReflectedWay(event.path) < 5) return;

@@ -797,7 +797,7 @@ FAULTS = [
           {"acceptance": "RefractedLamps.*"}),
     Fault("known-ways-count-whole", "weights take known ways as gone from every vertex",
           "libcore/bidir/known_ways.cpp",
-          "shareOfSamples(ways) * walker_.seenSamples(y0, z);", "(ways.powerPerArea > 0.0) * walker_.seenSamples(y0, z);",
+          "shareOfSamples(ways) * walker_.seenSamples(y0, z);", "(ways.deviationPerArea > 0.0) * walker_.seenSamples(y0, z);",
           {"acceptance": "KnownWays.*"}),
     Fault("drawn-ways-count-whole", "a known way that is drawn counts as one that is always gone",
           "libcore/bidir/known_ways.cpp",
