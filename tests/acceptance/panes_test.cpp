@@ -82,7 +82,7 @@ TEST_P(Panes, areTheSheetsThatAllMeet) {
     const auto flat = behindColours(0).build();
     Shot shot;
     shot.maxDepth = 12;
-    shot.iterations = 6000;
+    shot.iterations = 2000;
     shot.seed = 100;
     static const Picture reference = render(*bent, rowNamed("bpt"), shot);
     shot.seed = 1;

@@ -159,7 +159,7 @@ TEST_P(PathLayersSameAs, OfAPathTracer) {
     Shot shot;
     shot.width = shot.height = 8;
     shot.iterations = 160;
-    const std::vector<Moments> expected = meansOf(*scene, "pt", paths, shot);
+    static const std::vector<Moments> expected = meansOf(*scene, "pt", paths, shot);
     const std::vector<Moments> found = meansOf(*scene, GetParam(), paths, shot);
     const double allowed = allowedErrors(kFalseAlarm, double(texts.size()), 11.0);
     for (std::size_t i = 0; i < texts.size(); ++i) {
