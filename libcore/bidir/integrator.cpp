@@ -9,9 +9,9 @@ namespace lacuna {
 namespace {
 
 std::shared_ptr<const ChainSeeds> waysOf(const RenderSetup& setup) {
-    if (!setup.techniques.askForWays() || setup.settings.chainSeeds)
-        return setup.settings.chainSeeds;
-    return std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
+    const bool traced = setup.settings.chainSeeds || !setup.techniques.askForWays();
+    return traced ? setup.settings.chainSeeds
+                  : std::make_shared<const ChainSeeds>(setup.scene, setup.threads);
 }
 
 std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup,

@@ -111,10 +111,13 @@ void addDefaultMaterial(SceneDescription& scene) {
 
 /// How smooth textures let materials be anywhere.
 void findLeastTexels(SceneDescription& scene) {
-    std::map<std::int32_t, float> least;
+    constexpr std::pair<TextureUse Material::*, float Material::*> kOfRoughness[] = {
+        {&Material::metallicRoughnessTexture, &Material::leastRoughnessTexel},
+        {&Material::clearcoatRoughnessTexture, &Material::leastClearcoatRoughnessTexel}};
+    std::map<std::int32_t, float> least;  // by texture: materials share them
     for (const Material& m : scene.materials) {
-        for (const TextureUse& use : {m.metallicRoughnessTexture, m.clearcoatRoughnessTexture}) {
-            if (use) least[use.value];
+        for (const auto& [texture, texel] : kOfRoughness) {
+            if (m.*texture) least[(m.*texture).value];
         }
     }
     std::vector<std::pair<const std::int32_t, float>*> textures;
@@ -123,11 +126,8 @@ void findLeastTexels(SceneDescription& scene) {
         entry->second = leastGreen(scene.textures[std::size_t(entry->first)]);
     });
     for (Material& m : scene.materials) {
-        if (m.metallicRoughnessTexture) {
-            m.leastRoughnessTexel = least[m.metallicRoughnessTexture.value];
-        }
-        if (m.clearcoatRoughnessTexture) {
-            m.leastClearcoatRoughnessTexel = least[m.clearcoatRoughnessTexture.value];
+        for (const auto& [texture, texel] : kOfRoughness) {
+            if (m.*texture) m.*texel = least.at((m.*texture).value);
         }
     }
 }

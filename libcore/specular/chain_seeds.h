@@ -29,7 +29,7 @@ struct WaysNearby {
     static constexpr std::size_t kMostKinds = 4;
     std::span<const ChainSeed> all;
     std::span<const std::uint8_t> kinds;  ///< where they stand in `all`, the most frequent first
-    /// Of all that they bring to a square metre; zero where the place lies beside them.
+    /// Their deviations together, per square metre; zero where the place lies beside them.
     double deviationPerArea = 0;
 };
 
@@ -64,7 +64,7 @@ class ChainSeeds {
     struct Window {
         std::array<std::uint8_t, WaysNearby::kMostKinds> kinds;  // WaysNearby::kinds
         std::uint8_t size = 0;
-        // The ball that they ended in, and their power over its disk.
+        // The ball that they ended in, and their deviations together over its disk.
         Vec3 centre;
         float radius = 0;
         double deviationPerArea = 0;

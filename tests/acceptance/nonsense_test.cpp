@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <map>
-#include <utility>
 
 #include "libcore/skeleton/node_map.h"
 #include "libcore/subspace/subspaces.h"
@@ -117,17 +115,13 @@ TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
 /// Renders scenes with two guides each, random by what `seed` of the shot says.
 void expectTheSameMeanGuided(const std::string& row, std::initializer_list<NamedScene> scenes,
                              int maxDepth, std::uint64_t Shot::*seed) {
-    static std::map<std::pair<std::string, int>, Picture> references;  // of all rows
     for (const NamedScene& named : scenes) {
         const auto scene = named.builder.build();
         Shot shot = quickShot(300);
         shot.seed = 100;
         shot.maxDepth = maxDepth;
-        const std::pair key(named.name, maxDepth);
-        if (!references.contains(key)) {
-            references.emplace(key, render(*scene, rowNamed("bpt"), shot));
-        }
-        const Picture& reference = references.at(key);
+        const Picture& reference =
+            renderedOnce(named.name, [&] { return render(*scene, rowNamed("bpt"), shot); });
         shot.seed = 1;
         shot.iterations = 150;
         for (std::uint64_t guide = 1; guide <= 2; ++guide) {

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 
 #include "libcore/base/number_text.h"
@@ -365,16 +366,19 @@ const MethodRow& pathTracer() {
     return row;
 }
 
-const Picture& RowTest::reference(const SceneBuilder& builder, const Shot& shot,
-                                  const std::string& what) {
+const Picture& renderedOnce(const std::string& what, const std::function<Picture()>& picture) {
     static std::map<std::string, Picture> pictures;
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     const std::string name = test.name();  // "test/row"
     const std::string key =
         std::string(test.test_suite_name()) + "." + name.substr(0, name.find('/')) + " " + what;
-    if (!pictures.contains(key))
-        pictures.emplace(key, render(*builder.build(), pathTracer(), shot));
+    if (!pictures.contains(key)) pictures.emplace(key, picture());
     return pictures.at(key);
+}
+
+const Picture& RowTest::reference(const SceneBuilder& builder, const Shot& shot,
+                                  const std::string& what) {
+    return renderedOnce(what, [&] { return render(*builder.build(), pathTracer(), shot); });
 }
 
 }  // namespace lacuna::test

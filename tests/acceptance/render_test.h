@@ -131,12 +131,14 @@ std::vector<std::string> rowNames(Rows rows);
 /// With photon mapping, and all that merge as they are set: for tests of weights.
 std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);
+/// What all rows of the test that runs are judged by: rendered for the first of them alone. `what` tells its
+/// pictures apart.
+const Picture& renderedOnce(const std::string& what, const std::function<Picture()>& picture);
 /// A test over rows by their names.
 class RowTest : public testing::TestWithParam<std::string> {
   protected:
     MethodRow row() const { return rowNamed(GetParam()); }
-    /// What path tracing makes of `builder`'s scene. All rows of a test are judged by the same pictures, `what`
-    /// tells them apart: rendered for the first of them alone.
+    /// What path tracing makes of `builder`'s scene, renderedOnce().
     static const Picture& reference(const SceneBuilder& builder, const Shot& shot,
                                     const std::string& what = "");
 };
