@@ -89,8 +89,9 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     };
     const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
     for (const FoundChain& found : usual) bring(found, true);
-    const ChainSeed& way = ways.all[rng.below(std::uint32_t(ways.all.size()))];
-    const std::optional<FoundChain> drawn = follower_.follow(way, query, tally);
+    if (ways.others.empty()) return;
+    const std::uint32_t way = ways.others[rng.below(std::uint32_t(ways.others.size()))];
+    const std::optional<FoundChain> drawn = follower_.followOther(ways.all[way], query, tally);
     // What is usual would come to nothing, after some work.
     if (drawn && !isAmong(usual, *drawn)) bring(*drawn, false);
 }
@@ -101,28 +102,34 @@ std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::si
                                                    const ChainQuery& query, const WaysNearby& ways,
                                                    RayTally& tally) const {
     struct Led {
-        std::size_t way;
+        bool byUsual;
         FoundChain found;
     };
     const Vec3d toChain(-path.directionOf(int(count)));
     std::vector<Led> led;
-    for (std::size_t i = 0; i < ways.all.size(); ++i) {
-        if (!hasEventsOf(path, ways.all[i], count)) continue;
-        const std::optional<FoundChain> found = follower_.follow(ways.all[i], query, tally);
-        if (found && follower_.solver().isAlong(*found, query, toChain, kAngle, tally)) {
-            led.push_back({i, *found});
+    const auto follow = [&](std::span<const std::uint32_t> some, bool areUsual) {
+        for (const std::uint32_t way : some) {
+            if (!hasEventsOf(path, ways.all[way], count)) continue;
+            const std::optional<FoundChain> found =
+                areUsual ? follower_.followUsual(ways.all[way], query, tally)
+                         : follower_.followOther(ways.all[way], query, tally);
+            if (found && follower_.solver().isAlong(*found, query, toChain, kAngle, tally)) {
+                led.push_back({areUsual, *found});
+            }
         }
-    }
+    };
+    follow(ways.usual, true);
+    follow(ways.others, false);
     if (led.empty()) return std::nullopt;
     const auto apart = [&](const Led& l) {
         return lengthSquared(l.found.chain.firstDirection() - toChain);
     };
     const FoundChain own = std::ranges::min_element(led, {}, apart)->found;
     std::erase_if(led, [&](const Led& l) { return !isAmong({&own, 1}, l.found); });
-    const bool isUsual = std::ranges::any_of(led, [&](const Led& l) {
-        return std::ranges::find(ways.kinds, l.way) != ways.kinds.end();
-    });
-    return Known{own, isUsual, isUsual ? 1.0 : double(led.size()) / double(ways.all.size())};
+    // The same bits as in sample(), which goes them in the same order: what is left of a miss differs from way to way.
+    const auto usual = std::ranges::find_if(led, &Led::byUsual);
+    if (usual != led.end()) return Known{usual->found, true, 1.0};
+    return Known{own, false, double(led.size()) / double(ways.others.size())};
 }
 
 /// Over the area of x_0 (solid angle at infinity), per what an eye walk's direction has at z.

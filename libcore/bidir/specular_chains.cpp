@@ -73,24 +73,19 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
-    const auto bring = [&](const FoundChain& found, const auto& repeats) {
+    const auto bring = [&](const FoundChain& found, const ChainSearch::Worth& worth) {
         light.assign(1, y0);
         appendChain(walker_, found.chain, light);
         const BsdfEvaluation atEye =
             walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
         const Rgb contribution = broughtBy(walker_, found, light, z, atEye.f);
         if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return;
-        deliver(closeChain(walker_, light, eye, atEye.f, contribution * float(repeats()), path));
+        const double counts = worth();
+        if (!(counts > 0.0)) return;
+        deliver(closeChain(walker_, light, eye, atEye.f, contribution * float(counts), path));
     };
 
-    const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
-    const std::vector<FoundChain> usual = search_.follower().usual(query, ways, tally);
-    for (const FoundChain& found : usual) bring(found, [] { return 1.0; });
-
-    const std::optional<FoundChain> drawn = search_.draw(query, ways.all, rng, tally);
-    if (!drawn || isAmong(usual, *drawn)) return;
-    bring(*drawn,
-          [&] { return search_.reciprocalProbability(*drawn, query, ways.all, rng, tally); });
+    search_.sample(query, seeds_->near(y0.light, z.position, sideOfPath(z)), rng, tally, bring);
 }
 
 }  // namespace lacuna

@@ -64,6 +64,10 @@ MovingRay MovingRay::from(const Vec3d& origin, const Vec3d& direction) {
     return {origin, direction, {}, across(direction)};
 }
 
+MovingRay MovingRay::parallel(const Vec3d& origin, const Vec3d& direction) {
+    return {origin, direction, across(direction), {}};
+}
+
 std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event) const {
     const auto& [shape, bsdf, isClearcoat, stopped] = layer;
     if (!bsdf.has(event.event)) return std::nullopt;

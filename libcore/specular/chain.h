@@ -21,6 +21,8 @@ struct MovingRay {
     /// From `origin` along the unit `direction`, which the parameters turn: by an angle each, about
     /// axes at a right angle.
     static MovingRay from(const Vec3d& origin, const Vec3d& direction);
+    /// Which the parameters move sideways instead, by a metre each.
+    static MovingRay parallel(const Vec3d& origin, const Vec3d& direction);
 };
 
 /// What happens at a vertex of a chain. Where the shading normal is not the geometric one, some of

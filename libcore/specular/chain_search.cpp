@@ -64,65 +64,90 @@ std::optional<Chain> ChainSearch::guess(const ChainQuery& query, Rng& rng, RayTa
     return chain;
 }
 
-/// The way that light came to a place nearby: to the same first vertex, or, where that is nearer than the
-/// place, along the same direction.
-std::optional<Chain> WayFollower::along(const ChainSeed& way, const ChainQuery& query,
-                                        RayTally& tally) const {
-    if (way.size > query.most) return std::nullopt;
-    const Vec3d place(query.start.position), end(way.end), first(way.towards);
-    const Vec3d fromEnd = first - end, fromPlace = first - place;
-    const Vec3d to = lengthSquared(place - end) < lengthSquared(fromEnd) ? fromPlace : fromEnd;
-    if (!(lengthSquared(to) > 0.0)) return std::nullopt;
-    Chain chain(MovingRay::from(place, normalize(to)));
+std::optional<FoundChain> WayFollower::follow(const ChainSeed& way, const Vec3d& direction,
+                                              const ChainQuery& query, RayTally& tally) const {
+    Chain chain(MovingRay::from(Vec3d(query.start.position), direction));
     while (chain.size() < way.size) {
         const std::optional<Hit> hit = solver_.next(query.start, chain, tally);
         if (!hit || !chain.extend(solver_.scene(), *hit, way.events[chain.size()])) {
             return std::nullopt;
         }
     }
-    return chain;
+    return solver_.solve(query, chain, tally);
 }
 
-std::optional<Chain> ChainSearch::seed(const ChainQuery& query, std::span<const ChainSeed> known,
-                                       Rng& rng, RayTally& tally) const {
-    constexpr float kKnown = 2.0f / 3;
-    if (known.empty() || rng.uniform() >= kKnown) return guess(query, rng, tally);
-    return follower_.along(known[rng.below(std::uint32_t(known.size()))], query, tally);
+std::optional<FoundChain> WayFollower::followUsual(const ChainSeed& way, const ChainQuery& query,
+                                                   RayTally& tally) const {
+    if (way.size > query.most) return std::nullopt;
+    return follow(way, way.directionAt(Vec3d(query.start.position)), query, tally);
 }
 
-std::optional<FoundChain> WayFollower::follow(const ChainSeed& way, const ChainQuery& query,
-                                              RayTally& tally) const {
-    const std::optional<Chain> from = along(way, query, tally);
-    return from ? solver_.solve(query, *from, tally) : std::nullopt;
+/// Near a focus the derivative leads astray.
+std::optional<FoundChain> WayFollower::followOther(const ChainSeed& way, const ChainQuery& query,
+                                                   RayTally& tally) const {
+    if (const auto found = followUsual(way, query, tally)) return found;
+    const Vec3d vertex = Vec3d(way.end) + Vec3d(way.direction) * double(way.distance);
+    const Vec3d to = vertex - Vec3d(query.start.position);
+    if (way.size > query.most || !(lengthSquared(to) > 0.0)) return std::nullopt;
+    return follow(way, normalize(to), query, tally);
 }
 
 std::vector<FoundChain> WayFollower::usual(const ChainQuery& query, const WaysNearby& ways,
                                            RayTally& tally) const {
     std::vector<FoundChain> chains;
-    chains.reserve(ways.kinds.size());
-    for (const std::uint8_t kind : ways.kinds) {
-        const auto found = follow(ways.all[kind], query, tally);
+    chains.reserve(ways.usual.size());
+    for (const std::uint32_t way : ways.usual) {
+        const auto found = followUsual(ways.all[way], query, tally);
         if (found && !isAmong(chains, *found)) chains.push_back(*found);
     }
     return chains;
 }
 
-std::optional<FoundChain> ChainSearch::draw(const ChainQuery& query,
-                                            std::span<const ChainSeed> known, Rng& rng,
-                                            RayTally& tally) const {
-    const std::optional<Chain> from = seed(query, known, rng, tally);
-    return from ? follower_.solver().solve(query, *from, tally) : std::nullopt;
+std::size_t WayFollower::othersThatLeadTo(const FoundChain& found, const ChainQuery& query,
+                                          const WaysNearby& ways, RayTally& tally) const {
+    return std::size_t(std::ranges::count_if(ways.others, [&](std::uint32_t way) {
+        if (!ways.all[way].hasEventsOf(found.chain)) return false;
+        const std::optional<FoundChain> led = followOther(ways.all[way], query, tally);
+        return led && isSame(*led, found);
+    }));
 }
 
+/// The usual ones; and one that another way leads to, or one from a random ray if no way leads to it.
+void ChainSearch::sample(const ChainQuery& query, const WaysNearby& ways, Rng& rng, RayTally& tally,
+                         const std::function<void(const FoundChain&, const Worth&)>& bring) const {
+    const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
+    for (const FoundChain& found : usual) bring(found, [] { return 1.0; });
+
+    const auto others = double(ways.others.size());
+    const double byOther = others > 0.0 ? 2.0 / 3 : 0.0;
+    if (rng.uniformDouble() < byOther) {
+        const std::uint32_t way = ways.others[rng.below(std::uint32_t(ways.others.size()))];
+        const std::optional<FoundChain> led = follower_.followOther(ways.all[way], query, tally);
+        if (!led || isAmong(usual, *led)) return;
+        bring(*led, [&] {
+            const std::size_t leading = follower_.othersThatLeadTo(*led, query, ways, tally);
+            return others / (byOther * double(leading));
+        });
+        return;
+    }
+    const std::optional<Chain> from = guess(query, rng, tally);
+    const auto found = from ? follower_.solver().solve(query, *from, tally) : std::nullopt;
+    if (!found || isAmong(usual, *found)) return;
+    bring(*found, [&] {
+        if (follower_.othersThatLeadTo(*found, query, ways, tally) > 0) return 0.0;
+        return reciprocalProbability(*found, query, rng, tally) / (1.0 - byOther);
+    });
+}
+
+/// Without bias, of finding a chain by guess. It has no bound; the mean number of searches is at most that number.
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
-                                          std::span<const ChainSeed> known, Rng& rng,
-                                          RayTally& tally) const {
+                                          Rng& rng, RayTally& tally) const {
     // 1 / p = sum over n >= 0 of (1 - p)^n: how often n searches in a row find something else. From
     // kAll on a roulette at each doubling, so that no single estimate takes minutes.
     constexpr std::uint64_t kAll = 1024;
     double sum = 1.0, worth = 1.0;
     for (std::uint64_t n = 1;; ++n) {
-        const std::optional<Chain> from = seed(query, known, rng, tally);
+        const std::optional<Chain> from = guess(query, rng, tally);
         // Newton's method keeps the events.
         if (from && from->sameEventsAs(found.chain)) {
             const std::optional<FoundChain> again = follower_.solver().solve(query, *from, tally);

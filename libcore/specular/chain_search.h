@@ -1,9 +1,10 @@
-// The chains of mirrors and smooth glass that join a point with a light that no ray can hit: one is
-// searched along the ways that light is known to come, and from a random ray, by Newton's method
-// [Hanika15]. The probability of what a random ray found is estimated by searching until it is found
-// again [Zeltner20]. (theory.md, "Specular chains")
+// The chains of mirrors and smooth glass that join a point with a light that no ray can hit, by Newton's
+// method [Hanika15]: those that ways lead to by which light is known to come, and those that it finds from a
+// random ray. The probability of the latter is estimated by searching until they are found again [Zeltner20].
+// (theory.md, "Specular chains")
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,21 +27,27 @@ class WayFollower {
     explicit WayFollower(const Scene& scene) : solver_(scene) {}
 
     const ChainSolver& solver() const { return solver_; }
-    /// The chain that a way leads to; empty where it leads to none.
-    std::optional<FoundChain> follow(const ChainSeed& way, const ChainQuery& query,
-                                     RayTally& tally) const;
-    /// The chains that one way of each kind leads to, each chain once.
+    /// The chain that a way leads to; empty where it leads to none. A usual way is followed in the direction
+    /// that it would have, others to their first vertex as well.
+    std::optional<FoundChain> followUsual(const ChainSeed& way, const ChainQuery& query,
+                                          RayTally& tally) const;
+    std::optional<FoundChain> followOther(const ChainSeed& way, const ChainQuery& query,
+                                          RayTally& tally) const;
+    /// The chains that the usual ways lead to, each chain once.
     std::vector<FoundChain> usual(const ChainQuery& query, const WaysNearby& ways,
                                   RayTally& tally) const;
-    /// What Newton's method begins with along a way.
-    std::optional<Chain> along(const ChainSeed& way, const ChainQuery& query,
-                               RayTally& tally) const;
+    /// How many of the other ways lead to a chain.
+    std::size_t othersThatLeadTo(const FoundChain& found, const ChainQuery& query,
+                                 const WaysNearby& ways, RayTally& tally) const;
 
   private:
+    std::optional<FoundChain> follow(const ChainSeed& way, const Vec3d& direction,
+                                     const ChainQuery& query, RayTally& tally) const;
+
     ChainSolver solver_;
 };
 
-/// Chains by chance.
+/// All chains.
 class ChainSearch {
   public:
     /// `scene` must outlive it.
@@ -51,22 +58,19 @@ class ChainSearch {
     /// Nothing in the scene that a chain could begin at.
     bool empty() const { return triangles_.empty(); }
 
-    // Whether a chain sees its start and the light is for the caller to ask.
-
-    /// One search from a random ray; empty where it finds no chain.
-    /// `known`, ways to places nearby, may be any, as long as reciprocalProbability is given the same.
-    std::optional<FoundChain> draw(const ChainQuery& query, std::span<const ChainSeed> known,
-                                   Rng& rng, RayTally& tally) const;
-
-    /// An estimate of one over the probability that draw() finds `found`, without bias. It has no
-    /// bound; the mean number of searches is at most that number.
-    double reciprocalProbability(const FoundChain& found, const ChainQuery& query,
-                                 std::span<const ChainSeed> known, Rng& rng, RayTally& tally) const;
+    /// What a chain stands for: one over its probability, without bias. Asked for where it is needed, since it
+    /// may take many searches.
+    using Worth = std::function<double()>;
+    /// Calls `bring` for some chains: E of the sum of their worths is the number of chains that there are,
+    /// each counted once, whatever the ways are. Whether a chain sees its start and the light is for the
+    /// caller to ask.
+    void sample(const ChainQuery& query, const WaysNearby& ways, Rng& rng, RayTally& tally,
+                const std::function<void(const FoundChain&, const Worth&)>& bring) const;
 
   private:
+    double reciprocalProbability(const FoundChain& found, const ChainQuery& query, Rng& rng,
+                                 RayTally& tally) const;
     Vec3d seedDirection(const ChainQuery& query, Rng& rng) const;
-    std::optional<Chain> seed(const ChainQuery& query, std::span<const ChainSeed> known, Rng& rng,
-                              RayTally& tally) const;
     std::optional<Chain> guess(const ChainQuery& query, Rng& rng, RayTally& tally) const;
 
     WayFollower follower_;

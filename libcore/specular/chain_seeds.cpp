@@ -13,16 +13,46 @@ namespace {
 
 constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
-constexpr std::size_t kNear = 16;   // seeds that a place has
-constexpr int kBits = 9;            // of a code, for each coordinate
-constexpr double kFewTimes = 10.0;  // from here on it is worth knowing the way to a lamp
-constexpr float kAlike = 0.98f;     // cosine between ways of one kind
+constexpr std::size_t kNear = 16;      // ways that are here
+constexpr std::size_t kAround = 1024;  // ways that are farther around
+constexpr std::size_t kStep = 256;     // places in a row that have the same ones around
+constexpr int kBits = 9;               // of a code, for each coordinate
+constexpr double kFewTimes = 10.0;     // from here on it is worth knowing the way to a lamp
+constexpr float kAlike = 0.98f;        // cosine between ways of one kind
+
+/// The axes across a direction that ChainSeed::turn is in.
+std::array<Vec3d, 2> axesOf(const Vec3& direction) {
+    return MovingRay::from({}, Vec3d(direction)).directionBy;
+}
+
+/// How the direction towards where a ray comes from turns with where it ends, so far from its origin: by ray
+/// differentials. Not finite where the rays about it meet.
+std::array<std::array<float, 2>, 2> turnOf(const MovingRay& ray, double distance,
+                                           const std::array<Vec3d, 2>& axes) {
+    Jacobian end, turn;  // by the ray's two parameters
+    for (std::size_t c = 0; c < 2; ++c) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            turn[c][i] = -dot(axes[c], ray.directionBy[i]);
+            end[c][i] = dot(axes[c], ray.originBy[i]) - distance * turn[c][i];
+        }
+    }
+    const double determinant = end[0][0] * end[1][1] - end[0][1] * end[1][0];
+    const auto row = [&](const std::array<double, 2>& t) -> std::array<float, 2> {
+        return {float((t[0] * end[1][1] - t[1] * end[1][0]) / determinant),
+                float((t[1] * end[0][0] - t[0] * end[0][1]) / determinant)};
+    };
+    return {row(turn[0]), row(turn[1])};
+}
 
 ChainSeed backwards(const Chain& chain, const Vec3& end, double deviation) {
     ChainSeed seed;
     seed.deviation = float(deviation);
     seed.end = end;
-    seed.towards = chain[chain.size() - 1].point.position;
+    // Not the difference of two points, which may lie a millimetre apart.
+    seed.direction = Vec3(-chain.last().direction);
+    seed.distance = float(length(Vec3d(end) - chain.last().origin));
+    seed.turn =
+        turnOf(chain.last(), length(Vec3d(end) - chain.last().origin), axesOf(seed.direction));
     for (std::size_t i = chain.size(); i-- > 0;) seed.events[seed.size++] = chain[i].event;
     return seed;
 }
@@ -63,11 +93,31 @@ std::uint32_t spread(std::uint32_t x) {
 
 }  // namespace
 
+Vec3d ChainSeed::directionAt(const Vec3d& place) const {
+    const Vec3d straight(direction), apart = place - Vec3d(end);
+    const std::array<Vec3d, 2> axes = axesOf(direction);
+    const double u = dot(axes[0], apart), v = dot(axes[1], apart);
+    const double x = double(turn[0][0]) * u + double(turn[0][1]) * v;
+    const double y = double(turn[1][0]) * u + double(turn[1][1]) * v;
+    constexpr double kMost = 1.0;  // radians: what is known of a point says nothing so far away
+    if (!(std::hypot(x, y) < kMost)) return straight;
+    return normalize(straight + axes[0] * x + axes[1] * y);
+}
+
+bool ChainSeed::hasEventsOf(const Chain& chain) const {
+    if (size != chain.size()) return false;
+    for (std::size_t i = 0; i < size; ++i) {
+        if (!(events[i] == chain[i].event)) return false;
+    }
+    return true;
+}
+
 /// What one ray of the light leads to: wherever something scatters it.
 void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
                            Rng& rng, std::vector<Arrival>& arrivals) {
     const Scene& scene = solver.scene();
-    Chain chain(MovingRay::from(Vec3d(ray.origin), ray.direction));
+    Chain chain(isInfinite(from.kind) ? MovingRay::parallel(Vec3d(ray.origin), ray.direction)
+                                      : MovingRay::from(Vec3d(ray.origin), ray.direction));
     const ChainStart start{ray.origin, from.ng, {}};
     RayTally ignored;
     double distance = 0.0;
@@ -167,42 +217,52 @@ ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arri
     const std::span<const ChainSeed> seeds = ways.seeds;
     const std::size_t most = std::min(kNear, seeds.size());
     ways.windows.resize(seeds.size() - most + 1);
-    threads.forEach(ways.windows.size(), [&](std::size_t first) {
-        ways.windows[first] = windowOf(seeds.subspan(first, most));
+    const std::size_t mostAround = std::min(kAround, seeds.size());
+    threads.forEach((ways.windows.size() + kStep - 1) / kStep, [&](std::size_t block) {
+        const std::size_t begin = block * kStep;
+        const std::size_t end = std::min(begin + kStep, ways.windows.size());
+        const std::size_t before = std::min(begin, (mostAround - std::min(mostAround, kStep)) / 2);
+        const std::size_t first = std::min(begin - before, seeds.size() - mostAround);
+        const std::vector<Kind> around = kindsOf(seeds, first, mostAround);
+        for (std::size_t i = begin; i < end; ++i) {
+            ways.windows[i] = windowOf(seeds, i, most, around);
+        }
     });
     return ways;
 }
 
-/// Ways are of a kind by their events and by where they come from; the one in the middle stands for it.
-ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> ways) {
-    struct Kind {
-        std::uint8_t place;
-        Vec3 direction;
-        int count;
+/// By events, and by where ways come from.
+bool ChainSeeds::isOf(const Kind& kind, std::span<const ChainSeed> all, const ChainSeed& way) {
+    const ChainSeed& own = all[kind.way];
+    return own.size == way.size && own.events == way.events &&
+           dot(kind.direction, way.direction) > kAlike;
+}
+
+/// The one in the middle stands for a kind. The most frequent first.
+std::vector<ChainSeeds::Kind> ChainSeeds::kindsOf(std::span<const ChainSeed> all, std::size_t first,
+                                                  std::size_t size) {
+    const auto fromMiddle = [&](std::size_t way) {
+        return std::abs(std::ptrdiff_t(way) - std::ptrdiff_t(first + size / 2));
     };
-    const auto fromMiddle = [&](std::size_t place) {
-        return std::abs(int(place) - int(ways.size() / 2));
-    };
-    std::array<Kind, kNear> kinds;
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        const ChainSeed& way = ways[i];
-        const Vec3 direction = normalize(way.towards - way.end);
-        const auto end = kinds.begin() + std::ptrdiff_t(size);
-        const auto kind = std::find_if(kinds.begin(), end, [&](const Kind& k) {
-            const ChainSeed& other = ways[k.place];
-            return other.size == way.size && other.events == way.events &&
-                   dot(k.direction, direction) > kAlike;
-        });
-        if (kind == end) {
-            kinds[size++] = {std::uint8_t(i), direction, 1};
+    std::vector<Kind> kinds;
+    for (std::size_t i = first; i < first + size; ++i) {
+        const ChainSeed& way = all[i];
+        const auto kind =
+            std::ranges::find_if(kinds, [&](const Kind& k) { return isOf(k, all, way); });
+        if (kind == kinds.end()) {
+            kinds.push_back({std::uint32_t(i), way.direction, 1});
         } else {
             ++kind->count;
-            if (fromMiddle(i) < fromMiddle(kind->place)) kind->place = std::uint8_t(i);
+            if (fromMiddle(i) < fromMiddle(kind->way)) kind->way = std::uint32_t(i);
         }
     }
-    const std::span found = std::span(kinds).first(size);
-    std::ranges::stable_sort(found, std::ranges::greater(), &Kind::count);
+    std::ranges::stable_sort(kinds, std::ranges::greater(), &Kind::count);
+    return kinds;
+}
+
+ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> all, std::size_t first,
+                                        std::size_t size, std::span<const Kind> around) {
+    const std::span<const ChainSeed> ways = all.subspan(first, size);
     Window window;
     for (const ChainSeed& way : ways) window.centre += way.end * (1.0f / float(ways.size()));
     double deviation = 0.0;
@@ -211,9 +271,24 @@ ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> ways) {
         deviation += double(way.deviation);
     }
     window.deviationPerArea = deviation / (kPi * double(window.radius) * double(window.radius));
-    for (const Kind& kind : found) {
-        if (kind.count < 2 || window.size == window.kinds.size()) break;
-        window.kinds[window.size++] = kind.place;
+    const std::vector<Kind> here = kindsOf(all, first, size);
+    const auto isHere = [&](const Kind& kind) {
+        return std::ranges::any_of(here,
+                                   [&](const Kind& k) { return isOf(k, all, all[kind.way]); });
+    };
+    const auto add = [&](std::uint32_t way, std::size_t most, std::uint8_t& count) {
+        if (count == most) return;
+        window.ways[window.usual + window.others] = way;
+        ++count;
+    };
+    for (const Kind& kind : here) {
+        if (kind.count > 1) add(kind.way, WaysNearby::kMostUsual, window.usual);
+    }
+    for (std::size_t i = first; i < first + size; ++i) {
+        add(std::uint32_t(i), WaysNearby::kMostOthers, window.others);
+    }
+    for (const Kind& kind : around) {
+        if (!isHere(kind)) add(kind.way, WaysNearby::kMostOthers, window.others);
     }
     return window;
 }
@@ -239,7 +314,8 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
         std::size_t(std::ranges::lower_bound(ways.codes, codeOf(place, side)) - ways.codes.begin());
     const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
     const Window& window = ways.windows[first];
-    return {std::span(ways.seeds).subspan(first, most), std::span(window.kinds).first(window.size),
+    const std::span<const std::uint32_t> kinds = window.ways;
+    return {ways.seeds, kinds.first(window.usual), kinds.subspan(window.usual, window.others),
             length(place - window.centre) <= 1.5f * window.radius ? window.deviationPerArea : 0.0};
 }
 

@@ -15,21 +15,31 @@ namespace lacuna {
 
 /// A way that was seen to end on a surface that scatters.
 struct ChainSeed {
-    Vec3 end;                                          ///< there
-    Vec3 towards;                                      ///< its first vertex, from the eye's side
+    Vec3 end;            ///< there
+    Vec3 direction;      ///< unit, from there to its first vertex
+    float distance = 0;  ///< of that vertex, in metres
+    /// Change of the direction with the end, per metre, both by two axes across it.
+    std::array<std::array<float, 2>, 2> turn{};
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
     /// Root of the second moment that walks have which run into the lamp this way, over the power of all lights;
     /// zero where lights have no size.
     float deviation = 0;
+
+    bool hasEventsOf(const Chain& chain) const;
+    /// Unit, of a way over the same surfaces from the same light that ends at a place nearby: exact as its
+    /// distance goes to zero.
+    Vec3d directionAt(const Vec3d& place) const;
 };
 
-/// Ways that ended near a place, and one of each kind that came more than once: what comes the same way.
+/// Ways that ended near a place. What comes over the same events from about the same direction is of one kind.
 struct WaysNearby {
-    static constexpr std::size_t kMostKinds = 4;
-    std::span<const ChainSeed> all;
-    std::span<const std::uint8_t> kinds;  ///< where they stand in `all`, the most frequent first
-    /// Their deviations together, per square metre; zero where the place lies beside them.
+    static constexpr std::size_t kMostUsual = 4, kMostOthers = 28;
+    std::span<const ChainSeed> all;  ///< of the light, or of all lamps
+    // Where they stand in `all`.
+    std::span<const std::uint32_t> usual;   ///< one of each kind that came here more than once
+    std::span<const std::uint32_t> others;  ///< all that came here, and kinds from farther around
+    /// Deviations of all that came here, per square metre; zero where the place lies beside it.
     double deviationPerArea = 0;
 };
 
@@ -38,8 +48,8 @@ class ChainSeeds {
     /// Of all lights, the more of one the more power it has. A function of the scene.
     ChainSeeds(const Scene& scene, const ThreadPool& threads);
 
-    /// Some of a light's, which has no extent, that ended near a place on a surface that looks to `side`,
-    /// if any did anywhere.
+    /// A light's, which has no extent, that ended near a place on a surface that looks to `side`, if any did
+    /// anywhere.
     WaysNearby near(std::uint32_t light, const Vec3& place, const Vec3& side) const;
     /// Likewise of all lights that walks run into, where walks seldom do.
     WaysNearby nearOfLamps(const Vec3& place, const Vec3& side) const;
@@ -60,16 +70,27 @@ class ChainSeeds {
     static void followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
                           Rng& rng, std::vector<Arrival>& arrivals);
 
+    /// A kind of ways: what stands for it, and how many there are.
+    struct Kind {
+        std::uint32_t way;
+        Vec3 direction;  // of the first one
+        int count;
+    };
+    static bool isOf(const Kind& kind, std::span<const ChainSeed> all, const ChainSeed& way);
+    static std::vector<Kind> kindsOf(std::span<const ChainSeed> all, std::size_t first,
+                                     std::size_t size);
+
     /// What is known of as many ways as a place has.
     struct Window {
-        std::array<std::uint8_t, WaysNearby::kMostKinds> kinds;  // WaysNearby::kinds
-        std::uint8_t size = 0;
+        std::array<std::uint32_t, WaysNearby::kMostUsual + WaysNearby::kMostOthers> ways;
+        std::uint8_t usual = 0, others = 0;
         // The ball that they ended in, and their deviations together over its disk.
         Vec3 centre;
         float radius = 0;
         double deviationPerArea = 0;
     };
-    static Window windowOf(std::span<const ChainSeed> ways);
+    static Window windowOf(std::span<const ChainSeed> all, std::size_t first, std::size_t size,
+                           std::span<const Kind> around);
 
     struct Sorted {
         std::vector<std::uint32_t> codes;  // ascending

@@ -156,8 +156,11 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
         const MethodRow row = rowNamed(name);
         if (hasDeltas(description) ? !seesThroughDeltas(row) : mergesBetweenDeltas(row)) continue;
         if (GetParam().caustics && !walksFromLights(row)) continue;
-        expectSame(render(scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
-                   Judge::BlocksAndMean);
+        Shot its = withSplatsForEveryPixel(shot, row);
+        // Rows that merge have no next event along known ways: what walks alone find of kitchen-glass was 6 errors
+        // of its own too dark in a block, and as bright as the others' after 20,000.
+        if (GetParam().caustics && merges(row)) its.iterations *= 4;
+        expectSame(render(scene, row, its), reference, name, Judge::BlocksAndMean);
     }
 }
 

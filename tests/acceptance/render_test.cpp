@@ -333,6 +333,10 @@ Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row) {
     return result;
 }
 
+bool merges(const MethodRow& row) {
+    return row.create(resolve(row, {}))->merging().where != Merges::Nowhere;
+}
+
 bool mergesBetweenDeltas(const MethodRow& row) {
     return row.create(resolve(row, {}))->merging().where == Merges::BetweenDeltas;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <optional>
 
 #include "libcore/specular/chain_search.h"
 #include "libcore/specular/chain_seeds.h"
@@ -139,19 +141,34 @@ ChainTarget lampAt(const Scene& scene, Vec3d position) {
     return {Vec3(position - scene.centre())};
 }
 
-/// Each search finds one chain at most; what it is worth is one over its probability, and its mean
-/// therefore the number of chains.
+/// What one search finds is worth, all together.
+double worthOf(const ChainSearch& search, const ChainQuery& query, const WaysNearby& ways,
+               Rng& rng) {
+    RayTally tally;
+    double all = 0.0;
+    search.sample(query, ways, rng, tally,
+                  [&](const FoundChain&, const ChainSearch::Worth& worth) { all += worth(); });
+    return all;
+}
+
+/// What one search finds that knows of no ways.
+std::optional<FoundChain> oneOf(const ChainSearch& search, const ChainQuery& query, Rng& rng) {
+    RayTally tally;
+    std::optional<FoundChain> one;
+    search.sample(query, {}, rng, tally,
+                  [&](const FoundChain& found, const ChainSearch::Worth&) { one = found; });
+    return one;
+}
+
+/// What a chain is worth is one over its probability, and the mean of what a search finds therefore the number
+/// of chains.
 void expectChains(const Scene& scene, const ChainTarget& target, std::size_t most, double chains,
-                  int searches, std::span<const ChainSeed> known = {}) {
+                  int searches, const WaysNearby& ways = {}) {
     const ChainSearch search(scene);
     const ChainQuery query{floorOf(scene), target, most};
-    RayTally tally;
     Rng rng(2, 0, StreamKind::User, 0);
     Moments worth;
-    for (int i = 0; i < searches; ++i) {
-        const auto found = search.draw(query, known, rng, tally);
-        worth.add(found ? search.reciprocalProbability(*found, query, known, rng, tally) : 0.0);
-    }
+    for (int i = 0; i < searches; ++i) worth.add(worthOf(search, query, ways, rng));
     EXPECT_LT(std::fabs(worth.mean() - chains), 5 * worth.standardError())  // 6e-7 by chance
         << worth.mean() << " +- " << worth.standardError();
     EXPECT_LT(worth.standardError(), 0.1 * chains);
@@ -210,20 +227,35 @@ TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     const ChainTarget lamp = lampAt(*scene, {0.3, 2, 0.2});
     const ThreadPool threads(1);
     const ChainSeeds seeds(*scene, threads);
-    const auto known = seeds.near(1, floorOf(*scene).position, {0, 1, 0}).all;
-    EXPECT_EQ(known.size(), 16u);
-    ChainSeed nowhere{{5, 5, 5}, {5, 4, 5}, {}, 3}, here{floorOf(*scene).position, {}, {}, 1};
-    here.towards = here.end;
-    const std::array nonsense{nowhere, here};
+    const WaysNearby known = seeds.near(1, floorOf(*scene).position, {0, 1, 0});
+    EXPECT_FALSE(known.usual.empty());
+    EXPECT_FALSE(known.others.empty());
+    // What is usual is found by chance as well, and other ways are taken for usual ones.
+    const WaysNearby noneUsual{known.all, {}, known.usual}, noneOthers{known.all, known.usual, {}};
+    const WaysNearby exchanged{known.all, known.others, known.usual};
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::array<ChainSeed, 3> wrong;
+    wrong[0] = {.end = {5, 5, 5}, .direction = {0, -1, 0}, .size = 3};
+    wrong[1] = {.end = floorOf(*scene).position, .direction = {0, 1, 0}, .size = 1};
+    wrong[1].turn = {{{nan, 0}, {0, nan}}};
+    wrong[2] = {.end = {1, 2, 3}, .direction = {0, 1, 0}, .size = 1};
+    wrong[2].turn = {{{1e9f, 0}, {0, 0.1f}}};
+    constexpr std::array<std::uint32_t, 3> kWrong{0, 1, 2};
+    const WaysNearby nonsense{wrong, {}, kWrong}, usualNonsense{wrong, kWrong, kWrong};
     // Through two faces, through the upper one or the lower one as if the other were not there, and one by
     // a side.
-    for (const std::span<const ChainSeed> some :
-         {std::span<const ChainSeed>{}, known, std::span<const ChainSeed>(nonsense)}) {
-        expectChains(*scene, lamp, 2, 4, 20000, some);
+    for (const WaysNearby& ways :
+         {WaysNearby{}, known, noneUsual, noneOthers, exchanged, nonsense, usualNonsense}) {
+        expectChains(*scene, lamp, 2, 4, 20000, ways);
     }
+    // A way that is there twice leads to a chain that is there once.
+    RayTally tally;
+    const std::array<std::uint32_t, 2> twice{known.usual[0], known.usual[0]};
+    const ChainQuery query{floorOf(*scene), lamp, 2};
+    EXPECT_EQ(WayFollower(*scene).usual(query, {known.all, twice, {}}, tally).size(), 1u);
 }
 
-/// Searches that know where light comes from find some of it more often.
+/// Searches that know where light comes from find as much, and are sure of one chain at least nearly everywhere.
 TEST(ChainSeeds, areWaysThatLightComes) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(2);
@@ -234,73 +266,83 @@ TEST(ChainSeeds, areWaysThatLightComes) {
     RayTally tally;
     Rng rng(6, 0, StreamKind::User, 0);
     for (const std::uint32_t light : {0u, 1u}) {
-        int found[2] = {};
+        Moments alone, with;
+        int sure = 0;
         for (int i = 0; i < 4000; ++i) {
             ChainStart start = floorOf(*scene);
             start.position =
                 start.position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.4f;
-            const ChainQuery query{start, targets[light], Chain::kMost};
-            const auto near = seeds.near(light, start.position, {0, 1, 0}).all;
-            found[0] += search.draw(query, {}, rng, tally) ? 1 : 0;
-            found[1] += search.draw(query, near, rng, tally) ? 1 : 0;
+            const ChainQuery query{start, targets[light], 2};
+            const WaysNearby near = seeds.near(light, start.position, {0, 1, 0});
+            alone.add(worthOf(search, query, {}, rng));
+            with.add(worthOf(search, query, near, rng));
+            sure += search.follower().usual(query, near, tally).empty() ? 0 : 1;
         }
-        EXPECT_GT(found[1], 1.2 * found[0]);
+        EXPECT_LT(std::fabs(alone.mean() - with.mean()),
+                  5 * std::hypot(alone.standardError(), with.standardError()));  // 6e-7 by chance
+        EXPECT_GT(sure, 3800);
     }
 }
 
-bool areAlike(const ChainSeed& a, const ChainSeed& b) {
-    return a.size == b.size && a.events == b.events &&
-           dot(normalize(a.towards - a.end), normalize(b.towards - b.end)) > 0.98f;
+/// A way to a place nearby begins where the way that is known would have been turned to: over curved glass and
+/// flat glass, from lamps and the sun.
+TEST(ChainSeeds, turnWithThePlace) {
+    SceneBuilder b = litThroughGlass();
+    lacuna::Material clear = glass(1.5f);
+    b.add(ball({-1.2f, 0.8f, 0.3f}, 0.4f, b.add(clear)));
+    const auto scene = b.build();
+    const ThreadPool threads(2);
+    const ChainSeeds seeds(*scene, threads);
+    const WayFollower follower(*scene);
+    const ChainTarget targets[] = {{normalize(Vec3{0.2f, 0.9f, 0.1f}), true},
+                                   lampAt(*scene, {0.3, 2, 0.2})};
+    Rng rng(7, 0, StreamKind::User, 0);
+    RayTally tally;
+    for (const std::uint32_t light : {0u, 1u}) {
+        int better = 0, turned = 0;
+        for (int i = 0; i < 2000; ++i) {
+            ChainStart start = floorOf(*scene);
+            const float x = 3 * rng.uniform() - 2, z = 2 * rng.uniform() - 1;
+            const Vec3 place = start.position + Vec3{x, 0, z};
+            const WaysNearby near = seeds.near(light, place, {0, 1, 0});
+            if (near.usual.empty()) continue;
+            const ChainSeed& way = near.all[near.usual[0]];
+            if (way.end.y > start.position.y + 1e-3f) continue;
+            start.position = way.end + Vec3{0.004f * rng.uniform(), 0, 0.004f};
+            const auto found =
+                follower.followUsual(way, {start, targets[light], Chain::kMost}, tally);
+            if (!found) continue;
+            const Vec3d& exact = found->chain.firstDirection();
+            const double by = length(Vec3d(way.direction) - exact);
+            if (by < 1e-4 || by > 0.02) continue;  // as good as straight, or near a focus
+            ++turned;
+            better += length(way.directionAt(Vec3d(start.position)) - exact) < 0.25 * by ? 1 : 0;
+        }
+        EXPECT_GT(turned, 50) << "light " << light;
+        EXPECT_GT(better, 0.8 * turned) << "light " << light << ", of " << turned;
+    }
 }
 
-/// A kind came twice at least, and is no other's.
-TEST(ChainSeeds, comeInKinds) {
+/// No way is there twice.
+TEST(ChainSeeds, areUsualOrNot) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(2);
     const ChainSeeds seeds(*scene, threads);
     Rng rng(7, 0, StreamKind::User, 0);
-    int several = 0;
+    int severalUsual = 0, withOthers = 0;
     for (int i = 0; i < 200; ++i) {
         const Vec3 place =
             floorOf(*scene).position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.8f;
         const WaysNearby ways = seeds.near(1, place, {0, 1, 0});
-        ASSERT_FALSE(ways.kinds.empty());
-        several += ways.kinds.size() > 1 ? 1 : 0;
-        for (const std::uint8_t k : ways.kinds) {
-            const ChainSeed& way = ways.all[k];
-            const auto isLike = [&](const ChainSeed& other) { return areAlike(way, other); };
-            EXPECT_GE(std::ranges::count_if(ways.all, isLike), 2);
-            EXPECT_EQ(std::ranges::count(ways.kinds, k), 1);
+        ASSERT_FALSE(ways.usual.empty());
+        severalUsual += ways.usual.size() > 1 ? 1 : 0;
+        withOthers += ways.others.empty() ? 0 : 1;
+        for (const auto& some : {ways.usual, ways.others}) {
+            for (const std::uint32_t way : some) EXPECT_EQ(std::ranges::count(some, way), 1);
         }
     }
-    EXPECT_GT(several, 20);
-}
-
-/// Chains that known ways lead to, and those that are drawn beside them, are all that there are: the four of
-/// the test before.
-TEST(ChainSearch, findsTheRestBesideWhatIsUsual) {
-    const auto scene = litThroughGlass().build();
-    const ChainQuery query{floorOf(*scene), lampAt(*scene, {0.3, 2, 0.2}), 2};
-    const ThreadPool threads(1);
-    const ChainSeeds seeds(*scene, threads);
-    const WaysNearby ways = seeds.near(1, query.start.position, {0, 1, 0});
-    const ChainSearch search(*scene);
-    RayTally tally;
-    const std::vector<FoundChain> usual = search.follower().usual(query, ways, tally);
-    EXPECT_GE(usual.size(), 1u);
-    Rng rng(8, 0, StreamKind::User, 0);
-    Moments rest;
-    for (int i = 0; i < 20000; ++i) {
-        const auto found = search.draw(query, ways.all, rng, tally);
-        const bool isNew = found && !isAmong(usual, *found);
-        rest.add(isNew ? search.reciprocalProbability(*found, query, ways.all, rng, tally) : 0.0);
-    }
-    const double all = double(usual.size()) + rest.mean();
-    EXPECT_LT(std::fabs(all - 4), 5 * rest.standardError())  // 6e-7 by chance
-        << usual.size() << " and " << rest.mean() << " +- " << rest.standardError();
-    // A kind that came twice leads to a chain that is there once.
-    const std::array<std::uint8_t, 2> twice{ways.kinds[0], ways.kinds[0]};
-    EXPECT_EQ(search.follower().usual(query, {ways.all, twice}, tally).size(), 1u);
+    EXPECT_GT(severalUsual, 20);
+    EXPECT_GT(withOthers, 100);
 }
 
 /// They are those of the light that is asked for, and of one side of a thin sheet.
@@ -313,11 +355,15 @@ TEST(ChainSeeds, knowSidesAndLights) {
         for (const std::uint32_t light : {2u, 3u}) {
             // Each lamp shines on one face.
             const bool shines = (light == 2) == (up > 0);
-            int ends = 0;
-            for (const ChainSeed& seed : seeds.near(light, sheet, {0, up, 0}).all) {
-                ends += length(seed.end - sheet) < 0.5f && (seed.towards.y - seed.end.y) * up > 0;
-            }
-            EXPECT_EQ(ends, shines ? 16 : 0) << "light " << light << ", side " << up;
+            const WaysNearby ways = seeds.near(light, sheet, {0, up, 0});
+            const auto isHere = [&](std::uint32_t way) {
+                const ChainSeed& seed = ways.all[way];
+                return length(seed.end - sheet) < 0.5f && seed.direction.y * up > 0;
+            };
+            const auto ends = std::ranges::count_if(ways.usual, isHere);
+            const auto others = std::ranges::count_if(ways.others, isHere);
+            EXPECT_EQ(ends > 0, shines) << "light " << light << ", side " << up;
+            EXPECT_TRUE(shines || others == 0) << "light " << light << ", side " << up;
         }
     }
     SceneBuilder noGlass;
@@ -343,12 +389,11 @@ TEST(ChainSearch, leavesEachFaceItMeets) {
     const ChainSearch search(*scene);
     ChainQuery query{floorOf(*scene), {normalize(Vec3{0.45f, 0.82f, 0.37f}), true}, 4};
     const Vec3 middle = query.start.position;
-    RayTally tally;
     Rng rng(4, 0, StreamKind::User, 0);
     int edges = 0;
     for (int i = 0; i < 200000; ++i) {
         query.start.position = middle + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f};
-        const auto found = search.draw(query, {}, rng, tally);
+        const auto found = oneOf(search, query, rng);
         for (std::size_t k = 1; found && k < found->chain.size(); ++k, ++edges) {
             EXPECT_NE(found->chain[k].hit.primitive, found->chain[k - 1].hit.primitive);
         }
@@ -365,10 +410,9 @@ TEST(ChainSearch, knowsTheDistanceToAnImage) {
     const ChainStart start = floorOf(*scene);
     const ChainTarget lamp = lampAt(*scene, {0.3, 1.5, 0.2});
     const Vec3d to{-2.3, 1.5, 0.2};  // the lamp's image
-    RayTally tally;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 100; ++i) {
-        const auto found = search.draw({start, lamp, 1}, {}, rng, tally);
+        const auto found = oneOf(search, {start, lamp, 1}, rng);
         if (!found) continue;
         EXPECT_NEAR(found->spread * lengthSquared(to), 1.0, 1e-6);
         EXPECT_LT(length(found->chain.firstDirection() - normalize(to)), 1e-6);
@@ -477,7 +521,7 @@ TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
     Rng rng(5, 0, StreamKind::User, 0);
     std::vector<FoundChain> images;
     for (int i = 0; i < 400; ++i) {
-        const auto found = search.draw(query, {}, rng, tally);
+        const auto found = oneOf(search, query, rng);
         const bool refracts =
             found && found->chain.size() == 2 &&
             found->chain[0].event == SpecularEvent{ScatterEvent::DeltaTransmission} &&
