@@ -139,10 +139,11 @@ void ChainSearch::sample(const ChainQuery& query, const WaysNearby& ways, Rng& r
     });
 }
 
-/// Without bias, of finding a chain by guess. It has no bound; the mean number of searches is at most that number.
+/// An estimate without bias of one over the probability that a guess finds a chain. It has no bound; the mean number
+/// of guesses is that number.
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
                                           Rng& rng, RayTally& tally) const {
-    // 1 / p = sum over n >= 0 of (1 - p)^n: how often n searches in a row find something else. From
+    // 1 / p = sum over n >= 0 of (1 - p)^n: how often n guesses in a row find something else. From
     // kAll on a roulette at each doubling, so that no single estimate takes minutes.
     constexpr std::uint64_t kAll = 1024;
     double sum = 1.0, worth = 1.0;

@@ -50,9 +50,9 @@ ChainSeed backwards(const Chain& chain, const Vec3& end, double deviation) {
     seed.end = end;
     // Not the difference of two points, which may lie a millimetre apart.
     seed.direction = Vec3(-chain.last().direction);
-    seed.distance = float(length(Vec3d(end) - chain.last().origin));
-    seed.turn =
-        turnOf(chain.last(), length(Vec3d(end) - chain.last().origin), axesOf(seed.direction));
+    const double distance = length(Vec3d(end) - chain.last().origin);
+    seed.distance = float(distance);
+    seed.turn = turnOf(chain.last(), distance, axesOf(seed.direction));
     for (std::size_t i = chain.size(); i-- > 0;) seed.events[seed.size++] = chain[i].event;
     return seed;
 }
@@ -221,7 +221,7 @@ ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arri
     threads.forEach((ways.windows.size() + kStep - 1) / kStep, [&](std::size_t block) {
         const std::size_t begin = block * kStep;
         const std::size_t end = std::min(begin + kStep, ways.windows.size());
-        const std::size_t before = std::min(begin, (mostAround - std::min(mostAround, kStep)) / 2);
+        const std::size_t before = std::min(begin, (kAround - kStep) / 2);
         const std::size_t first = std::min(begin - before, seeds.size() - mostAround);
         const std::vector<Kind> around = kindsOf(seeds, first, mostAround);
         for (std::size_t i = begin; i < end; ++i) {
@@ -314,8 +314,8 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
         std::size_t(std::ranges::lower_bound(ways.codes, codeOf(place, side)) - ways.codes.begin());
     const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
     const Window& window = ways.windows[first];
-    const std::span<const std::uint32_t> kinds = window.ways;
-    return {ways.seeds, kinds.first(window.usual), kinds.subspan(window.usual, window.others),
+    const std::span<const std::uint32_t> known = window.ways;
+    return {ways.seeds, known.first(window.usual), known.subspan(window.usual, window.others),
             length(place - window.centre) <= 1.5f * window.radius ? window.deviationPerArea : 0.0};
 }
 

@@ -38,7 +38,7 @@ struct WaysNearby {
     std::span<const ChainSeed> all;  ///< of the light, or of all lamps
     // Where they stand in `all`.
     std::span<const std::uint32_t> usual;   ///< one of each kind that came here more than once
-    std::span<const std::uint32_t> others;  ///< all that came here, and kinds from farther around
+    std::span<const std::uint32_t> others;  ///< all that came here, then kinds from farther around
     /// Deviations of all that came here, per square metre; zero where the place lies beside it.
     double deviationPerArea = 0;
 };

@@ -161,9 +161,9 @@ bool seesThroughDeltas(const MethodRow& row);
 /// one subpath per pixel a pixel's variance is that of the handful of splats that it happened to
 /// get, and a z-test means nothing.
 Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
+bool merges(const MethodRow& row);
 /// Rows that merge between deltas and nowhere else: without any they are what they are without merging, bit
 /// for bit.
-bool merges(const MethodRow& row);
 bool mergesBetweenDeltas(const MethodRow& row);
 /// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
