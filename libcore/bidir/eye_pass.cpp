@@ -208,14 +208,12 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
 /// The eye path's vertices with lights that no ray can hit, over mirrors and through smooth glass.
 void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                     TaskResult& result) const {
-    const double share = SpecularChains::shareOfVertices(iteration.counts);
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Chain, paths.sample.number);
     for (std::size_t t = 2; t <= paths.eye.size(); ++t) {
         const Subpath eye = paths.eye.first(t);
         if (!SpecularChains::begin(eye, iteration.counts)) continue;
-        if (share < 1.0 && rng.uniformDouble() >= share) continue;
         const auto bring = [&](const Closed& closed) {
-            deliver(closed, paths, iteration, worker, result, 1.0 / share);
+            deliver(closed, paths, iteration, worker, result);
         };
         // By reference: a copy would be allocated.
         chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath, std::ref(bring));

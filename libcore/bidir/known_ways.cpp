@@ -41,19 +41,17 @@ bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) 
 
 }  // namespace
 
-/// The bound of n(z). Of deep vertices there are many, and each carries little.
+/// The bound of n(z). Of deep vertices there are many, and each carries little. A row that only asks for direct light
+/// asks at nearly every one.
 double KnownWays::mostSamples(int order, const TechniqueCounts& counts) {
-    constexpr double kByOrder[] = {1.0, 0.5, 0.25};
-    return kByOrder[std::min(order, 3) - 1] * SpecularChains::shareOfVertices(counts);
+    constexpr double kByOrder[] = {1.0, 0.5, 0.25}, kOnlyDirect = 0.25;
+    return kByOrder[std::min(order, 3) - 1] * (counts.onlyDirect() ? kOnlyDirect : 1.0);
 }
 
-/// n(z) over its bound: as the noise of walks that run into the light by the ways to z, in terms of what all lights
-/// would bring to the sphere around the scene.
-double KnownWays::shareOfSamples(const WaysNearby& ways) const {
-    if (!(ways.deviationPerArea > 0.0)) return 0.0;
-    constexpr double kFewest = 0.02, kByNoise = 0.5;
-    const double radius = walker_.scene().radius(), sphere = 4 * kPi * radius * radius;
-    return std::clamp(kByNoise * sphere * ways.deviationPerArea, kFewest, 1.0);
+/// n(z) over its bound. Beside the ways all is left to walks.
+double KnownWays::shareOfSamples(const WaysNearby& ways) {
+    constexpr double kFewest = 0.002;
+    return ways.strength > 0.0 ? ways.samples(kFewest) : 0.0;
 }
 
 void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, RayTally& tally,

@@ -36,7 +36,7 @@ class KnownWays {
   private:
     // n(z), the expected number of samples at an eye vertex, is the product of these.
     static double mostSamples(int order, const TechniqueCounts& counts);
-    double shareOfSamples(const WaysNearby& ways) const;
+    static double shareOfSamples(const WaysNearby& ways);
     struct Known {
         FoundChain found;
         bool isUsual;

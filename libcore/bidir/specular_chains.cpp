@@ -71,6 +71,11 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     const DiscreteDistribution::Pick pick = byPower_.sample(rng.uniformDouble());
     PathVertex y0;
     if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return;
+    // A search takes longer than the rest of the path.
+    constexpr double kFewest = 0.05;
+    const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
+    const double searches = ways.samples(kFewest);
+    if (rng.uniformDouble() >= searches) return;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
     const auto bring = [&](const FoundChain& found, const ChainSearch::Worth& worth) {
@@ -80,12 +85,12 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
             walker_.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
         const Rgb contribution = broughtBy(walker_, found, light, z, atEye.f);
         if (isBlack(contribution) || !isOpen(walker_, light, z, tally)) return;
-        const double counts = worth();
+        const double counts = worth() / searches;
         if (!(counts > 0.0)) return;
         deliver(closeChain(walker_, light, eye, atEye.f, contribution * float(counts), path));
     };
 
-    search_.sample(query, seeds_->near(y0.light, z.position, sideOfPath(z)), rng, tally, bring);
+    search_.sample(query, ways, rng, tally, bring);
 }
 
 }  // namespace lacuna

@@ -28,17 +28,11 @@ class SpecularChains {
     /// The same of x_i on a full path, i < edges.
     static bool begin(const FullPath& path, std::size_t i, const TechniqueCounts& counts);
 
-    /// Of the vertices that chains begin at, those that search: where that is nearly every one, searches at
-    /// all of them would take more than three times as long as the rest of the path.
-    static double shareOfVertices(const TechniqueCounts& counts) {
-        return counts.onlyDirect() ? 0.25 : 1.0;
-    }
-
     /// Whether a path that no edge can be joined on ends in a chain to its light that sample() finds.
     static bool reach(const FullPath& path);
 
-    /// Paths through chains to one light: E of them all is the light of all chains of up to Chain::kMost
-    /// vertices. For each, fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and `path`,
+    /// Paths through chains to one light, mostly none: E of them all is the light of all chains of up to
+    /// Chain::kMost vertices. For each, fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and `path`,
     /// and calls `deliver`.
     void sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<PathVertex>& light,
                 FullPath& path, const std::function<void(const Closed&)>& deliver) const;

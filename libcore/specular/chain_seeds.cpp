@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <utility>
 
 #include "libcore/specular/triangles_by_area.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
+constexpr std::size_t kDraws = 64;     // of a ray that the light has a share in
 constexpr std::size_t kNear = 16;      // ways that are here
 constexpr std::size_t kAround = 1024;  // ways that are farther around
 constexpr std::size_t kStep = 256;     // places in a row that have the same ones around
@@ -44,9 +46,9 @@ std::array<std::array<float, 2>, 2> turnOf(const MovingRay& ray, double distance
     return {row(turn[0]), row(turn[1])};
 }
 
-ChainSeed backwards(const Chain& chain, const Vec3& end, double deviation) {
+ChainSeed backwards(const Chain& chain, const Vec3& end, double strength) {
     ChainSeed seed;
-    seed.deviation = float(deviation);
+    seed.strength = float(strength);
     seed.end = end;
     // Not the difference of two points, which may lie a millimetre apart.
     seed.direction = Vec3(-chain.last().direction);
@@ -127,16 +129,16 @@ void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, co
             SurfacePoint point;
             scene.surfaceAt(*hit, point);
             if (scene.bsdfAt(point).connectable()) {
-                double deviation = 0.0;
+                double strength = ray.power;
                 bool isLeft = true;
                 if (isHittable(from.kind)) {
                     const double times = timesAsSeldom(from, Vec3(ray.direction), distance);
-                    deviation = ray.power * std::sqrt(times);
+                    strength *= std::sqrt(times);
                     isLeft = times > kFewTimes && !isStraightOn(solver, chain, point, from);
                 }
                 const bool front = dot(Vec3d(point.ng), chain.last().direction) < 0.0;
                 const Vec3 side = front ? point.ng : -point.ng;
-                if (isLeft) arrivals.push_back({side, backwards(chain, point.position, deviation)});
+                if (isLeft) arrivals.push_back({side, backwards(chain, point.position, strength)});
             }
         }
         if (!chain.extend(scene, *hit, rng.uniformDouble())) return;
@@ -154,6 +156,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
     if (triangles.empty()) return;
     const Vec3 half = scene.halfSize();
     half_ = std::max({half.x, half.y, half.z});
+    sphere_ = 4 * kPi * scene.radius() * scene.radius();
     const ChainSolver solver(scene);
     const auto rayTowards = [&](const TrianglesByArea::Point& at,
                                 const LightPoint& from) -> std::optional<Ray> {
@@ -172,38 +175,48 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
             triangles.area() * std::fabs(dot(direction, Vec3d(triangles.normal(at.triangle))));
         return Ray{origin, direction, profile * cosine * area / disk};
     };
-    // `pointOf` draws where each of so many rays leaves its light.
-    const auto trace = [&](std::size_t rays, std::uint32_t stream, const auto& pointOf) {
+    // `pointOf` draws where each of so many rays leaves its light. Where a light shines on little of the glass, most
+    // draws come to nothing, and cost nothing.
+    const auto trace = [&](std::size_t rays, std::uint32_t stream, const UsualKinds& usual,
+                           const auto& pointOf) {
         std::vector<std::vector<Arrival>> found((rays + kRaysPerTask - 1) / kRaysPerTask);
+        std::vector<std::size_t> draws(found.size());
         threads.forEach(found.size(), [&](std::size_t task) {
             const std::size_t end = std::min(rays, (task + 1) * kRaysPerTask);
             for (std::size_t i = task * kRaysPerTask; i < end; ++i) {
                 Rng rng(0, stream, StreamKind::Chain, ~std::uint64_t(i));
-                const TrianglesByArea::Point at = triangles.sample(rng);
-                const LightPoint from = pointOf(rng);
-                const auto ray = rayTowards(at, from);
-                if (ray) followRay(solver, from, *ray, rng, found[task]);
+                for (std::size_t draw = 0; draw < kDraws; ++draw) {
+                    ++draws[task];
+                    const TrianglesByArea::Point at = triangles.sample(rng);
+                    const LightPoint from = pointOf(rng);
+                    const auto ray = rayTowards(at, from);
+                    if (!ray) continue;
+                    followRay(solver, from, *ray, rng, found[task]);
+                    break;
+                }
             }
         });
+        const auto all = float(std::accumulate(draws.begin(), draws.end(), std::size_t{0}));
         for (auto& some : found) {
-            for (Arrival& a : some) a.seed.deviation /= float(rays);
+            for (Arrival& a : some) a.seed.strength /= all;
         }
-        return sorted(found, threads);
+        return sorted(found, usual, threads);
     };
     if (ofPoints > 0.0) byLight_.resize(lights.size());
     for (std::uint32_t light = 0; light < byLight_.size(); ++light) {
         if (isHittable(lights.kind(light))) continue;
         const auto rays = std::size_t(std::ceil(kRays * lights.powerShare(light) / ofPoints));
-        byLight_[light] = trace(rays, light, [&](Rng&) { return lights.punctualPoint(light); });
+        byLight_[light] =
+            trace(rays, light, kOfPoints, [&](Rng&) { return lights.punctualPoint(light); });
     }
     if (ofLamps > 0.0) {
-        ofLamps_ = trace(std::size_t(kRays), std::uint32_t(lights.size()),
+        ofLamps_ = trace(std::size_t(kRays), std::uint32_t(lights.size()), kOfLamps,
                          [&](Rng& rng) { return lights.samplePoint(rng); });
     }
 }
 
 ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arrivals,
-                                      const ThreadPool& threads) const {
+                                      const UsualKinds& usual, const ThreadPool& threads) const {
     std::vector<std::pair<std::uint32_t, const ChainSeed*>> byCode;
     for (const auto& some : arrivals) {
         for (const Arrival& a : some) byCode.emplace_back(codeOf(a.seed.end, a.side), &a.seed);
@@ -225,7 +238,7 @@ ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arri
         const std::size_t first = std::min(begin - before, seeds.size() - mostAround);
         const std::vector<Kind> around = kindsOf(seeds, first, mostAround);
         for (std::size_t i = begin; i < end; ++i) {
-            ways.windows[i] = windowOf(seeds, i, most, around);
+            ways.windows[i] = windowOf(seeds, i, most, around, usual);
         }
     });
     return ways;
@@ -261,16 +274,17 @@ std::vector<ChainSeeds::Kind> ChainSeeds::kindsOf(std::span<const ChainSeed> all
 }
 
 ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> all, std::size_t first,
-                                        std::size_t size, std::span<const Kind> around) {
+                                        std::size_t size, std::span<const Kind> around,
+                                        const UsualKinds& usual) {
     const std::span<const ChainSeed> ways = all.subspan(first, size);
     Window window;
     for (const ChainSeed& way : ways) window.centre += way.end * (1.0f / float(ways.size()));
-    double deviation = 0.0;
+    double strength = 0.0;
     for (const ChainSeed& way : ways) {
         window.radius = std::max(window.radius, length(way.end - window.centre));
-        deviation += double(way.deviation);
+        strength += double(way.strength);
     }
-    window.deviationPerArea = deviation / (kPi * double(window.radius) * double(window.radius));
+    window.strengthPerArea = strength / (kPi * double(window.radius) * double(window.radius));
     const std::vector<Kind> here = kindsOf(all, first, size);
     const auto isHere = [&](const Kind& kind) {
         return std::ranges::any_of(here,
@@ -282,7 +296,7 @@ ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> all, std::siz
         ++count;
     };
     for (const Kind& kind : here) {
-        if (kind.count > 1) add(kind.way, WaysNearby::kMostUsual, window.usual);
+        if (kind.count >= usual.fewestWays) add(kind.way, usual.most, window.usual);
     }
     for (std::size_t i = first; i < first + size; ++i) {
         add(std::uint32_t(i), WaysNearby::kMostOthers, window.others);
@@ -315,8 +329,9 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
     const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
     const Window& window = ways.windows[first];
     const std::span<const std::uint32_t> known = window.ways;
+    const bool inside = length(place - window.centre) <= 1.5f * window.radius;
     return {ways.seeds, known.first(window.usual), known.subspan(window.usual, window.others),
-            length(place - window.centre) <= 1.5f * window.radius ? window.deviationPerArea : 0.0};
+            inside ? window.strengthPerArea * sphere_ : 0.0};
 }
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {

@@ -3,6 +3,7 @@
 // ways")
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -22,9 +23,9 @@ struct ChainSeed {
     std::array<std::array<float, 2>, 2> turn{};
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
-    /// Root of the second moment that walks have which run into the lamp this way, over the power of all lights;
-    /// zero where lights have no size.
-    float deviation = 0;
+    /// Of a light without a size, the share of its power that comes this way. Of lamps and skies, the root of the second
+    /// moment that walks have which run into them this way, over the power of all lights.
+    float strength = 0;
 
     bool hasEventsOf(const Chain& chain) const;
     /// Unit, of a way over the same surfaces from the same light that ends at a place nearby: exact as its
@@ -34,13 +35,22 @@ struct ChainSeed {
 
 /// Ways that ended near a place. What comes over the same events from about the same direction is of one kind.
 struct WaysNearby {
-    static constexpr std::size_t kMostUsual = 4, kMostOthers = 28;
+    static constexpr std::size_t kMostUsual = 8, kMostOthers = 28;
     std::span<const ChainSeed> all;  ///< of the light, or of all lamps
     // Where they stand in `all`.
-    std::span<const std::uint32_t> usual;   ///< one of each kind that came here more than once
+    std::span<const std::uint32_t>
+        usual;  ///< one of each kind that came here, or did more than once
     std::span<const std::uint32_t> others;  ///< all that came here, then kinds from farther around
-    /// Deviations of all that came here, per square metre; zero where the place lies beside it.
-    double deviationPerArea = 0;
+    /// Of all that came here, per area, over what the whole power would bring to the sphere around the scene; zero
+    /// where the place lies beside it.
+    double strength = 0;
+
+    /// An expected number of samples by that: samples which cost the same are worth most where their number goes as
+    /// the root of the second moment of what they bring.
+    double samples(double fewest) const {
+        constexpr double kByStrength = 0.25;
+        return strength > 0.0 ? std::clamp(kByStrength * strength, fewest, 1.0) : fewest;
+    }
 };
 
 class ChainSeeds {
@@ -80,29 +90,38 @@ class ChainSeeds {
     static std::vector<Kind> kindsOf(std::span<const ChainSeed> all, std::size_t first,
                                      std::size_t size);
 
+    /// Which kinds of ways are usual: those that came so often, and how many.
+    struct UsualKinds {
+        int fewestWays;
+        std::size_t most;
+    };
+    static constexpr UsualKinds kOfPoints{1, WaysNearby::kMostUsual}, kOfLamps{2, 4};
+
     /// What is known of as many ways as a place has.
     struct Window {
         std::array<std::uint32_t, WaysNearby::kMostUsual + WaysNearby::kMostOthers> ways;
         std::uint8_t usual = 0, others = 0;
-        // The ball that they ended in, and their deviations together over its disk.
+        // The ball that they ended in, and their strengths together over its disk, per square metre.
         Vec3 centre;
         float radius = 0;
-        double deviationPerArea = 0;
+        double strengthPerArea = 0;
     };
     static Window windowOf(std::span<const ChainSeed> all, std::size_t first, std::size_t size,
-                           std::span<const Kind> around);
+                           std::span<const Kind> around, const UsualKinds& usual);
 
     struct Sorted {
         std::vector<std::uint32_t> codes;  // ascending
         std::vector<ChainSeed> seeds;      // in that order
         std::vector<Window> windows;       // by the first of their ways
     };
-    Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const ThreadPool& threads) const;
+    Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const UsualKinds& usual,
+                  const ThreadPool& threads) const;
     WaysNearby near(const Sorted& ways, const Vec3& place, const Vec3& side) const;
 
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
     Sorted ofLamps_;
-    float half_ = 1.0f;  // of the cube that places lie in
+    float half_ = 1.0f;    // of the cube that places lie in
+    double sphere_ = 1.0;  // area of the one around the scene, in square metres
 };
 
 }  // namespace lacuna

@@ -145,7 +145,8 @@ TEST(SpecularChains, aBallAboutALampTakesNothingAway) {
 }
 
 /// Where the camera sees a caustic itself, splats make it, and a path tracer by chains. Of things that
-/// hardly focus: where a caustic is sharp, few samples hold most of it.
+/// hardly focus: where a caustic is sharp, few samples hold most of it. So the mirror is a fine mesh, since coarse ones
+/// draw bright lines.
 class Caustics : public testing::TestWithParam<LightChoice> {};
 INSTANTIATE_TEST_SUITE_P(All, Caustics,
                          testing::Values(LightChoice::Point, LightChoice::Spot,
@@ -158,7 +159,7 @@ SceneBuilder specularStage(LightChoice light) {
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
     b.add(
         sphere({-0.7f, 0.5f, 0}, 0.4f, 24, b.add(colouredGlass({0.2f, 0.5f, 0.1f}, 1.05f)), true));
-    b.add(sphere({0.7f, 0.5f, 0.2f}, 0.35f, 12, b.add(mirror({0.9f, 0.6f, 0.3f})), true));
+    b.add(sphere({0.7f, 0.5f, 0.2f}, 0.35f, 24, b.add(mirror({0.9f, 0.6f, 0.3f})), true));
     // A smooth coat over a colour, and a sheet that is thin and bent.
     b.add(sphere({0, 0.4f, 0.7f}, 0.3f, 12, b.add(plastic({0.3f, 0.2f, 0.6f}, 0)), true));
     b.add(sphere({0, 0.6f, -0.7f}, 0.4f, 12, b.add(pane({0.7f, 0.9f, 0.8f})), true));

@@ -19,6 +19,7 @@ import sys
 
 import numpy
 
+import pictures
 import scenes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -34,15 +35,6 @@ TRAINED = ["--prepare", "--set", "candidates=10000", "--set", "train.paths=16000
 ROWS = {"bpt": [], "sharebpt": TRAINED}
 
 
-def pixels(path):
-    """Of a .pfm: (height, width, 3), whichever way up."""
-    kind, size, scale, content = path.read_bytes().split(b"\n", 3)
-    assert kind == b"PF"
-    width, height = map(int, size.split())
-    order = "<f4" if float(scale) < 0 else ">f4"
-    return numpy.frombuffer(content, order).reshape(height, width, 3).astype(float)
-
-
 def smoothed(picture):
     reach = SMOOTHED // 2
     padded = numpy.pad(picture, ((reach, reach), (reach, reach), (0, 0)), mode="edge")
@@ -50,19 +42,19 @@ def smoothed(picture):
     return windows.mean(axis=(-1, -2))
 
 
-def pictures(program, directory, scene, size, row):
+def rendered(program, directory, scene, size, row):
     target = directory / "picture.pfm"
     for seed in SEEDS:
         subprocess.run([str(part) for part in [
             program, *scene, "--method", row, *ROWS[row], "--cache", directory / "caches" / scene[0].stem, "--width", size[0],
             "--height", size[1], "--iterations", ITERATIONS, "--sampler", "sobol", "--seed", seed, "-o", target, "--quiet"]],
             check=True, stdout=subprocess.DEVNULL)
-        yield pixels(target)
+        yield pictures.pixels(target)
 
 
 def noises(program, directory, scene, size):
     """Of each row, over what all show."""
-    by_row = {row: list(pictures(program, directory, scene, size, row)) for row in ROWS}
+    by_row = {row: list(rendered(program, directory, scene, size, row)) for row in ROWS}
     mean = numpy.mean([p for of in by_row.values() for p in of], axis=0)
     over = smoothed(mean) + EPSILON * mean.mean()
     return {row: statistics.mean((abs(a - b) / over).mean() for a, b in itertools.combinations(of, 2)) / 2 ** 0.5
