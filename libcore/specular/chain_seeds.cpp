@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
-constexpr std::size_t kDraws = 64;     // of a ray that the light has a share in
+constexpr std::size_t kDraws = 16;     // at most, until a light shines that way
 constexpr std::size_t kNear = 16;      // ways that are here
 constexpr std::size_t kAround = 1024;  // ways that are farther around
 constexpr std::size_t kStep = 256;     // places in a row that have the same ones around
@@ -176,7 +176,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
         return Ray{origin, direction, profile * cosine * area / disk};
     };
     // `pointOf` draws where each of so many rays leaves its light. Where a light shines on little of the glass, most
-    // draws come to nothing, and cost nothing.
+    // draws come to nothing, and cost little.
     const auto trace = [&](std::size_t rays, std::uint32_t stream, const UsualKinds& usual,
                            const auto& pointOf) {
         std::vector<std::vector<Arrival>> found((rays + kRaysPerTask - 1) / kRaysPerTask);

@@ -37,9 +37,9 @@ struct ChainSeed {
 struct WaysNearby {
     static constexpr std::size_t kMostUsual = 8, kMostOthers = 28;
     std::span<const ChainSeed> all;  ///< of the light, or of all lamps
-    // Where they stand in `all`.
-    std::span<const std::uint32_t>
-        usual;  ///< one of each kind that came here, or did more than once
+    // Where they stand in `all`:
+    /// One of each kind that came here; of lamps, more than once.
+    std::span<const std::uint32_t> usual;
     std::span<const std::uint32_t> others;  ///< all that came here, then kinds from farther around
     /// Of all that came here, per area, over what the whole power would bring to the sphere around the scene; zero
     /// where the place lies beside it.

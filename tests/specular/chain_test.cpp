@@ -367,7 +367,8 @@ TEST(ChainSeeds, areAsStrongAsTheLightThatComes) {
     b.add(box({-2, 0.5f, -2}, {2, 0.6f, 2}, b.add(glass(1.5f))));
     b.add(directionalLight({0, -1, 0}, Rgb(1)));
     b.add(pointLight({0, 3, 0}, Rgb(1)));
-    b.add(spotLight({0, 3, 0}, {0, -1, 0}, Rgb(1), 0.199, 0.2));
+    b.add(spotLight({0, 3, 0}, {0, -1, 0}, Rgb(100), 0.199,
+                    0.2));  // the lamp's power, so as many rays
     const auto scene = b.build();
     const ThreadPool threads(2);
     const ChainSeeds seeds(*scene, threads);
