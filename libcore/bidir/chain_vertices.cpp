@@ -93,8 +93,10 @@ std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& 
     const float pdfWToEye = appendChain(walker, found.chain, light);
     const Rgb contribution = broughtBy(walker, found, light, z, atEye.f);
     if (isBlack(contribution) || !isOpen(walker, light, z, tally)) return std::nullopt;
-    return NextEvent{closeRefraction(walker, light, pdfWToEye, eye, atEye, contribution, path),
-                     double(atEye.pdfWToLight)};
+    const Closed closed = closeRefraction(walker, light, pdfWToEye, eye, atEye, contribution, path);
+    // Along the lamp's own plane, where rounding alone tells its sides apart, no walk would arrive.
+    if (!(path.eyePdfA[0] > 0.0)) return std::nullopt;
+    return NextEvent{closed, double(atEye.pdfWToLight)};
 }
 
 }  // namespace lacuna
