@@ -180,5 +180,19 @@ TEST(KnownWays, findWhatWalksMiss) {
     }
 }
 
+/// A camera in the plane of a lamp, which looks at a wall there: over a mirror, rounding alone tells the lamp's sides
+/// apart.
+TEST(KnownWays, endNotAlongALampsOwnPlane) {
+    SceneBuilder b;
+    const auto white = b.add(matte(Rgb(0.5f)));
+    b.add(box({-1, -2, -1}, {1, 0.02f, 1}, white, true));
+    b.add(quad({0.99f, -2, 1}, {0, 0, -2}, {0, 2.01f, 0}, b.add(mirror(Rgb(0.9f)))));
+    b.add(quad({-0.3f, 0, -0.4f}, {0.6f, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(9)))));
+    b.add(lookAt({-0.7, 0, 0.9}, {-0.7, 0, -1}, 1e-5));
+    const auto scene = b.build();
+    Shot shot = quickShot(400);
+    EXPECT_EQ(render(*scene, rowNamed("pt"), shot).statistics.invalidSamples, 0u);
+}
+
 }  // namespace
 }  // namespace lacuna::test
