@@ -47,6 +47,7 @@ GROUPS = [
         Case("sky-alone", "nothing, or one convex body, under a constant sky", "the sky; the body's albedo"),
         Case("hidden-from-camera", "a lamp, and a pane before the sky, that the camera does not see",
              "nothing but a hidden lamp is black; every method agrees with path tracing"),
+        Case("lamp-edge-on", "a wall at a lamp's own height, joined with it over a mirror", "no sample is invalid"),
         Case("tiny-light", "a lamp of a millionth of the scene", "every method agrees with path tracing"),
         Case("huge-light", "a lamp a million times the scene", "the radiance under an endless one"),
         Case("light-near-surface", "a lamp 1e-4 off a surface", "radiance by form factor; nothing leaks from the gap"),

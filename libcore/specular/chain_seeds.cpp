@@ -156,7 +156,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
     if (triangles.empty()) return;
     const Vec3 half = scene.halfSize();
     half_ = std::max({half.x, half.y, half.z});
-    sphere_ = 4 * kPi * scene.radius() * scene.radius();
+    const double sphere = 4 * kPi * scene.radius() * scene.radius();
     const ChainSolver solver(scene);
     const auto rayTowards = [&](const TrianglesByArea::Point& at,
                                 const LightPoint& from) -> std::optional<Ray> {
@@ -196,9 +196,9 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
                 }
             }
         });
-        const auto all = float(std::accumulate(draws.begin(), draws.end(), std::size_t{0}));
+        const auto all = double(std::accumulate(draws.begin(), draws.end(), std::size_t{0}));
         for (auto& some : found) {
-            for (Arrival& a : some) a.seed.strength /= all;
+            for (Arrival& a : some) a.seed.strength *= float(sphere / all);
         }
         return sorted(found, usual, threads);
     };
@@ -284,7 +284,7 @@ ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> all, std::siz
         window.radius = std::max(window.radius, length(way.end - window.centre));
         strength += double(way.strength);
     }
-    window.strengthPerArea = strength / (kPi * double(window.radius) * double(window.radius));
+    window.strength = strength / (kPi * double(window.radius) * double(window.radius));
     const std::vector<Kind> here = kindsOf(all, first, size);
     const auto isHere = [&](const Kind& kind) {
         return std::ranges::any_of(here,
@@ -331,7 +331,7 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
     const std::span<const std::uint32_t> known = window.ways;
     const bool inside = length(place - window.centre) <= 1.5f * window.radius;
     return {ways.seeds, known.first(window.usual), known.subspan(window.usual, window.others),
-            inside ? window.strengthPerArea * sphere_ : 0.0};
+            inside ? window.strength : 0.0};
 }
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {

@@ -23,8 +23,9 @@ struct ChainSeed {
     std::array<std::array<float, 2>, 2> turn{};
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
-    /// Of a light without a size, the share of its power that comes this way. Of lamps and skies, the root of the second
-    /// moment that walks have which run into them this way, over the power of all lights.
+    /// Of a light without a size, the power that comes this way, over what its whole power brings to a square metre of the
+    /// sphere around the scene. Of lamps and skies, the root of the second moment that walks have which run into them
+    /// this way, over what all lights bring there.
     float strength = 0;
 
     bool hasEventsOf(const Chain& chain) const;
@@ -41,8 +42,7 @@ struct WaysNearby {
     /// One of each kind that came here; of lamps, more than once.
     std::span<const std::uint32_t> usual;
     std::span<const std::uint32_t> others;  ///< all that came here, then kinds from farther around
-    /// Of all that came here, per area, over what the whole power would bring to the sphere around the scene; zero
-    /// where the place lies beside it.
+    /// Of all that came here, per square metre; zero where the place lies beside it.
     double strength = 0;
 
     /// An expected number of samples by that: samples which cost the same are worth most where their number goes as
@@ -101,10 +101,10 @@ class ChainSeeds {
     struct Window {
         std::array<std::uint32_t, WaysNearby::kMostUsual + WaysNearby::kMostOthers> ways;
         std::uint8_t usual = 0, others = 0;
-        // The ball that they ended in, and their strengths together over its disk, per square metre.
+        // The ball that they ended in, and their strengths together over its disk.
         Vec3 centre;
         float radius = 0;
-        double strengthPerArea = 0;
+        double strength = 0;
     };
     static Window windowOf(std::span<const ChainSeed> all, std::size_t first, std::size_t size,
                            std::span<const Kind> around, const UsualKinds& usual);
@@ -120,8 +120,7 @@ class ChainSeeds {
 
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
     Sorted ofLamps_;
-    float half_ = 1.0f;    // of the cube that places lie in
-    double sphere_ = 1.0;  // area of the one around the scene, in square metres
+    float half_ = 1.0f;  // of the cube that places lie in
 };
 
 }  // namespace lacuna

@@ -190,8 +190,9 @@ TEST(KnownWays, endNotAlongALampsOwnPlane) {
     b.add(quad({-0.3f, 0, -0.4f}, {0.6f, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(9)))));
     b.add(lookAt({-0.7, 0, 0.9}, {-0.7, 0, -1}, 1e-5));
     const auto scene = b.build();
-    Shot shot = quickShot(400);
-    EXPECT_EQ(render(*scene, rowNamed("pt"), shot).statistics.invalidSamples, 0u);
+    const Picture picture = render(*scene, rowNamed("pt"), quickShot(400));
+    EXPECT_EQ(picture.statistics.invalidSamples, 0u);
+    stabilityCase("lamp-edge-on", double(picture.statistics.invalidSamples), "invalid samples");
 }
 
 }  // namespace

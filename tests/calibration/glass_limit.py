@@ -20,6 +20,7 @@ import sys
 
 import numpy
 
+import pages
 import pictures
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -27,16 +28,16 @@ sys.path.insert(0, str(ROOT / "scenes"))
 
 from generator import materials as m  # noqa: E402
 from generator.glb import SceneFile  # noqa: E402
-from generator.mesh import box, quad, sphere  # noqa: E402
+from generator.mesh import box, sphere  # noqa: E402
 from generator.vector import about_y  # noqa: E402
 
-INTENSITY = 3.0          # W/sr
-ROOM = 3.0               # m
+INTENSITY = 3.0  # W/sr
+ROOM = 3.0  # m
 LAMP = (0.55, 2.6, -0.7)  # out of sight, as the ball of glass below it is: no lens sees a point
-RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}   # of the ball, in terms of the room
+RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}  # of the ball, in terms of the room
 SEEDS = (1, 2, 3, 4)
 ITERATIONS = 48
-"""Which rows render the lamp that is a point, and one that is not."""
+# Which rows render the lamp that is a point, and one that is not:
 OF_POINTS = {"pt": ["--method", "pt"], "bpt": ["--method", "bpt"]}
 OF_BALLS = {"bpt": ["--method", "bpt"], "bpt, refractions=off": ["--method", "bpt", "--effect", "refractions=off"]}
 
@@ -91,9 +92,9 @@ def measure(program, file, options, target):
 
 
 def line(lamp, row, found, limit):
-    least = found["noise"] / limit["noise"], found["most"] / limit["most"]
+    times = [found[part] / limit[part] for part in ("noise", "most")]
     return (f"| {lamp} | {row} | {found['mean']:.5f} | {found['error']:.5f} | {found['seconds']:.1f} | {found['noise']:.3g} "
-            f"| {least[0]:.3g} | {least[1]:.3g} |")
+            f"| {times[0]:.3g} | {times[1]:.3g} |")
 
 
 def main():
@@ -110,10 +111,9 @@ def main():
             limit = limit or found
             lines.append(line(lamp, row, found, limit))
             print(lines[-1], flush=True)
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     pathlib.Path(page).write_text("\n".join([
         "# A point light behind glass, seen through glass", "",
-        f"By `python3 tests/calibration/glass_limit.py`, {datetime.date.today()}, commit {commit}, on {platform.machine()}: {ITERATIONS} iterations,",
+        f"By `python3 tests/calibration/glass_limit.py`, {datetime.date.today()}, commit {pages.commit()}, on {platform.machine()}: {ITERATIONS} iterations,",
         f"160 x 90 pixels, {len(SEEDS)} seeds. The lamp is a point, or a ball of the same power with a radius of so much of the room. Mean: of all",
         "pixels, with its standard error. Noise: the variance of a pixel over the squared mean, times the seconds; then over that of",
         "the first line, and the same without the hundredth of the pixels that has the most. No figure of a paper.", "",

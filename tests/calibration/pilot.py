@@ -19,10 +19,10 @@ import sys
 
 import numpy
 
+import pages
 import pictures
 import scenes
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 OURS = ("classroom-windows", "court", "door", "drapery-hall", "glossy-room", "kitchen-glass", "nave", "bedroom-curtain")
 SHARED = ("classroom", "staircase", "kitchen-su22", "sponza-crytek", "veach-bidir", "veach-mis")
 SIZES = ((40, 22), (160, 90), (640, 360))
@@ -80,12 +80,11 @@ def main():
         noise = " | ".join(f"{n['bpt']:.3f} | {n['sharebpt']:.3f}" for n in by_size)
         lines.append(f"| {name} | {noise} | {' | '.join(f'{g:.2f}' for g in gains)} | {power:.3f} |")
         print(lines[-1], flush=True)
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     sizes = [f"{w} x {h}" for w, h in SIZES]
     head = [f"{row}, {size}" for size in sizes for row in ROWS] + [f"gain, {size}" for size in sizes]
     pathlib.Path(page).write_text("\n".join([
         "# What a pilot in few pixels tells of a picture in many", "",
-        f"By `python3 tests/calibration/pilot.py`, {datetime.date.today()}, commit {commit}, on {platform.machine()}. After",
+        f"By `python3 tests/calibration/pilot.py`, {datetime.date.today()}, commit {pages.commit()}, on {platform.machine()}. After",
         f"{ITERATIONS} iterations with even numbers: the mean relative distance of pictures of {len(SEEDS)} seeds, over the square root",
         "of 2; the gain is the ratio of bpt's variance to sharebpt's; the power is that of the number of pixels by which the gain",
         "grows from the smallest size to the largest. No figure of a paper.", "",

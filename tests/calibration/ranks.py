@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 
+import pages
+
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 RANKS = (1, 2, 4)
 ROUNDS = 3
@@ -101,12 +103,10 @@ def outlook(found):
 
 def page(found, program):
     cost, by_adding, by_network, lines = outlook(found)
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                            cwd=SCENES).stdout.strip()
     first = found[RENDERS[0][0], 1][0]
     return "\n".join([
         "# Several ranks: how fast, and what would limit more", "",
-        f"Date {datetime.date.today()}, commit {commit}, {platform.machine()}, {os.cpu_count()} "
+        f"Date {datetime.date.today()}, commit {pages.commit()}, {platform.machine()}, {os.cpu_count()} "
         f"processors. `python3 tests/calibration/ranks.py {program} PAGE`.", "",
         "Door, 320 x 180, 32 iterations, one thread per rank, all ranks on this machine; with more "
         "ranks than processors they share them. Three rounds in turn; medians, lowest and highest. "

@@ -18,9 +18,9 @@ import statistics
 import subprocess
 import sys
 
+import pages
 import scenes
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 OURS = ("blender-still-life", "court", "cornell-box", "light-environment", "classroom-windows",
         "glossy-room", "kitchen-glass", "nave", "drapery-hall", "bedroom-curtain", "door",
         "ring-caustic")
@@ -133,11 +133,9 @@ def slope(found, name, row, sampler):
 
 
 def page(found, spent, chosen, command):
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                            cwd=ROOT).stdout.strip()
     lines = [
         "# Even numbers: what --sampler sobol is worth", "",
-        f"Date {datetime.date.today()}, commit {commit}, {platform.machine()}. `{command}`.", "",
+        f"Date {datetime.date.today()}, commit {pages.commit()}, {platform.machine()}. `{command}`.", "",
         f"{' x '.join(SIZE[1::2])} pixels, seeds {', '.join(map(str, SEEDS))}, each against 2048 iterations of "
         "`spcbpt` with independent numbers and another seed. A figure says how much longer "
         "independent numbers take to the error of even ones, iterations for iterations (mape^-2): "

@@ -24,6 +24,8 @@ import sys
 from pathlib import Path
 from statistics import median
 
+import pages
+
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH = 64
 MOST_ITERATIONS = 512
@@ -205,8 +207,7 @@ def main() -> None:
     with contextlib.suppress(KeyboardInterrupt):
         run_all(program, arguments.output.resolve(), arguments.sampler, targets, results, arguments.page_only)
     total = len(targets) * sum(applies(scene, row) for scene in SCENES for row in rows(program))
-    commit = arguments.commit or subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True,
-                                                check=True).stdout.strip()
+    commit = arguments.commit or pages.commit()
     text = page(results, total, arguments.sampler, targets, commit, "python3 " + " ".join(sys.argv))
     print(text)
     if arguments.summary:

@@ -358,17 +358,40 @@ TEST(ChainSeeds, comeInKinds) {
     EXPECT_GT(fromAround, 100);
 }
 
+/// Ways to lamps are usual where they came twice, since each sample goes them all.
+TEST(ChainSeeds, comeMoreThanOnceToLamps) {
+    SceneBuilder b = litThroughGlass();
+    b.add(quad({0.3f, 2, 0.2f}, {0.02f, 0, 0}, {0, 0, 0.02f}, b.add(emitter(Rgb(1)))));
+    const auto scene = b.build();
+    const ThreadPool threads(2);
+    const ChainSeeds seeds(*scene, threads);
+    Rng rng(9, 0, StreamKind::User, 0);
+    int kinds = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 place =
+            floorOf(*scene).position + Vec3{rng.uniform() - 0.5f, 0, rng.uniform() - 0.5f} * 0.8f;
+        const WaysNearby ways = seeds.nearOfLamps(place, {0, 1, 0});
+        for (const std::uint32_t usual : ways.usual) {
+            const auto isLike = [&](std::uint32_t other) {
+                return areAlike(ways.all[usual], ways.all[other]);
+            };
+            EXPECT_GE(std::ranges::count_if(ways.others.first(kHere), isLike), 2);
+            ++kinds;
+        }
+    }
+    EXPECT_GT(kinds, 200);
+}
+
 /// Under a slab, what comes is what two faces let through, in terms of what the whole power brings to the sphere around
-/// the scene: the sun's power falls on a disk, the lamp's goes all around, and
-/// the spot's into a cone.
+/// the scene: the sun's power falls on a disk, the lamp's goes all around, and the spot's into a cone.
 TEST(ChainSeeds, areAsStrongAsTheLightThatComes) {
     SceneBuilder b;
     b.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, b.add(matte(Rgb(0.5f)))));
     b.add(box({-2, 0.5f, -2}, {2, 0.6f, 2}, b.add(glass(1.5f))));
     b.add(directionalLight({0, -1, 0}, Rgb(1)));
     b.add(pointLight({0, 3, 0}, Rgb(1)));
-    b.add(spotLight({0, 3, 0}, {0, -1, 0}, Rgb(100), 0.199,
-                    0.2));  // the lamp's power, so as many rays
+    // Of the lamp's power, so that as many rays leave it.
+    b.add(spotLight({0, 3, 0}, {0, -1, 0}, Rgb(100), 0.199, 0.2));
     const auto scene = b.build();
     const ThreadPool threads(2);
     const ChainSeeds seeds(*scene, threads);
