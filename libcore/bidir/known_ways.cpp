@@ -41,11 +41,10 @@ bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) 
 
 }  // namespace
 
-/// The bound of n(z). Of deep vertices there are many, and each carries little. A row that only asks for direct light
-/// asks at nearly every one.
-double KnownWays::mostSamples(int order, const TechniqueCounts& counts) {
-    constexpr double kByOrder[] = {1.0, 0.5, 0.25}, kOnlyDirect = 0.25;
-    return kByOrder[std::min(order, 3) - 1] * (counts.onlyDirect() ? kOnlyDirect : 1.0);
+/// The bound of n(z). Of deep vertices there are many, and each carries little.
+double KnownWays::mostSamples(int order) {
+    constexpr double kByOrder[] = {0.25, 0.125, 0.0625};
+    return kByOrder[std::min(order, 3) - 1];
 }
 
 /// n(z) over its bound. Beside the ways all is left to walks.
@@ -61,7 +60,7 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const int left = walker_.limits().maxDepth - int(eye.size());
     if (left < 1 || !SpecularChains::begin(eye, counts)) return;
     // By the bound first: ways lie anywhere in memory.
-    const double most = mostSamples(connectionOrder(eye), counts), u = rng.uniformDouble();
+    const double most = mostSamples(connectionOrder(eye)), u = rng.uniformDouble();
     if (u >= most) return;
     const Vec3 side = sideOfPath(z);
     const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
@@ -146,8 +145,8 @@ double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
     // Where pixels share walks, z's own walk may have come from elsewhere.
     const Vec3 side = sideTowards(z, toEye);
     const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
-    const double samples = mostSamples(path.orderOf(int(count) + 1), counts) *
-                           shareOfSamples(ways) * walker_.seenSamples(y0, z);
+    const double samples = mostSamples(path.orderOf(int(count) + 1)) * shareOfSamples(ways) *
+                           walker_.seenSamples(y0, z);
     if (!(samples > 0.0)) return 0.0;
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
     if (!(eyePdfW > 0.0)) return 0.0;

@@ -35,7 +35,7 @@ class KnownWays {
 
   private:
     // n(z), the expected number of samples at an eye vertex, is the product of these.
-    static double mostSamples(int order, const TechniqueCounts& counts);
+    static double mostSamples(int order);
     static double shareOfSamples(const WaysNearby& ways);
     struct Known {
         FoundChain found;

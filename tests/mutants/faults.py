@@ -813,7 +813,7 @@ FAULTS = [
           {"acceptance": "KnownWays.*"}),
     Fault("known-ways-count-whole", "weights take known ways as gone from every vertex",
           "libcore/bidir/known_ways.cpp",
-          "shareOfSamples(ways) * walker_.seenSamples(y0, z);", "(ways.strength > 0.0) * walker_.seenSamples(y0, z);",
+          "orderOf(int(count) + 1)) * shareOfSamples(ways) *", "orderOf(int(count) + 1)) * (ways.strength > 0.0) *",
           {"acceptance": "KnownWays.*"}),
     Fault("drawn-ways-count-whole", "a known way that is drawn counts as one that is always gone",
           "libcore/bidir/known_ways.cpp",

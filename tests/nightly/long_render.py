@@ -9,8 +9,9 @@ import subprocess
 import time
 
 SAMPLE_SECONDS = 2
-MOST_GROWTH = 1.01  # of memory, from the second fifth of the time to the last one
+MOST_GROWTH = 1.01  # of memory, from the first half of the time to the second
 LEAST_SLOPE = -0.45  # of log mape over log iterations; independent iterations have -0.5
+BEGIN_OF_SLOPE = 1 / 16  # of all iterations: after a few, most pixels have met none of the rare bright samples
 
 
 def resident(process):
@@ -30,18 +31,28 @@ def iterations_of(head):
     return int.from_bytes(found[1], "little") if found[1] else int(found[3][:int.from_bytes(found[2], "little")])
 
 
-def growth(memory):
-    """Memory late in the run over memory early in it."""
-    fifth = len(memory) // 5
-    if fifth == 0:
-        return math.nan
-    return statistics.median(memory[-fifth:]) / statistics.median(memory[fifth:2 * fifth])
+def iterations_in(log):
+    """Of the last line of progress; 0 before the first one."""
+    found = re.findall(r"\biteration (\d+)", log)
+    return int(found[-1]) if found else 0
+
+
+def growth(samples):
+    """Memory late in the run over memory early in it. `samples`: (iterations, bytes), by time. A film holds one sum for
+    each binary digit of the number of its iterations that is set, so that only equal numbers of sums are compared."""
+    half, by_sums = len(samples) // 2, {}
+    for late, part in enumerate((samples[:half], samples[half:])):
+        for iterations, memory in part:
+            by_sums.setdefault(iterations.bit_count(), ([], []))[late].append(memory)
+    ratios = [statistics.median(late) / statistics.median(early) for early, late in by_sums.values() if early and late]
+    return statistics.median(ratios) if ratios else math.nan
 
 
 def slope(errors, last):
     """Of log mape over log iterations, by least squares. `errors`: (iterations, mape against the picture of `last`
     iterations, of which it is a part), so that sigma sqrt(1/n - 1/N) is what is measured."""
-    points = [(math.log(n), math.log(mape / math.sqrt(1 - n / last))) for n, mape in errors if n < last and mape > 0]
+    points = [(math.log(n), math.log(mape / math.sqrt(1 - n / last)))
+              for n, mape in errors if BEGIN_OF_SLOPE * last <= n < last and mape > 0]
     if len(points) < 2:
         return math.nan
     x, y = (statistics.mean(values) for values in zip(*points))
@@ -53,17 +64,17 @@ def mape(compare, picture, reference):
     return float(re.search(r"^mape (\S+)$", output, re.M)[1])
 
 
-def watch(process, picture, folder, seconds):
-    """Samples of memory, and copies of `picture` at times that double."""
+def watch(process, picture, log, folder, seconds):
+    """Samples of iterations and memory, and copies of `picture` at times that double."""
     memory, copies, begin, at = [], [], time.monotonic(), seconds / 64
     while process.poll() is None:
         time.sleep(SAMPLE_SECONDS)
-        memory.append(resident(process.pid))
+        memory.append((iterations_in(log.read_text(errors="replace")), resident(process.pid)))
         if time.monotonic() - begin > at and picture.exists():
             copies.append(folder / f"{len(copies)}.exr")
             shutil.copyfile(picture, copies[-1])  # it is replaced as a whole, never written into
             at *= 2
-    return [bytes_ for bytes_ in memory if bytes_], copies
+    return [(iterations, bytes_) for iterations, bytes_ in memory if iterations and bytes_], copies
 
 
 def measure(programs, scene, seconds, folder):
@@ -73,14 +84,15 @@ def measure(programs, scene, seconds, folder):
     for old in folder.glob("*.exr"):
         old.unlink()
     (folder / "checkpoint").unlink(missing_ok=True)
-    with open(folder / "render.log", "w") as log:
+    log = folder / "render.log"
+    with open(log, "w") as output:
         process = subprocess.Popen(
             [programs / "lacuna-render", scene, "-o", picture, "--width", "1920", "--height", "1080", "--time", f"{seconds}s",
              "--write-every", f"{max(1, seconds // 128)}s", "--checkpoint", folder / "checkpoint", "--cache",
-             folder / "cache"], stdout=log, stderr=subprocess.STDOUT)
-        memory, copies = watch(process, picture, folder, seconds)
+             folder / "cache"], stdout=output, stderr=subprocess.STDOUT)
+        memory, copies = watch(process, picture, log, folder, seconds)
     if process.returncode != 0:
-        return [], [f"ended with {process.returncode}: {folder / 'render.log'}"]
+        return [], [f"ended with {process.returncode}: {log}"]
 
     def iterations(file):
         with open(file, "rb") as content:
@@ -93,8 +105,9 @@ def measure(programs, scene, seconds, folder):
             errors[n] = mape(programs / "lacuna-compare", copy, picture)
     grown, falls = growth(memory), slope(errors.items(), last)
     rows = [["iterations", "mape against the last picture"], *([n, f"{error:.4f}"] for n, error in errors.items()),
-            [last, "0"], ["memory, most", f"{max(memory) / 2**20:.0f} MB"],
-            ["memory, last fifth over second", f"{grown:.4f}"], ["slope of log mape", f"{falls:.3f}"]]
+            [last, "0"], ["memory, most", f"{max(bytes_ for _, bytes_ in memory) / 2**20:.0f} MB"],
+            ["memory, second half over first, where the film holds as many sums", f"{grown:.4f}"],
+            ["slope of log mape from a sixteenth of the iterations on", f"{falls:.3f}"]]
     findings = []
     if not grown <= MOST_GROWTH:
         findings.append(f"memory grows: {grown:.4f}")

@@ -1,5 +1,6 @@
 """What is read off the programs' outputs, and the page that is made of it."""
 
+import math
 import sys
 import unittest
 from pathlib import Path
@@ -44,7 +45,13 @@ class Outputs(unittest.TestCase):
 
 class LongRender(unittest.TestCase):
     def test_memory(self):
-        self.assertAlmostEqual(long_render.growth([9, 9, *[100] * 4, *[103] * 4]), 1.03)
+        # 1, 2, 4, 8 iterations: one sum. 3, 5, 6, 9: two. What two cost more than one is no growth.
+        flat = [(1, 100), (2, 100), (3, 150), (4, 100), (5, 150), (6, 150), (8, 100), (9, 150)]
+        self.assertAlmostEqual(long_render.growth(flat), 1.0)
+        self.assertAlmostEqual(long_render.growth([(n, m + 3 * (n > 4)) for n, m in flat]), 1.025)
+        self.assertTrue(math.isnan(long_render.growth([(1, 100), (3, 100)])))
+        self.assertEqual(long_render.iterations_in("rendering  iteration 7  1s\rrendering  iteration 12  2s"), 12)
+        self.assertEqual(long_render.iterations_in("preparing"), 0)
         self.assertTrue(long_render.resident("self") > 1e6)
         self.assertIsNone(long_render.resident("none"))
 
@@ -57,9 +64,11 @@ class LongRender(unittest.TestCase):
     def test_slope_of_parts_of_one_picture(self):
         last = 1000
         for falls in (0.5, 0.3):
-            errors = [(n, 0.1 * n ** -falls * (1 - n / last) ** 0.5) for n in (10, 20, 40, 80, 500)]
+            errors = [(n, 0.1 * n ** -falls * (1 - n / last) ** 0.5) for n in (80, 160, 320, 500)]
             self.assertAlmostEqual(long_render.slope(errors, last), -falls)
-        self.assertTrue(long_render.slope([(10, 0.1)], 100) != long_render.slope([(10, 0.1)], 100), "not a number")
+            # What few iterations have is no matter.
+            self.assertAlmostEqual(long_render.slope([(10, 0.001), *errors], last), -falls)
+        self.assertTrue(math.isnan(long_render.slope([(10, 0.1)], 100)))
 
 
 class Page(unittest.TestCase):
