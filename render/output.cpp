@@ -190,6 +190,8 @@ json reportJson(const RenderReport& r) {
            {"block_iterations", r.blocks.iterations},
            {"first_block", r.firstBlock},
            {"phases", r.phaseSeconds},
+           {"glass_effort",
+            {{"refractions", r.glassEffort.refractions}, {"known_ways", r.glassEffort.knownWays}}},
            {"tolerance", r.tolerance},
            {"effects", effectsJson(r.effects)},
            {"scene_hash", r.sceneHash},

@@ -34,6 +34,7 @@ struct RenderReport {
     int filmWidth = 0, filmHeight = 0;
     PixelRect crop;
     WalkLimits limits;
+    GlassEffort glassEffort;
     std::uint64_t lightPaths = 0;
 
     std::uint64_t iterations = 0;

@@ -95,6 +95,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
     r.filmHeight = stage_.camera->film().height;
     r.crop = stage_.settings.crop;
     r.limits = stage_.settings.limits;
+    r.glassEffort = stage_.settings.glassEffort;
     r.lightPaths = row.techniques.splats ? maker_.lightPaths() : 0;
     r.blocks = plan_;
     r.firstBlock = film_.block();

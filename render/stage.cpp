@@ -4,6 +4,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/stopwatch.h"
+#include "libcore/methods/glass_effort.h"
 
 namespace lacuna {
 namespace {
@@ -60,6 +61,11 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     if (stage.techniques.refract()) {
         const Stopwatch phase(stage.phaseSeconds["glass"]);
         stage.settings.smoothGlass = std::make_shared<const SmoothGlass>(*stage.scene);
+    }
+    if (stage.techniques.refract() || stage.techniques.goKnownWays()) {
+        const Stopwatch phase(stage.phaseSeconds["effort"]);
+        stage.settings.glassEffort =
+            glassEffortFor(*stage.scene, *stage.camera, stage.techniques, stage.settings, pool);
     }
     stage.phaseSeconds["load"] = loadSeconds;
     stage.setupSeconds = secondsSince(start);

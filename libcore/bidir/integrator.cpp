@@ -25,7 +25,8 @@ std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup,
 std::unique_ptr<const KnownWays> knownWaysOf(const RenderSetup& setup,
                                              const std::shared_ptr<const ChainSeeds>& ways) {
     if (!setup.techniques.goKnownWays() || !ways->anyOfLamps()) return nullptr;
-    return std::make_unique<const KnownWays>(setup.walker, ways);
+    return std::make_unique<const KnownWays>(setup.walker, ways,
+                                             setup.settings.glassEffort.knownWays);
 }
 
 std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
@@ -33,7 +34,8 @@ std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup)
     std::shared_ptr<const SmoothGlass> glass = setup.settings.smoothGlass;
     if (!glass) glass = std::make_shared<const SmoothGlass>(setup.scene);
     if (glass->empty()) return nullptr;
-    return std::make_unique<const RefractedLamps>(setup.walker, std::move(glass));
+    return std::make_unique<const RefractedLamps>(setup.walker, std::move(glass),
+                                                  setup.settings.glassEffort.refractions);
 }
 
 }  // namespace

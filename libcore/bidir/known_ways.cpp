@@ -42,9 +42,9 @@ bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) 
 }  // namespace
 
 /// The bound of n(z). Of deep vertices there are many, and each carries little.
-double KnownWays::mostSamples(int order) {
+double KnownWays::mostSamples(int order) const {
     constexpr double kByOrder[] = {0.25, 0.125, 0.0625};
-    return kByOrder[std::min(order, 3) - 1];
+    return effort_ * kByOrder[std::min(order, 3) - 1];
 }
 
 /// n(z) over its bound. Beside the ways all is left to walks.

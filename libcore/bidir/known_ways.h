@@ -18,9 +18,9 @@ namespace lacuna {
 
 class KnownWays {
   public:
-    /// `walker` must outlive it. `seeds`: of its scene.
-    KnownWays(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds)
-        : walker_(walker), follower_(walker.scene()), seeds_(std::move(seeds)) {}
+    /// `walker` must outlive it. `seeds`: of its scene. `effort`: GlassEffort::knownWays.
+    KnownWays(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds, double effort)
+        : walker_(walker), follower_(walker.scene()), seeds_(std::move(seeds)), effort_(effort) {}
 
     /// Paths from an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2, to a point of a lamp; mostly none.
     /// For each, fills `light`, y_0 .. y_{s-1} with a delta event at each but y_0, and `path`, and calls
@@ -35,7 +35,7 @@ class KnownWays {
 
   private:
     // n(z), the expected number of samples at an eye vertex, is the product of these.
-    static double mostSamples(int order);
+    double mostSamples(int order) const;
     static double shareOfSamples(const WaysNearby& ways);
     struct Known {
         FoundChain found;
@@ -49,6 +49,7 @@ class KnownWays {
     const Walker& walker_;
     WayFollower follower_;
     std::shared_ptr<const ChainSeeds> seeds_;
+    double effort_;
 };
 
 /// FullPath::refracted of a path that neither next event through glass made nor next event along known

@@ -22,7 +22,7 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
 /// Of deep vertices there are many, and each carries little.
 double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
     constexpr double kByOrder[] = {1.0, 0.5, 0.25};
-    return kByOrder[std::min(order, 3) - 1] * glass_->shadows().triesAt(z.position);
+    return effort_ * kByOrder[std::min(order, 3) - 1] * glass_->shadows().triesAt(z.position);
 }
 
 /// The one chain that the straight ray leads to, or from within glass a guess: a function of the two, whichever

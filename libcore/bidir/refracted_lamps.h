@@ -18,9 +18,9 @@ namespace lacuna {
 
 class RefractedLamps {
   public:
-    /// `walker` must outlive it. `glass`: of its scene, not empty.
-    RefractedLamps(const Walker& walker, std::shared_ptr<const SmoothGlass> glass)
-        : walker_(walker), solver_(walker.scene()), glass_(std::move(glass)) {}
+    /// `walker` must outlive it. `glass`: of its scene, not empty. `effort`: GlassEffort::refractions.
+    RefractedLamps(const Walker& walker, std::shared_ptr<const SmoothGlass> glass, double effort)
+        : walker_(walker), solver_(walker.scene()), glass_(std::move(glass)), effort_(effort) {}
 
     /// A path from an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2, through glass to a lamp; mostly
     /// none. Fills `light`, y_0 .. y_{s-1} with a refraction at each but y_0, and `path`.
@@ -62,6 +62,7 @@ class RefractedLamps {
     const Walker& walker_;
     ChainSolver solver_;
     std::shared_ptr<const SmoothGlass> glass_;
+    double effort_;
 };
 
 }  // namespace lacuna

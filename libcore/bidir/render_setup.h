@@ -18,6 +18,13 @@
 
 namespace lacuna {
 
+/// How often next event through glass and along known ways are tried in a view, over how often they may be.
+/// (theory.md, "Effort behind glass")
+struct GlassEffort {
+    double refractions = 1.0;
+    double knownWays = 1.0;
+};
+
 struct RenderSettings {
     WalkLimits limits;
     std::uint64_t seed = 1;
@@ -29,6 +36,7 @@ struct RenderSettings {
     Guides guides = {};
     std::shared_ptr<const ChainSeeds> chainSeeds = {};    ///< of the scene; null: made where needed
     std::shared_ptr<const SmoothGlass> smoothGlass = {};  ///< likewise
+    GlassEffort glassEffort = {};
     /// Leaves out the environment where the lens sees it: paths of one edge. (coverage_film.h)
     bool transparentBackground = false;
 };

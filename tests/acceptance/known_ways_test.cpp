@@ -73,8 +73,9 @@ class Sums {
 
 /// What comes from the lamp by reflections, of all pixels in an iteration.
 Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iterations,
-                    std::uint64_t seed) {
+                    std::uint64_t seed, double effort = 1) {
     Shot shot;
+    shot.glassEffort.knownWays = effort;
     shot.maxDepth = 7;
     shot.iterations = iterations;
     shot.seed = seed;
@@ -87,7 +88,7 @@ Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iter
     return sums.mean();
 }
 
-/// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each row.
+/// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each of three comparisons.
 TEST(KnownWays, areWhatWalksFind) {
     const auto scene = mirrorAndBlock(1.0f, true);
     const Mean walks = reflectedLight(*scene, withoutRefractions(rowNamed("pt")), 24000, 100);
@@ -97,6 +98,9 @@ TEST(KnownWays, areWhatWalksFind) {
         EXPECT_LT(known.error, 0.02 * walks.value) << name;
         EXPECT_NEAR(known.value, walks.value, 4.4 * std::hypot(known.error, walks.error)) << name;
     }
+    const Mean seldom = reflectedLight(*scene, rowNamed("pt"), 8000, 1, 0.1);
+    EXPECT_LT(seldom.error, 0.04 * walks.value);
+    EXPECT_NEAR(seldom.value, walks.value, 4.4 * std::hypot(seldom.error, walks.error));
 }
 
 /// Long chains are mostly those of ways that are drawn. What these make, unweighted, is what walks make of the
@@ -124,6 +128,7 @@ TEST(KnownWays, countTheSameFromBothSides) {
     for (const char* name : {"pt", "bpt"}) {
         Shot shot = quickShot(1500);
         shot.maxDepth = 7;
+        shot.glassEffort.knownWays = 0.7;
         int own = 0, others = 0;
         double worst = 0;
         shot.observer = [&](const PathEvent& event) {

@@ -168,6 +168,7 @@ void Render::start(const Scene& scene, const MethodRow& row, Method& method) {
     r.sampling = shot_.sampling;
     r.crop = cropOf(shot_);
     r.lightPaths = lightPathsOf(settings_);
+    r.glassEffort = shot_.glassEffort;
     if (shot_.guide != 0) {
         const Lights& plain = scene.lights();
         r.guides.lights =

@@ -46,6 +46,7 @@ struct Shot {
     TechniqueFilm* techniques = nullptr;
     const PathLayers* layers = nullptr;  ///< that Picture::layers has then
     bool transparentBackground = false;  ///< and A in Picture::layers
+    GlassEffort glassEffort = {};
     PathObserver observer = nullptr;
 };
 

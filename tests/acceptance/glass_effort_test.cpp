@@ -1,0 +1,64 @@
+// How often next event through glass and along known ways are tried, by what they bring to a view. (theory.md,
+// "Effort behind glass")
+#include <gtest/gtest.h>
+
+#include "libcore/methods/glass_effort.h"
+#include "tests/acceptance/render_test.h"
+#include "tests/acceptance/scenes.h"
+
+namespace lacuna::test {
+namespace {
+
+/// A floor under a lamp, with a mirror ball and a ball of glass. The lamp is in a box of glass, or open.
+SceneBuilder floorUnderALamp(bool behindGlass, bool balls) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(box({-2, 0, -2}, {2, 3, 2}, 0, true));
+    const std::uint32_t lamp = b.add(emitter(Rgb(20.0f), true));
+    b.add(quad({-0.2f, 2.5f, 0.2f}, {0, 0, -0.4f}, {0.4f, 0, 0}, lamp));
+    if (behindGlass) b.add(box({-0.5f, 2.2f, -0.5f}, {0.5f, 2.7f, 0.5f}, b.add(glass(1.5f))));
+    if (balls) {
+        b.add(sphere({0.5f, 0.3f, 0.3f}, 0.1f, 16, b.add(mirror(Rgb(0.9f))), true));
+        b.add(sphere({-0.5f, 0.3f, 0.3f}, 0.1f, 16, b.add(glass(1.5f)), true));
+    }
+    b.add(lookAt({0.2, 1.2, 1.9}, {0, 0.4, 0}, 50));
+    return b;
+}
+
+GlassEffort effortIn(const Scene& scene, int threads = 2) {
+    const ThreadPool pool(threads);
+    RenderSettings settings;
+    settings.limits.maxDepth = 8;
+    settings.chainSeeds = std::make_shared<const ChainSeeds>(scene, pool);
+    settings.smoothGlass = std::make_shared<const SmoothGlass>(scene);
+    const Camera camera = scene.makeCamera("", {64, 48}, {});
+    return glassEffortFor(scene, camera, rowNamed("bpt").techniques, settings, pool);
+}
+
+TEST(GlassEffort, isLargeWhereAllLightComesThroughGlass) {
+    EXPECT_GT(effortIn(*floorUnderALamp(true, false).build()).refractions, 0.5);
+}
+
+TEST(GlassEffort, isLittleWhereFewPlacesGetAnyOfIt) {
+    const GlassEffort effort = effortIn(*floorUnderALamp(false, true).build());
+    EXPECT_LT(effort.refractions, 0.5);
+    EXPECT_LT(effort.knownWays, 0.5);
+    EXPECT_GE(effort.refractions, 1.0 / 16);
+    EXPECT_GE(effort.knownWays, 1.0 / 16);
+}
+
+TEST(GlassEffort, isOneWhereThereIsNothingToTry) {
+    const auto scene = floorUnderALamp(false, false).build();
+    EXPECT_EQ(effortIn(*scene).refractions, 1);
+    EXPECT_EQ(effortIn(*scene).knownWays, 1);
+}
+
+TEST(GlassEffort, doesNotDependOnThreads) {
+    const auto scene = floorUnderALamp(false, true).build();
+    const GlassEffort one = effortIn(*scene, 1), three = effortIn(*scene, 3);
+    EXPECT_EQ(one.refractions, three.refractions);
+    EXPECT_EQ(one.knownWays, three.knownWays);
+}
+
+}  // namespace
+}  // namespace lacuna::test
