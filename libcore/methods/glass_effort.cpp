@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libcore/bidir/integrator.h"
+#include "libcore/image/smoothed.h"
 #include "libcore/methods/registry.h"
 
 namespace lacuna {
@@ -48,26 +49,6 @@ double meanWithoutSparks(std::vector<double> values) {
            double(values.size());
 }
 
-/// Means around pixels, so that one that is dark by chance is no dark place.
-std::vector<double> brightnessOf(std::span<const double> picture, int width, int height) {
-    constexpr int kAround = 2;
-    std::vector<double> result(picture.size());
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            double sum = 0.0;
-            int count = 0;
-            for (int v = std::max(0, y - kAround); v <= std::min(height - 1, y + kAround); ++v) {
-                for (int u = std::max(0, x - kAround); u <= std::min(width - 1, x + kAround); ++u) {
-                    sum += picture[std::size_t(v * width + u)];
-                    ++count;
-                }
-            }
-            result[std::size_t(y * width + x)] = sum / count;
-        }
-    }
-    return result;
-}
-
 /// The best share of the samples of the one technique of the two that `techniques` have.
 double effortOf(const Scene& scene, const Camera& camera, const Techniques& techniques,
                 const RenderSettings& settings, const ThreadPool& threads) {
@@ -100,7 +81,7 @@ double effortOf(const Scene& scene, const Camera& camera, const Techniques& tech
         sum[p] = 0.5 * (own[0][p] + own[1][p] + rest[0][p] + rest[1][p]);
     }
     const double meanOfAll = meanOf(sum);
-    const std::vector<double> bright = brightnessOf(sum, width, height);
+    const std::vector<double> bright = smoothed<double>(sum, width);
     const auto squaresOf = [&](const std::array<std::vector<double>, 2>& part) {
         std::vector<double> squares(pixels);
         for (std::size_t p = 0; p < pixels; ++p) {
@@ -125,19 +106,21 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     pilot.crop = {0, small.film().width, 0, small.film().height};
     pilot.lightPaths = 0;
     pilot.sampling = Sampling::Independent;
+    pilot.transparentBackground = false;
     pilot.glassEffort = {};
     Techniques neither = findMethod("pt").techniques;
     neither.chains = neither.refractions = neither.knownWays = false;
+    const auto effortOfOne = [&](bool Techniques::*one) {
+        Techniques alone = neither;
+        alone.*one = true;
+        return effortOf(scene, small, alone, pilot, threads);
+    };
     GlassEffort effort;
     if (techniques.refract() && settings.smoothGlass && !settings.smoothGlass->empty()) {
-        Techniques one = neither;
-        one.refractions = true;
-        effort.refractions = effortOf(scene, small, one, pilot, threads);
+        effort.refractions = effortOfOne(&Techniques::refractions);
     }
     if (techniques.goKnownWays() && settings.chainSeeds && settings.chainSeeds->anyOfLamps()) {
-        Techniques one = neither;
-        one.knownWays = true;
-        effort.knownWays = effortOf(scene, small, one, pilot, threads);
+        effort.knownWays = effortOfOne(&Techniques::knownWays);
     }
     return effort;
 }

@@ -7,7 +7,7 @@
 namespace lacuna {
 
 /// By path tracing with either, at no more than 4096 pixels of the whole film. A function of the scene, the
-/// camera, the techniques and `settings`, but for its seed, crop, sampling and number of light paths. 1 for what
+/// camera, the techniques and `settings`, but for its seed, crop, sampling, number of light paths and background. 1 for what
 /// the techniques do not hold, or the scene has not.
 GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techniques& techniques,
                            const RenderSettings& settings, const ThreadPool& threads);

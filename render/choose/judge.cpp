@@ -4,13 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "libcore/image/smoothed.h"
+
 namespace lacuna {
 namespace {
 
 constexpr double kEpsilon = 0.01;  // of the error measures: e = 0.01 of the mean
 /// A row takes the place of the usual one where it is better by so much: what trials see has noise.
 constexpr double kWorthAChange = 0.85;
-constexpr int kReach = 2;   // of smoothing: 5 x 5 pixels
 constexpr int kRounds = 3;  // of weights by errors, and errors by weights
 
 using Picture = std::vector<Vec3d>;
@@ -25,27 +26,6 @@ Picture meanOf(const HalfPictures& halves) {
         mean[i] = (channels(halves.first[i]) + channels(halves.second[i])) * 0.5;
     }
     return mean;
-}
-
-/// Over a square of pixels, as many as there are.
-Picture smoothed(const Picture& picture, int width) {
-    const int height = int(picture.size()) / width;
-    Picture result(picture.size());
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            Vec3d sum;
-            int count = 0;
-            for (int ny = std::max(0, y - kReach); ny <= std::min(height - 1, y + kReach); ++ny) {
-                for (int nx = std::max(0, x - kReach); nx <= std::min(width - 1, x + kReach);
-                     ++nx) {
-                    sum += picture[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
-                    ++count;
-                }
-            }
-            result[std::size_t(y) * std::size_t(width) + std::size_t(x)] = sum * (1.0 / count);
-        }
-    }
-    return result;
 }
 
 /// What all pictures show, each with its weight, and e.
@@ -65,7 +45,7 @@ struct Target {
             whole += v[0] + v[1] + v[2];
         }
         epsilon = kEpsilon * whole / (3.0 * double(sum.size()));
-        around = smoothed(sum, width);
+        around = smoothed<Vec3d>(sum, width);
     }
 
     /// The mean of |a - b| / (R + e).

@@ -25,9 +25,8 @@ SceneBuilder floorUnderALamp(bool behindGlass, bool balls) {
     return b;
 }
 
-GlassEffort effortIn(const Scene& scene, int threads = 2) {
+GlassEffort effortIn(const Scene& scene, int threads = 2, RenderSettings settings = {}) {
     const ThreadPool pool(threads);
-    RenderSettings settings;
     settings.limits.maxDepth = 8;
     settings.chainSeeds = std::make_shared<const ChainSeeds>(scene, pool);
     settings.smoothGlass = std::make_shared<const SmoothGlass>(scene);
@@ -58,6 +57,25 @@ TEST(GlassEffort, doesNotDependOnThreads) {
     const GlassEffort one = effortIn(*scene, 1), three = effortIn(*scene, 3);
     EXPECT_EQ(one.refractions, three.refractions);
     EXPECT_EQ(one.knownWays, three.knownWays);
+}
+
+/// So that a crop is a part of the picture, and another seed the same render.
+TEST(GlassEffort, isOfTheView) {
+    SceneBuilder b = floorUnderALamp(false, true);
+    b.environment(LACUNA_SCENES "/sky.hdr");
+    b.d.meshes[0] = quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4});  // out of doors
+    const auto scene = b.build();
+    RenderSettings other;
+    other.seed = 7;
+    other.crop = {3, 9, 2, 5};
+    other.sampling = Sampling::Sobol;
+    other.lightPaths = 100;
+    other.transparentBackground = true;
+    other.glassEffort = {0.1, 0.2};
+    const GlassEffort effort = effortIn(*scene), again = effortIn(*scene, 2, other);
+    EXPECT_EQ(effort.refractions, again.refractions);
+    EXPECT_EQ(effort.knownWays, again.knownWays);
+    EXPECT_LT(effort.refractions, 1);
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+// Pictures whose pixels know of those around them: what is dark by chance is no dark place.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace lacuna {
+
+/// The mean over the 5 x 5 pixels around each, as many of them as there are. `picture` is row-major and not empty.
+template <class Pixel>
+std::vector<Pixel> smoothed(std::span<const Pixel> picture, int width) {
+    constexpr int kReach = 2;
+    const int height = int(picture.size()) / width;
+    std::vector<Pixel> result(picture.size());
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            Pixel sum{};
+            int count = 0;
+            for (int ny = std::max(0, y - kReach); ny <= std::min(height - 1, y + kReach); ++ny) {
+                for (int nx = std::max(0, x - kReach); nx <= std::min(width - 1, x + kReach);
+                     ++nx) {
+                    sum += picture[std::size_t(ny) * std::size_t(width) + std::size_t(nx)];
+                    ++count;
+                }
+            }
+            result[std::size_t(y) * std::size_t(width) + std::size_t(x)] = sum * (1.0 / count);
+        }
+    }
+    return result;
+}
+
+}  // namespace lacuna
