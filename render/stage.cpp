@@ -62,7 +62,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
         const Stopwatch phase(stage.phaseSeconds["glass"]);
         stage.settings.smoothGlass = std::make_shared<const SmoothGlass>(*stage.scene);
     }
-    if (stage.techniques.refract() || stage.techniques.goKnownWays()) {
+    if (stage.techniques.refract() || stage.techniques.askForWays()) {
         const Stopwatch phase(stage.phaseSeconds["effort"]);
         stage.settings.glassEffort =
             glassEffortFor(*stage.scene, *stage.camera, stage.techniques, stage.settings, pool);

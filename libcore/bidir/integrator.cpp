@@ -16,9 +16,9 @@ std::shared_ptr<const ChainSeeds> waysOf(const RenderSetup& setup) {
 
 std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup,
                                                const std::shared_ptr<const ChainSeeds>& ways) {
-    const Techniques& techniques = setup.techniques;
-    if (!techniques.connects || !techniques.chains) return nullptr;
-    auto chains = std::make_unique<const SpecularChains>(setup.walker, ways);
+    if (!setup.techniques.searchForChains()) return nullptr;
+    auto chains = std::make_unique<const SpecularChains>(setup.walker, ways,
+                                                         setup.settings.glassEffort.chains);
     return chains->empty() ? nullptr : std::move(chains);
 }
 

@@ -89,8 +89,9 @@ struct Techniques {
 
     bool refract() const { return hits && connects && refractions; }
     bool goKnownWays() const { return hits && connects && knownWays; }
+    bool searchForChains() const { return connects && chains; }
     /// Whether ChainSeeds are asked for.
-    bool askForWays() const { return (connects && chains) || goKnownWays(); }
+    bool askForWays() const { return searchForChains() || goKnownWays(); }
 };
 
 class Method {

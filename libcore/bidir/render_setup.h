@@ -18,11 +18,12 @@
 
 namespace lacuna {
 
-/// How often next event through glass and along known ways are tried in a view, over how often they may be.
-/// (theory.md, "Effort behind glass")
+/// How often next event through glass and along known ways are tried in a view, over how often they may be, and
+/// specular chains, over how often they are where nothing is known of the view. (theory.md, "Effort behind glass")
 struct GlassEffort {
     double refractions = 1.0;
     double knownWays = 1.0;
+    double chains = 1.0;
 };
 
 struct RenderSettings {

@@ -8,8 +8,9 @@
 
 namespace lacuna {
 
-SpecularChains::SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds)
-    : walker_(walker), search_(walker.scene()), seeds_(std::move(seeds)) {
+SpecularChains::SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds,
+                               double effort)
+    : walker_(walker), search_(walker.scene()), seeds_(std::move(seeds)), effort_(effort) {
     const Lights& lights = walker.lights();
     std::vector<double> powers;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
@@ -74,7 +75,7 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     // A search takes longer than the rest of the path.
     constexpr double kFewest = 0.05;
     const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
-    const double searches = ways.samples(kFewest);
+    const double searches = std::min(1.0, effort_ * ways.samples(kFewest));
     if (rng.uniformDouble() >= searches) return;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};

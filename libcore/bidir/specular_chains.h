@@ -15,8 +15,8 @@ namespace lacuna {
 
 class SpecularChains {
   public:
-    /// `walker` must outlive it. `seeds`: of its scene.
-    SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds);
+    /// `walker` must outlive it. `seeds`: of its scene. `effort`: GlassEffort::chains.
+    SpecularChains(const Walker& walker, std::shared_ptr<const ChainSeeds> seeds, double effort);
 
     /// The scene has no such light, or nothing that a chain could be made of.
     bool empty() const { return byPower_.empty() || search_.empty(); }
@@ -43,6 +43,7 @@ class SpecularChains {
     std::vector<std::uint32_t> lights_;  ///< without an extent
     DiscreteDistribution byPower_;       ///< over lights_
     std::shared_ptr<const ChainSeeds> seeds_;
+    double effort_;
 };
 
 }  // namespace lacuna

@@ -22,12 +22,19 @@ constexpr double kPixels = 4096;
 /// Of the pixels, the noisiest ones, which do not count as noise of walks: more samples of the technique would take
 /// their sparks away.
 constexpr double kSparks = 0.01;
-constexpr double kLeast = 1.0 / 16;
 /// What a ray in search of a chain takes, Newton's method included, over what others take.
 constexpr double kChainRay = 3.0;
 
 /// Of the mean brightness, what is added to a pixel's: darkness is no reason for samples.
 constexpr double kDark = 0.01;
+
+/// Samples over those of the pilot.
+struct Range {
+    double least, most;
+};
+constexpr Range kOfRefractions{1.0 / 16, 1.0};
+/// Most of the sparks of chains are rarer than a pilot's samples, or one of them decides.
+constexpr Range kOfChains{1.0 / 2, 2.0};
 
 double meanOf(std::span<const double> values) {
     return std::reduce(values.begin(), values.end()) / double(values.size());
@@ -49,39 +56,50 @@ double meanWithoutSparks(std::vector<double> values) {
            double(values.size());
 }
 
-/// The best share of the samples of the one technique of the two that `techniques` have.
-double effortOf(const Scene& scene, const Camera& camera, const Techniques& techniques,
-                const RenderSettings& settings, const ThreadPool& threads) {
+/// A picture of two iterations.
+struct Pilot {
+    int width;
+    /// By iteration and pixel: what one kind of technique brings, and the rest.
+    std::array<std::vector<double>, 2> own, rest;
+    double chainRays, otherRays;
+};
+
+Pilot rendered(const Scene& scene, const Camera& camera, const Techniques& techniques,
+               Technique::By kind, const RenderSettings& settings, const ThreadPool& threads) {
     const MethodRow& row = findMethod("pt");
     const std::unique_ptr<Method> method = row.create(resolve(row, {}));
     BidirIntegrator integrator(scene, camera, techniques, *method, settings, threads);
     const auto [width, height] = camera.film();
     const auto pixels = std::size_t(width) * std::size_t(height);
-    // By iteration: what the technique brings to a pixel, and the rest.
-    std::array<std::vector<double>, 2> own, rest;
+    Pilot pilot{width, {}, {}, 0.0, 0.0};
     const std::atomic<bool> never{false};
     IterationStatistics statistics;
     std::vector<Rgb> picture(pixels);
     for (std::uint32_t i = 0; i < 2; ++i) {
-        own[i].assign(pixels, 0.0);
-        rest[i].assign(pixels, 0.0);
+        pilot.own[i].assign(pixels, 0.0);
+        pilot.rest[i].assign(pixels, 0.0);
         integrator.delivery().setObserver([&](const PathEvent& event) {
             const auto value = double(mean(event.contribution));
             if (!std::isfinite(value)) return;
-            (event.technique.refracts() ? own : rest)[i][event.pixel] += value;
+            (event.technique.by == kind ? pilot.own : pilot.rest)[i][event.pixel] += value;
         });
         integrator.render(i, picture, never, statistics);
     }
-    const double chainRays = double(statistics.rays[std::size_t(RayKind::Chain)]);
-    const double otherRays = double(statistics.totalRays()) - chainRays;
-    if (chainRays == 0.0) return 1.0;
+    pilot.chainRays = double(statistics.rays[std::size_t(RayKind::Chain)]);
+    pilot.otherRays = double(statistics.totalRays()) - pilot.chainRays;
+    return pilot;
+}
 
+/// The best number of samples of its own technique, which all rays in search of chains count as the cost of.
+double effortOf(const Pilot& pilot, const Range& range) {
+    if (pilot.chainRays == 0.0) return 1.0;
+    const std::size_t pixels = pilot.own[0].size();
     std::vector<double> sum(pixels);
     for (std::size_t p = 0; p < pixels; ++p) {
-        sum[p] = 0.5 * (own[0][p] + own[1][p] + rest[0][p] + rest[1][p]);
+        sum[p] = 0.5 * (pilot.own[0][p] + pilot.own[1][p] + pilot.rest[0][p] + pilot.rest[1][p]);
     }
     const double meanOfAll = meanOf(sum);
-    const std::vector<double> bright = smoothed<double>(sum, width);
+    const std::vector<double> bright = smoothed<double>(sum, pilot.width);
     const auto squaresOf = [&](const std::array<std::vector<double>, 2>& part) {
         std::vector<double> squares(pixels);
         for (std::size_t p = 0; p < pixels; ++p) {
@@ -91,9 +109,10 @@ double effortOf(const Scene& scene, const Camera& camera, const Techniques& tech
         }
         return squares;
     };
-    const double ofOthers = meanWithoutSparks(squaresOf(rest)) / otherRays;
-    const double ofOwn = meanOf(squaresOf(own)) / (kChainRay * chainRays);
-    return ofOthers > 0.0 ? std::clamp(std::sqrt(ofOwn / ofOthers), kLeast, 1.0) : 1.0;
+    const double ofOthers = meanWithoutSparks(squaresOf(pilot.rest)) / pilot.otherRays;
+    const double ofOwn = meanOf(squaresOf(pilot.own)) / (kChainRay * pilot.chainRays);
+    if (ofOwn == 0.0 && ofOthers == 0.0) return 1.0;
+    return std::clamp(std::sqrt(ofOwn / ofOthers), range.least, range.most);
 }
 
 }  // namespace
@@ -110,17 +129,31 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     pilot.glassEffort = {};
     Techniques neither = findMethod("pt").techniques;
     neither.chains = neither.refractions = neither.knownWays = false;
-    const auto effortOfOne = [&](bool Techniques::*one) {
-        Techniques alone = neither;
-        alone.*one = true;
-        return effortOf(scene, small, alone, pilot, threads);
+    const auto effortWith = [&](const Techniques& tried, Technique::By kind, const Range& range) {
+        return effortOf(rendered(scene, small, tried, kind, pilot, threads), range);
     };
     GlassEffort effort;
-    if (techniques.refract() && settings.smoothGlass && !settings.smoothGlass->empty()) {
-        effort.refractions = effortOfOne(&Techniques::refractions);
+    const bool refracts =
+        techniques.refract() && settings.smoothGlass && !settings.smoothGlass->empty();
+    const bool goesKnownWays =
+        techniques.goKnownWays() && settings.chainSeeds && settings.chainSeeds->anyOfLamps();
+    if (refracts) {
+        Techniques alone = neither;
+        alone.refractions = true;
+        effort.refractions = effortWith(alone, Technique::By::Refraction, kOfRefractions);
     }
-    if (techniques.goKnownWays() && settings.chainSeeds && settings.chainSeeds->anyOfLamps()) {
-        effort.knownWays = effortOfOne(&Techniques::knownWays);
+    if (goesKnownWays) {
+        Techniques alone = neither;
+        alone.knownWays = true;
+        effort.knownWays = effortWith(alone, Technique::By::Refraction, kOfRefractions);
+    }
+    if (techniques.searchForChains() && settings.chainSeeds && settings.chainSeeds->hasPoints()) {
+        Techniques all = neither;
+        all.chains = true;
+        all.refractions = refracts;
+        all.knownWays = goesKnownWays;
+        pilot.glassEffort = effort;
+        effort.chains = effortWith(all, Technique::By::Chain, kOfChains);
     }
     return effort;
 }

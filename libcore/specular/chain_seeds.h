@@ -64,6 +64,8 @@ class ChainSeeds {
     /// Likewise of all lights that walks run into, where walks seldom do.
     WaysNearby nearOfLamps(const Vec3& place, const Vec3& side) const;
     bool anyOfLamps() const { return !ofLamps_.seeds.empty(); }
+    /// Whether the scene has lights without an extent, and anything that their chains could go over.
+    bool hasPoints() const { return !byLight_.empty(); }
 
   private:
     /// Where a way ended, and the way.

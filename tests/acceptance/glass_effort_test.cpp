@@ -1,5 +1,5 @@
-// How often next event through glass and along known ways are tried, by what they bring to a view. (theory.md,
-// "Effort behind glass")
+// How often next event through glass, along known ways and specular chains are tried, by what they bring to a view.
+// (theory.md, "Effort behind glass")
 #include <gtest/gtest.h>
 
 #include "libcore/methods/glass_effort.h"
@@ -9,13 +9,19 @@
 namespace lacuna::test {
 namespace {
 
+enum class Lamp { Square, Point };
+
 /// A floor under a lamp, with a mirror ball and a ball of glass. The lamp is in a box of glass, or open.
-SceneBuilder floorUnderALamp(bool behindGlass, bool balls) {
+SceneBuilder floorUnderALamp(bool behindGlass, bool balls, Lamp kind = Lamp::Square) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
     b.add(box({-2, 0, -2}, {2, 3, 2}, 0, true));
-    const std::uint32_t lamp = b.add(emitter(Rgb(20.0f), true));
-    b.add(quad({-0.2f, 2.5f, 0.2f}, {0, 0, -0.4f}, {0.4f, 0, 0}, lamp));
+    if (kind == Lamp::Square) {
+        const std::uint32_t lamp = b.add(emitter(Rgb(20.0f), true));
+        b.add(quad({-0.2f, 2.5f, 0.2f}, {0, 0, -0.4f}, {0.4f, 0, 0}, lamp));
+    } else {
+        b.add(pointLight({0, 2.5, 0}, Rgb(1.0f)));
+    }
     if (behindGlass) b.add(box({-0.5f, 2.2f, -0.5f}, {0.5f, 2.7f, 0.5f}, b.add(glass(1.5f))));
     if (balls) {
         b.add(sphere({0.5f, 0.3f, 0.3f}, 0.1f, 16, b.add(mirror(Rgb(0.9f))), true));
@@ -46,23 +52,40 @@ TEST(GlassEffort, isLittleWhereFewPlacesGetAnyOfIt) {
     EXPECT_GE(effort.knownWays, 1.0 / 16);
 }
 
+TEST(GlassEffort, ofChainsIsLargeWhereAllLightComesByThem) {
+    const auto scene = floorUnderALamp(true, false, Lamp::Point).build();
+    EXPECT_GT(effortIn(*scene).chains, 1);
+    EXPECT_LE(effortIn(*scene).chains, 2);
+}
+
+TEST(GlassEffort, ofChainsIsLittleWhereFewPlacesGetAnyOfIt) {
+    EXPECT_EQ(effortIn(*floorUnderALamp(false, true, Lamp::Point).build()).chains, 0.5);
+}
+
 TEST(GlassEffort, isOneWhereThereIsNothingToTry) {
-    const auto scene = floorUnderALamp(false, false).build();
-    EXPECT_EQ(effortIn(*scene).refractions, 1);
-    EXPECT_EQ(effortIn(*scene).knownWays, 1);
+    for (const Lamp lamp : {Lamp::Square, Lamp::Point}) {
+        const GlassEffort effort = effortIn(*floorUnderALamp(false, false, lamp).build());
+        EXPECT_EQ(effort.refractions, 1);
+        EXPECT_EQ(effort.knownWays, 1);
+        EXPECT_EQ(effort.chains, 1);
+    }
 }
 
 TEST(GlassEffort, doesNotDependOnThreads) {
-    const auto scene = floorUnderALamp(false, true).build();
+    SceneBuilder b = floorUnderALamp(false, true);
+    b.add(pointLight({0, 2, 0}, Rgb(1.0f)));
+    const auto scene = b.build();
     const GlassEffort one = effortIn(*scene, 1), three = effortIn(*scene, 3);
     EXPECT_EQ(one.refractions, three.refractions);
     EXPECT_EQ(one.knownWays, three.knownWays);
+    EXPECT_EQ(one.chains, three.chains);
 }
 
 /// So that a crop is a part of the picture, and another seed the same render.
 TEST(GlassEffort, isOfTheView) {
     SceneBuilder b = floorUnderALamp(false, true);
     b.environment(LACUNA_SCENES "/sky.hdr");
+    b.add(pointLight({0, 2, 0}, Rgb(1.0f)));
     b.d.meshes[0] = quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4});  // out of doors
     const auto scene = b.build();
     RenderSettings other;
@@ -71,11 +94,13 @@ TEST(GlassEffort, isOfTheView) {
     other.sampling = Sampling::Sobol;
     other.lightPaths = 100;
     other.transparentBackground = true;
-    other.glassEffort = {0.1, 0.2};
+    other.glassEffort = {0.1, 0.2, 1.5};
     const GlassEffort effort = effortIn(*scene), again = effortIn(*scene, 2, other);
     EXPECT_EQ(effort.refractions, again.refractions);
     EXPECT_EQ(effort.knownWays, again.knownWays);
+    EXPECT_EQ(effort.chains, again.chains);
     EXPECT_LT(effort.refractions, 1);
+    EXPECT_NE(effort.chains, 1);
 }
 
 }  // namespace
