@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libcore/bidir/integrator.h"
+#include "libcore/bidir/small_film.h"
 
 namespace lacuna {
 namespace {
@@ -12,38 +13,18 @@ constexpr int kPaths = 4096;  // of each kind, and eye paths of one small render
 constexpr int kIterations = 16;
 constexpr int kAmpleDepth = WalkLimits{}.maxDepth;
 
-/// The picture at a size that is quickly rendered.
-struct SmallPicture {
-    Camera camera;
-    PixelRect crop;
-};
-
-SmallPicture smallPicture(const Stage& stage) {
-    const Camera::Film film = stage.camera->film();
-    const PixelRect& crop = stage.settings.crop;
-    const double pixels = double(crop.width()) * double(crop.height());
-    const double scale = std::min(1.0, std::sqrt(kPaths / pixels));
-    const auto scaled = [&](int side) { return std::max(1, int(std::lround(side * scale))); };
-    const Camera::Film small{scaled(film.width), scaled(film.height)};
-    const int x0 = std::min(int(crop.x0 * scale), small.width - 1);
-    const int y0 = std::min(int(crop.y0 * scale), small.height - 1);
-    return {stage.camera->withFilm(small),
-            {x0, std::min(x0 + scaled(crop.width()), small.width), y0,
-             std::min(y0 + scaled(crop.height()), small.height)}};
-}
-
 /// Whether bpt finds light on paths of up to `maxDepth` edges.
-bool bptFindsLight(const Stage& stage, const SmallPicture& picture, int maxDepth,
+bool bptFindsLight(const Stage& stage, const SmallFilm& small, int maxDepth,
                    const ThreadPool& pool) {
     const MethodRow& row = findMethod("bpt");
     const std::unique_ptr<Method> method = row.create(resolve(row, {}));
     RenderSettings settings = stage.settings;
     settings.limits.maxDepth = maxDepth;
-    settings.crop = picture.crop;
+    settings.crop = small.crop;
     settings.lightPaths = kPaths;
-    BidirIntegrator integrator(*stage.scene, picture.camera, row.techniques, *method, settings,
-                               pool);
-    std::vector<Rgb> pixels(std::size_t(picture.crop.width()) * std::size_t(picture.crop.height()));
+    const Camera camera = stage.camera->withFilm(small.film);
+    BidirIntegrator integrator(*stage.scene, camera, row.techniques, *method, settings, pool);
+    std::vector<Rgb> pixels(std::size_t(small.crop.width()) * std::size_t(small.crop.height()));
     const std::atomic<bool> never{false};
     IterationStatistics ignored;
     for (std::uint32_t i = 0; i < kIterations; ++i) {
@@ -63,15 +44,16 @@ struct Encounters {
     int front = 0, behind = 0;  ///< lamps that eye subpaths ran into, by their side
 };
 
-Encounters meet(const Stage& stage, const SmallPicture& picture) {
+Encounters meet(const Stage& stage, const SmallFilm& small) {
     Encounters e;
     const Scene& scene = *stage.scene;
     WalkLimits limits = stage.settings.limits;
     limits.maxDepth = std::max(limits.maxDepth, kAmpleDepth);
-    const Walker walker(scene, picture.camera, limits);
+    const Camera camera = stage.camera->withFilm(small.film);
+    const Walker walker(scene, camera, limits);
     RayTally tally;  // of nothing that is rendered
     std::vector<PathVertex> path;
-    const PixelRect& crop = picture.crop;
+    const PixelRect& crop = small.crop;
     for (int i = 0; i < kPaths; ++i) {
         Rng light(stage.settings.seed, 0, StreamKind::LightPath, std::uint64_t(i));
         walker.traceLight(light, tally, path);
@@ -148,14 +130,14 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
 }
 
 std::string cause(const Stage& stage, const MethodRow& method, const ThreadPool& pool) {
-    const SmallPicture picture = smallPicture(stage);
-    const Encounters encounters = meet(stage, picture);
+    const SmallFilm small(stage.camera->film(), stage.settings.crop, kPaths);
+    const Encounters encounters = meet(stage, small);
     const bool hittable = anyHittable(stage.scene->lights());
     const int depth = stage.settings.limits.maxDepth;
-    if (bptFindsLight(stage, picture, depth, pool)) {
+    if (bptFindsLight(stage, small, depth, pool)) {
         return whyNotByThisMethod(method, encounters, hittable);
     }
-    if (depth < kAmpleDepth && bptFindsLight(stage, picture, kAmpleDepth, pool)) {
+    if (depth < kAmpleDepth && bptFindsLight(stage, small, kAmpleDepth, pool)) {
         return "no light was found on paths of up to " + std::to_string(depth) +
                (depth == 1 ? " edge" : " edges") + ", a test with " + std::to_string(kAmpleDepth) +
                " finds some: raise --max-depth";

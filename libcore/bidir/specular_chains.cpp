@@ -61,6 +61,35 @@ bool SpecularChains::reach(const FullPath& path) {
     return !path.hittable && deltas > 0 && deltas <= int(Chain::kMost);
 }
 
+SpecularChains::Drawn SpecularChains::drawLight(const PathVertex& z, Rng& rng) const {
+    const double u = rng.uniformDouble();
+    const std::span<const ChainSeeds::Known> ways = seeds_->lightsNear(z.position, sideOfPath(z));
+    double all = 0.0;
+    for (const ChainSeeds::Known& way : ways) all += double(way.power);
+    if (!(all > 0.0)) {
+        const DiscreteDistribution::Pick pick = byPower_.sample(u);
+        return {lights_[pick.index], pick.pmf};
+    }
+    constexpr double kByWays = 0.5;
+    std::uint32_t light = ways.back().light;
+    if (u < kByWays) {
+        double left = u / kByWays * all;
+        const auto way = std::ranges::find_if(ways, [&](const ChainSeeds::Known& w) {
+            left -= double(w.power);
+            return left < 0.0;
+        });
+        if (way != ways.end()) light = way->light;
+    } else {
+        light = lights_[byPower_.sample((u - kByWays) / (1.0 - kByWays)).index];
+    }
+    double known = 0.0;
+    for (const ChainSeeds::Known& way : ways) {
+        if (way.light == light) known += double(way.power);
+    }
+    const auto index = std::size_t(std::ranges::lower_bound(lights_, light) - lights_.begin());
+    return {light, kByWays * known / all + (1.0 - kByWays) * byPower_.pmf(index)};
+}
+
 void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<PathVertex>& light,
                             FullPath& path,
                             const std::function<void(const Closed&)>& deliver) const {
@@ -69,14 +98,16 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     if (left < 1) return;
     const std::size_t most = std::min(std::size_t(left), Chain::kMost);
 
-    const DiscreteDistribution::Pick pick = byPower_.sample(rng.uniformDouble());
-    PathVertex y0;
-    if (!walker_.placeLight(lights_[pick.index], pick.pmf, y0)) return;
-    // A search takes longer than the rest of the path.
+    // A search takes longer than the rest of the path. By the bound first: ways lie anywhere in memory.
     constexpr double kFewest = 0.05;
+    const double u = rng.uniformDouble();
+    if (u >= effort_) return;
+    const Drawn drawn = drawLight(z, rng);
+    PathVertex y0;
+    if (!walker_.placeLight(drawn.light, drawn.pmf, y0)) return;
     const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
     const double searches = std::min(1.0, effort_ * ways.samples(kFewest));
-    if (rng.uniformDouble() >= searches) return;
+    if (u >= searches) return;
     const ChainQuery query{
         {z.position, z.ng, scatteringSide(z)}, {y0.position, y0.infinite()}, most};
     const auto bring = [&](const FoundChain& found, const ChainSearch::Worth& worth) {

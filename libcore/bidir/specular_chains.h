@@ -38,6 +38,13 @@ class SpecularChains {
                 FullPath& path, const std::function<void(const Closed&)>& deliver) const;
 
   private:
+    struct Drawn {
+        std::uint32_t light;
+        double pmf;
+    };
+    /// By power, and by what is known to come to the place.
+    Drawn drawLight(const PathVertex& z, Rng& rng) const;
+
     const Walker& walker_;
     ChainSearch search_;
     std::vector<std::uint32_t> lights_;  ///< without an extent

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libcore/bidir/integrator.h"
+#include "libcore/bidir/small_film.h"
 #include "libcore/image/smoothed.h"
 #include "libcore/methods/registry.h"
 
@@ -34,18 +35,10 @@ struct Range {
 };
 constexpr Range kOfRefractions{1.0 / 16, 1.0};
 /// Most of the sparks of chains are rarer than a pilot's samples, or one of them decides.
-constexpr Range kOfChains{1.0 / 2, 2.0};
+constexpr Range kOfChains{1.0 / 8, 2.0};
 
 double meanOf(std::span<const double> values) {
     return std::reduce(values.begin(), values.end()) / double(values.size());
-}
-
-Camera smallCamera(const Camera& camera) {
-    const Camera::Film film = camera.film();
-    const double scale =
-        std::min(1.0, std::sqrt(kPixels / (double(film.width) * double(film.height))));
-    const auto scaled = [&](int side) { return std::max(1, int(double(side) * scale)); };
-    return camera.withFilm({scaled(film.width), scaled(film.height)});
 }
 
 /// The mean over the pixels but for the largest ones, which count as zero.
@@ -119,10 +112,11 @@ double effortOf(const Pilot& pilot, const Range& range) {
 
 GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techniques& techniques,
                            const RenderSettings& settings, const ThreadPool& threads) {
-    const Camera small = smallCamera(camera);
+    const SmallFilm small(camera.film(), kPixels);
+    const Camera smallCamera = camera.withFilm(small.film);
     RenderSettings pilot = settings;
     pilot.seed = 0;
-    pilot.crop = {0, small.film().width, 0, small.film().height};
+    pilot.crop = small.crop;
     pilot.lightPaths = 0;
     pilot.sampling = Sampling::Independent;
     pilot.transparentBackground = false;
@@ -130,7 +124,7 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     Techniques neither = findMethod("pt").techniques;
     neither.chains = neither.refractions = neither.knownWays = false;
     const auto effortWith = [&](const Techniques& tried, Technique::By kind, const Range& range) {
-        return effortOf(rendered(scene, small, tried, kind, pilot, threads), range);
+        return effortOf(rendered(scene, smallCamera, tried, kind, pilot, threads), range);
     };
     GlassEffort effort;
     const bool refracts =

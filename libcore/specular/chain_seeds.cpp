@@ -209,9 +209,29 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
         byLight_[light] =
             trace(rays, light, kOfPoints, [&](Rng&) { return lights.punctualPoint(light); });
     }
+    joinLights(lights);
     if (ofLamps > 0.0) {
         ofLamps_ = trace(std::size_t(kRays), std::uint32_t(lights.size()), kOfLamps,
                          [&](Rng& rng) { return lights.samplePoint(rng); });
+    }
+}
+
+void ChainSeeds::joinLights(const Lights& lights) {
+    const auto isKnown = [](const Sorted& ways) { return !ways.codes.empty(); };
+    if (std::ranges::count_if(byLight_, isKnown) < 2) return;
+    std::vector<std::pair<std::uint32_t, Known>> byCode;
+    for (std::uint32_t light = 0; light < byLight_.size(); ++light) {
+        const Sorted& ways = byLight_[light];
+        const double share = lights.powerShare(light);
+        for (std::size_t i = 0; i < ways.seeds.size(); ++i) {
+            byCode.push_back(
+                {ways.codes[i], {light, float(share * double(ways.seeds[i].strength))}});
+        }
+    }
+    std::ranges::stable_sort(byCode, {}, [](const auto& pair) { return pair.first; });
+    for (const auto& [code, known] : byCode) {
+        codes_.push_back(code);
+        known_.push_back(known);
     }
 }
 
@@ -321,13 +341,16 @@ std::uint32_t ChainSeeds::codeOf(const Vec3& place, const Vec3& side) const {
            spread(cell(place.y)) << 1 | spread(cell(place.z)) << 2;
 }
 
+std::size_t ChainSeeds::firstNear(std::span<const std::uint32_t> codes, const Vec3& place,
+                                  const Vec3& side) const {
+    const auto at =
+        std::size_t(std::ranges::lower_bound(codes, codeOf(place, side)) - codes.begin());
+    return std::min(at - std::min(at, kNear / 2), codes.size() - std::min(kNear, codes.size()));
+}
+
 WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& side) const {
     if (ways.seeds.empty()) return {};
-    const std::size_t most = std::min(kNear, ways.seeds.size());
-    const auto at =
-        std::size_t(std::ranges::lower_bound(ways.codes, codeOf(place, side)) - ways.codes.begin());
-    const std::size_t first = std::min(at - std::min(at, kNear / 2), ways.seeds.size() - most);
-    const Window& window = ways.windows[first];
+    const Window& window = ways.windows[firstNear(ways.codes, place, side)];
     const std::span<const std::uint32_t> known = window.ways;
     const bool inside = length(place - window.centre) <= 1.5f * window.radius;
     return {ways.seeds, known.first(window.usual), known.subspan(window.usual, window.others),
@@ -336,6 +359,13 @@ WaysNearby ChainSeeds::near(const Sorted& ways, const Vec3& place, const Vec3& s
 
 WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& side) const {
     return byLight_.empty() ? WaysNearby{} : near(byLight_[light], place, side);
+}
+
+std::span<const ChainSeeds::Known> ChainSeeds::lightsNear(const Vec3& place,
+                                                          const Vec3& side) const {
+    if (known_.empty()) return {};
+    return std::span(known_).subspan(firstNear(codes_, place, side),
+                                     std::min(kNear, known_.size()));
 }
 
 WaysNearby ChainSeeds::nearOfLamps(const Vec3& place, const Vec3& side) const {

@@ -58,6 +58,14 @@ class ChainSeeds {
     /// Of all lights, the more of one the more power it has. A function of the scene.
     ChainSeeds(const Scene& scene, const ThreadPool& threads);
 
+    /// What a way that ended near a place says of the lights.
+    struct Known {
+        std::uint32_t light;
+        float power;  ///< the share of all light that the way stands for
+    };
+    /// Of all lights without an extent, if there are several: ways that ended near a place on a surface that looks to
+    /// `side`.
+    std::span<const Known> lightsNear(const Vec3& place, const Vec3& side) const;
     /// A light's, which has no extent, that ended near a place on a surface that looks to `side`, if any did
     /// anywhere.
     WaysNearby near(std::uint32_t light, const Vec3& place, const Vec3& side) const;
@@ -119,8 +127,16 @@ class ChainSeeds {
     Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const UsualKinds& usual,
                   const ThreadPool& threads) const;
     WaysNearby near(const Sorted& ways, const Vec3& place, const Vec3& side) const;
+    /// The first of the kNear codes about that of a place, or of all if they are fewer.
+    std::size_t firstNear(std::span<const std::uint32_t> codes, const Vec3& place,
+                          const Vec3& side) const;
+    /// Puts the ways of all lights together.
+    void joinLights(const Lights& lights);
 
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
+    // Of all lights without an extent together, if there are several, in the order of the codes.
+    std::vector<std::uint32_t> codes_;
+    std::vector<Known> known_;
     Sorted ofLamps_;
     float half_ = 1.0f;  // of the cube that places lie in
 };

@@ -57,7 +57,7 @@ struct Row {
 };
 constexpr Row kRows[] = {
     {"bpt", 1.0, 0.54, 0.0, "is found from both ends"},
-    {"pt", 1.1, 0.58, 0.0, "is in plain sight"},
+    {"pt", 1.1, 0.58, 0.0, "is found from the eye alone"},
     {"sharebpt", 1.5, 0.53, 0.07, "takes ways that can be learned, and pixels see much alike"},
     {"sharebpt", 1.6, 0.53, 0.07, "comes through glass or mirrors on both sides", false,
      "merge=on"},
@@ -130,7 +130,7 @@ class Pilot {
         const double pixels = double(crop.width()) * double(crop.height());
         // Speeds are measured on as many tiles as keep all threads busy.
         const double busy = byClock() ? kPixelsPerThread * double(pool_.threads()) : kFewestPixels;
-        small_.emplace(stage_, std::min(pixels, busy));
+        small_.emplace(stage_.camera->film(), stage_.settings.crop, std::min(pixels, busy));
         Trial first;
         const ProcessorShare processors;
         run(kRows[0], assignments(kRows[0], 0), kFewestTrialRays / 4.0, first);
@@ -143,7 +143,8 @@ class Pilot {
         }
         rays_ = std::clamp(kTrialShare * budget_, kFewestTrialRays, kMostTrialRays);
         const double wanted = rays_ / (kRaysPerPixel * kTrialIterations);
-        small_.emplace(stage_, std::clamp(wanted, kFewestPixels, kMostPixels));
+        small_.emplace(stage_.camera->film(), stage_.settings.crop,
+                       std::clamp(wanted, kFewestPixels, kMostPixels));
         tryRow(kRows[0]);
     }
 

@@ -10,10 +10,6 @@
 namespace lacuna {
 namespace {
 
-int scaledSide(int side, double factor) {
-    return std::max(1, int(std::lround(double(side) * factor)));
-}
-
 /// What an iteration of the whole picture takes, from one of the small one: `paths` times the light
 /// subpaths (a pool's are as many, those that splat are not) and `pixels` times the pixels.
 double ofWholePicture(double lightPart, double rest, double paths, double pixels) {
@@ -47,24 +43,6 @@ bool isOnlyMerged(const PathEvent& event) {
 }
 
 }  // namespace
-
-SmallFilm::SmallFilm(const Stage& stage, double pixels) {
-    const PixelRect& whole = stage.settings.crop;
-    const double area = double(whole.width()) * double(whole.height());
-    const double factor = std::min(1.0, std::sqrt(pixels / area));
-    const Camera::Film full = stage.camera->film();
-    film = {scaledSide(full.width, factor), scaledSide(full.height, factor)};
-    const double across = double(film.width) / double(full.width);
-    const double down = double(film.height) / double(full.height);
-    const auto begin = [](int side, double f, int most) {
-        return std::clamp(int(std::floor(double(side) * f)), 0, most - 1);
-    };
-    crop.x0 = begin(whole.x0, across, film.width);
-    crop.y0 = begin(whole.y0, down, film.height);
-    crop.x1 = std::clamp(int(std::lround(double(whole.x1) * across)), crop.x0 + 1, film.width);
-    crop.y1 = std::clamp(int(std::lround(double(whole.y1) * down)), crop.y0 + 1, film.height);
-    scale = area / (double(crop.width()) * double(crop.height()));
-}
 
 Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRect& crop) {
     Image image(crop.width(), crop.height());

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "libcore/bidir/small_film.h"
 #include "render/caches.h"
 #include "render/choose/judge.h"
 #include "render/options.h"
@@ -19,20 +20,6 @@ struct Trial {
     double seconds = 0.0;          ///< likewise, on this machine, had it nothing else to do
     /// Of a row that merges: what paths that nothing else can make add to a pixel. Else empty.
     std::vector<Rgb> onlyMerged = {};
-};
-
-inline double pixelsOf(const Camera::Film& film) {
-    return double(film.width) * double(film.height);
-}
-
-/// What is rendered in place of the picture: all of it, in fewer pixels.
-struct SmallFilm {
-    /// Of about `pixels` pixels, no more than the crop of `stage` has.
-    SmallFilm(const Stage& stage, double pixels);
-
-    Camera::Film film;  ///< the whole picture
-    PixelRect crop;     ///< the part of it that was asked for
-    double scale;       ///< pixels of the crop that is asked for, per pixel of this one
 };
 
 /// The mean of both halves in the size of `crop`: each pixel shows the small one that covers it.

@@ -59,7 +59,9 @@ TEST(GlassEffort, ofChainsIsLargeWhereAllLightComesByThem) {
 }
 
 TEST(GlassEffort, ofChainsIsLittleWhereFewPlacesGetAnyOfIt) {
-    EXPECT_EQ(effortIn(*floorUnderALamp(false, true, Lamp::Point).build()).chains, 0.5);
+    const double effort = effortIn(*floorUnderALamp(false, true, Lamp::Point).build()).chains;
+    EXPECT_LT(effort, 0.5);
+    EXPECT_GE(effort, 1.0 / 8);
 }
 
 TEST(GlassEffort, isOneWhereThereIsNothingToTry) {

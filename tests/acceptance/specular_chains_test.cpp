@@ -55,39 +55,49 @@ double openOf(double sine) {
     return (1 - f) * (1 - f);
 }
 
-/// A lamp and a camera above a slab of glass, a floor below it.
-TEST_P(SpecularChainsOf, pointLightThroughSolidGlassSeenThroughSolidGlass) {
+/// Lamps, one of them dim, and a camera above a slab of glass, a floor below it.
+TEST_P(SpecularChainsOf, pointLightsThroughSolidGlassSeenThroughSolidGlass) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
     b.add(quad({-30, 0, 30}, {60, 0, 0}, {0, 0, -60}));
     const auto clear = b.add(glass());
     b.add(box({-30, 1, -30}, {30, 1.5f, 30}, clear));
-    const Vec3d lamp{0.2, 2.0, 0};
-    b.add(pointLight(lamp, Rgb(2.0f)));
+    struct Lamp {
+        Vec3d position;
+        double intensity;
+    };
+    const Lamp lamps[] = {{{0.2, 2.0, 0}, 2.0}, {{-0.6, 1.9, 0.4}, 0.4}};
+    for (const Lamp& lamp : lamps) {
+        b.add(pointLight(lamp.position, Rgb(float(lamp.intensity))));
+    }
     b.add(lookAt({0.3, 1.8, 2}, {0, 0, 0.2}, 40));
     const auto scene = b.build();
     Shot shot;
     shot.maxDepth = 6;  // no reflections inside
-    shot.iterations = 400;
+    shot.iterations = 800;
     shot.lightPaths = 1024;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
     const Vec3d from = Vec3d(camera.position()) + scene->centre();
-    const Stack toEye{from.y - 0.5, 0.5, 1.5}, toLamp{lamp.y - 0.5, 0.5, 1.5};
+    const Stack toEye{from.y - 0.5, 0.5, 1.5};
     const std::vector<Rgb> exact = meanOverPixels(camera, shot, [&](Vec3d d) {
         const double eyeSine = std::hypot(d.x, d.z);
         const double shift = toEye.across(eyeSine) / eyeSine;
         const Vec3d point{from.x + d.x * shift, 0, from.z + d.z * shift};
-        const double distance = std::hypot(lamp.x - point.x, lamp.z - point.z);
-        const double sine = toLamp.sineOf(distance);
-        // The power of a ring of directions, on the ring of the floor that it comes to.
-        const double by = 1e-6;
-        const double ring = (toLamp.across(sine + by) - toLamp.across(sine - by)) / (2 * by);
-        const double cosine = std::sqrt(1 - sine * sine);
-        const double irradiance = 2 * openOf(sine) * sine / (cosine * distance * ring);
+        double irradiance = 0;
+        for (const auto& [lamp, intensity] : lamps) {
+            const Stack toLamp{lamp.y - 0.5, 0.5, 1.5};
+            const double distance = std::hypot(lamp.x - point.x, lamp.z - point.z);
+            const double sine = toLamp.sineOf(distance);
+            // The power of a ring of directions, on the ring of the floor that it comes to.
+            const double by = 1e-6;
+            const double ring = (toLamp.across(sine + by) - toLamp.across(sine - by)) / (2 * by);
+            const double cosine = std::sqrt(1 - sine * sine);
+            irradiance += intensity * openOf(sine) * sine / (cosine * distance * ring);
+        }
         const double radiance = irradiance * openOf(eyeSine) * 0.6 / std::numbers::pi;
         return Vec3d{radiance, radiance, radiance};
     });
-    expectRadiance(render(*scene, row(), shot), exact, row().name + ", lamp and slab",
+    expectRadiance(render(*scene, row(), shot), exact, row().name + ", lamps and slab",
                    Judge::BlocksAndMean);
 }
 
