@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "libcore/bidir/verify.h"
 #include "libcore/material/fresnel.h"
@@ -55,18 +56,19 @@ double openOf(double sine) {
     return (1 - f) * (1 - f);
 }
 
-/// Lamps, one of them dim, and a camera above a slab of glass, a floor below it.
-TEST_P(SpecularChainsOf, pointLightsThroughSolidGlassSeenThroughSolidGlass) {
+struct Lamp {
+    Vec3d position;
+    double intensity;
+};
+
+/// Lamps and a camera above a slab of glass, a floor below it, both of them `reach` wide to each side.
+void expectLampsBySlab(const MethodRow& row, std::span<const Lamp> lamps, float reach,
+                       int iterations) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
-    b.add(quad({-30, 0, 30}, {60, 0, 0}, {0, 0, -60}));
+    b.add(quad({-reach, 0, reach}, {2 * reach, 0, 0}, {0, 0, -2 * reach}));
     const auto clear = b.add(glass());
-    b.add(box({-30, 1, -30}, {30, 1.5f, 30}, clear));
-    struct Lamp {
-        Vec3d position;
-        double intensity;
-    };
-    const Lamp lamps[] = {{{0.2, 2.0, 0}, 2.0}, {{-0.6, 1.9, 0.4}, 0.4}};
+    b.add(box({-reach, 1, -reach}, {reach, 1.5f, reach}, clear));
     for (const Lamp& lamp : lamps) {
         b.add(pointLight(lamp.position, Rgb(float(lamp.intensity))));
     }
@@ -74,7 +76,7 @@ TEST_P(SpecularChainsOf, pointLightsThroughSolidGlassSeenThroughSolidGlass) {
     const auto scene = b.build();
     Shot shot;
     shot.maxDepth = 6;  // no reflections inside
-    shot.iterations = 800;
+    shot.iterations = iterations;
     shot.lightPaths = 1024;
     const Camera camera = scene->makeCamera("", {shot.width, shot.height}, {});
     const Vec3d from = Vec3d(camera.position()) + scene->centre();
@@ -97,8 +99,19 @@ TEST_P(SpecularChainsOf, pointLightsThroughSolidGlassSeenThroughSolidGlass) {
         const double radiance = irradiance * openOf(eyeSine) * 0.6 / std::numbers::pi;
         return Vec3d{radiance, radiance, radiance};
     });
-    expectRadiance(render(*scene, row(), shot), exact, row().name + ", lamps and slab",
+    expectRadiance(render(*scene, row, shot), exact, row.name + ", lamps and slab",
                    Judge::BlocksAndMean);
+}
+
+TEST_P(SpecularChainsOf, pointLightThroughSolidGlassSeenThroughSolidGlass) {
+    const Lamp lamp{{0.2, 2.0, 0}, 2};
+    expectLampsBySlab(row(), {&lamp, 1}, 30, 400);
+}
+
+/// A dim lamp nearby is drawn by the ways that are known more often than by its power.
+TEST(SpecularChains, ofADimLampNearbyAndABrightOneFarAway) {
+    const Lamp lamps[] = {{{0.2, 2.0, 0}, 0.5}, {{4, 2.5, -3}, 3}};
+    expectLampsBySlab(rowNamed("pt"), lamps, 8, 1600);
 }
 
 /// A floor that a mirror shows the sun to, seen in another mirror: against the sun's image itself.

@@ -716,7 +716,7 @@ FAULTS = [
     Fault("lamps-by-ways-count-by-power", "a lamp that is drawn since ways of it end nearby counts as drawn by power",
           "libcore/bidir/specular_chains.cpp",
           "kByWays * known / all + (1.0 - kByWays) * byPower_.pmf(index)", "byPower_.pmf(index)",
-          {"acceptance": "*SpecularChainsOf.pointLights*"}),
+          {"acceptance": "SpecularChains.*"}),
     Fault("searches-count-whole", "a search that is seldom made counts as one that always is",
           "libcore/bidir/specular_chains.cpp",
           "worth() / searches;", "worth();",
