@@ -63,10 +63,11 @@ bool SpecularChains::reach(const FullPath& path) {
 
 SpecularChains::Drawn SpecularChains::drawLight(const PathVertex& z, Rng& rng) const {
     const double u = rng.uniformDouble();
-    const std::span<const ChainSeeds::Known> ways = seeds_->lightsNear(z.position, sideOfPath(z));
+    const std::span<const ChainSeeds::LightShare> ways =
+        seeds_->lightsNear(z.position, sideOfPath(z));
     double all = 0.0;
-    for (const ChainSeeds::Known& way : ways) all += double(way.power);
-    if (!(all > 0.0)) {
+    for (const ChainSeeds::LightShare& way : ways) all += double(way.power);
+    if (!(all > 0.0 && std::isfinite(all))) {
         const DiscreteDistribution::Pick pick = byPower_.sample(u);
         return {lights_[pick.index], pick.pmf};
     }
@@ -74,7 +75,7 @@ SpecularChains::Drawn SpecularChains::drawLight(const PathVertex& z, Rng& rng) c
     std::uint32_t light = ways.back().light;
     if (u < kByWays) {
         double left = u / kByWays * all;
-        const auto way = std::ranges::find_if(ways, [&](const ChainSeeds::Known& w) {
+        const auto way = std::ranges::find_if(ways, [&](const ChainSeeds::LightShare& w) {
             left -= double(w.power);
             return left < 0.0;
         });
@@ -83,7 +84,7 @@ SpecularChains::Drawn SpecularChains::drawLight(const PathVertex& z, Rng& rng) c
         light = lights_[byPower_.sample((u - kByWays) / (1.0 - kByWays)).index];
     }
     double known = 0.0;
-    for (const ChainSeeds::Known& way : ways) {
+    for (const ChainSeeds::LightShare& way : ways) {
         if (way.light == light) known += double(way.power);
     }
     const auto index = std::size_t(std::ranges::lower_bound(lights_, light) - lights_.begin());

@@ -219,7 +219,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
 void ChainSeeds::joinLights(const Lights& lights) {
     const auto isKnown = [](const Sorted& ways) { return !ways.codes.empty(); };
     if (std::ranges::count_if(byLight_, isKnown) < 2) return;
-    std::vector<std::pair<std::uint32_t, Known>> byCode;
+    std::vector<std::pair<std::uint32_t, LightShare>> byCode;
     for (std::uint32_t light = 0; light < byLight_.size(); ++light) {
         const Sorted& ways = byLight_[light];
         const double share = lights.powerShare(light);
@@ -229,9 +229,9 @@ void ChainSeeds::joinLights(const Lights& lights) {
         }
     }
     std::ranges::stable_sort(byCode, {}, [](const auto& pair) { return pair.first; });
-    for (const auto& [code, known] : byCode) {
+    for (const auto& [code, share] : byCode) {
         codes_.push_back(code);
-        known_.push_back(known);
+        shares_.push_back(share);
     }
 }
 
@@ -361,11 +361,11 @@ WaysNearby ChainSeeds::near(std::uint32_t light, const Vec3& place, const Vec3& 
     return byLight_.empty() ? WaysNearby{} : near(byLight_[light], place, side);
 }
 
-std::span<const ChainSeeds::Known> ChainSeeds::lightsNear(const Vec3& place,
-                                                          const Vec3& side) const {
-    if (known_.empty()) return {};
-    return std::span(known_).subspan(firstNear(codes_, place, side),
-                                     std::min(kNear, known_.size()));
+std::span<const ChainSeeds::LightShare> ChainSeeds::lightsNear(const Vec3& place,
+                                                               const Vec3& side) const {
+    if (shares_.empty()) return {};
+    return std::span(shares_).subspan(firstNear(codes_, place, side),
+                                      std::min(kNear, shares_.size()));
 }
 
 WaysNearby ChainSeeds::nearOfLamps(const Vec3& place, const Vec3& side) const {

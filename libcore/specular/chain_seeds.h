@@ -59,13 +59,13 @@ class ChainSeeds {
     ChainSeeds(const Scene& scene, const ThreadPool& threads);
 
     /// What a way that ended near a place says of the lights.
-    struct Known {
+    struct LightShare {
         std::uint32_t light;
         float power;  ///< the share of all light that the way stands for
     };
     /// Of all lights without an extent, if there are several: ways that ended near a place on a surface that looks to
     /// `side`.
-    std::span<const Known> lightsNear(const Vec3& place, const Vec3& side) const;
+    std::span<const LightShare> lightsNear(const Vec3& place, const Vec3& side) const;
     /// A light's, which has no extent, that ended near a place on a surface that looks to `side`, if any did
     /// anywhere.
     WaysNearby near(std::uint32_t light, const Vec3& place, const Vec3& side) const;
@@ -136,7 +136,7 @@ class ChainSeeds {
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
     // Of all lights without an extent together, if there are several, in the order of the codes.
     std::vector<std::uint32_t> codes_;
-    std::vector<Known> known_;
+    std::vector<LightShare> shares_;
     Sorted ofLamps_;
     float half_ = 1.0f;  // of the cube that places lie in
 };
