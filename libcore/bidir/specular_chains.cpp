@@ -61,10 +61,10 @@ bool SpecularChains::reach(const FullPath& path) {
     return !path.hittable && deltas > 0 && deltas <= int(Chain::kMost);
 }
 
-SpecularChains::Drawn SpecularChains::drawLight(const PathVertex& z, Rng& rng) const {
+SpecularChains::Drawn SpecularChains::drawLight(const Vec3& place, const Vec3& side,
+                                                Rng& rng) const {
     const double u = rng.uniformDouble();
-    const std::span<const ChainSeeds::LightShare> ways =
-        seeds_->lightsNear(z.position, sideOfPath(z));
+    const std::span<const ChainSeeds::LightShare> ways = seeds_->lightsNear(place, side);
     double all = 0.0;
     for (const ChainSeeds::LightShare& way : ways) all += double(way.power);
     if (!(all > 0.0 && std::isfinite(all))) {
@@ -103,10 +103,11 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     constexpr double kFewest = 0.05;
     const double u = rng.uniformDouble();
     if (u >= effort_) return;
-    const Drawn drawn = drawLight(z, rng);
+    const Vec3 side = sideOfPath(z);
+    const Drawn drawn = drawLight(z.position, side, rng);
     PathVertex y0;
     if (!walker_.placeLight(drawn.light, drawn.pmf, y0)) return;
-    const WaysNearby ways = seeds_->near(y0.light, z.position, sideOfPath(z));
+    const WaysNearby ways = seeds_->near(y0.light, z.position, side);
     const double searches = std::min(1.0, effort_ * ways.samples(kFewest));
     if (u >= searches) return;
     const ChainQuery query{

@@ -43,7 +43,7 @@ class SpecularChains {
         double pmf;
     };
     /// By power, and by what is known to come to the place.
-    Drawn drawLight(const PathVertex& z, Rng& rng) const;
+    Drawn drawLight(const Vec3& place, const Vec3& side, Rng& rng) const;
 
     const Walker& walker_;
     ChainSearch search_;

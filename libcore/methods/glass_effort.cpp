@@ -50,21 +50,22 @@ double meanWithoutSparks(std::vector<double> values) {
 }
 
 /// A picture of two iterations.
-struct Pilot {
+struct PilotPicture {
     int width;
     /// By iteration and pixel: what one kind of technique brings, and the rest.
     std::array<std::vector<double>, 2> own, rest;
     double chainRays, otherRays;
 };
 
-Pilot rendered(const Scene& scene, const Camera& camera, const Techniques& techniques,
-               Technique::By kind, const RenderSettings& settings, const ThreadPool& threads) {
+PilotPicture rendered(const Scene& scene, const Camera& camera, const Techniques& techniques,
+                      Technique::By kind, const RenderSettings& settings,
+                      const ThreadPool& threads) {
     const MethodRow& row = findMethod("pt");
     const std::unique_ptr<Method> method = row.create(resolve(row, {}));
     BidirIntegrator integrator(scene, camera, techniques, *method, settings, threads);
     const auto [width, height] = camera.film();
     const auto pixels = std::size_t(width) * std::size_t(height);
-    Pilot pilot{width, {}, {}, 0.0, 0.0};
+    PilotPicture pilot{width, {}, {}, 0.0, 0.0};
     const std::atomic<bool> never{false};
     IterationStatistics statistics;
     std::vector<Rgb> picture(pixels);
@@ -84,7 +85,7 @@ Pilot rendered(const Scene& scene, const Camera& camera, const Techniques& techn
 }
 
 /// The best number of samples of its own technique, which all rays in search of chains count as the cost of.
-double effortOf(const Pilot& pilot, const Range& range) {
+double effortOf(const PilotPicture& pilot, const Range& range) {
     if (pilot.chainRays == 0.0) return 1.0;
     const std::size_t pixels = pilot.own[0].size();
     std::vector<double> sum(pixels);
@@ -123,6 +124,11 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     pilot.glassEffort = {};
     Techniques neither = findMethod("pt").techniques;
     neither.chains = neither.refractions = neither.knownWays = false;
+    const auto only = [&](bool Techniques::*one) {
+        Techniques tried = neither;
+        tried.*one = true;
+        return tried;
+    };
     const auto effortWith = [&](const Techniques& tried, Technique::By kind, const Range& range) {
         return effortOf(rendered(scene, smallCamera, tried, kind, pilot, threads), range);
     };
@@ -132,18 +138,15 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     const bool goesKnownWays =
         techniques.goKnownWays() && settings.chainSeeds && settings.chainSeeds->anyOfLamps();
     if (refracts) {
-        Techniques alone = neither;
-        alone.refractions = true;
-        effort.refractions = effortWith(alone, Technique::By::Refraction, kOfRefractions);
+        effort.refractions =
+            effortWith(only(&Techniques::refractions), Technique::By::Refraction, kOfRefractions);
     }
     if (goesKnownWays) {
-        Techniques alone = neither;
-        alone.knownWays = true;
-        effort.knownWays = effortWith(alone, Technique::By::Refraction, kOfRefractions);
+        effort.knownWays =
+            effortWith(only(&Techniques::knownWays), Technique::By::Refraction, kOfRefractions);
     }
     if (techniques.searchForChains() && settings.chainSeeds && settings.chainSeeds->hasPoints()) {
-        Techniques all = neither;
-        all.chains = true;
+        Techniques all = only(&Techniques::chains);
         all.refractions = refracts;
         all.knownWays = goesKnownWays;
         pilot.glassEffort = effort;

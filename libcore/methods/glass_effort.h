@@ -1,5 +1,5 @@
-// How often next event through glass and along known ways and specular chains pay in a view: by small pictures before
-// the render, whose samples are thrown away. (theory.md, "Effort behind glass")
+// How often next event through glass and along known ways pays in a view, and the search for specular chains: by small
+// pictures before the render, whose samples are thrown away. (theory.md, "Effort behind glass")
 #pragma once
 
 #include "libcore/bidir/render_setup.h"
@@ -7,8 +7,8 @@
 namespace lacuna {
 
 /// By path tracing with each, at no more than 4096 pixels of the whole film. A function of the scene, the
-/// camera, the techniques and `settings`, but for its seed, crop, sampling, number of light paths and background. 1 for what
-/// the techniques do not hold, or the scene has not.
+/// camera, the techniques and `settings`, but for its seed, crop, sampling, number of light paths and background. 1 for
+/// what the techniques do not hold, or the scene has not.
 GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techniques& techniques,
                            const RenderSettings& settings, const ThreadPool& threads);
 

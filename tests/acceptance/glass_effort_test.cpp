@@ -9,14 +9,14 @@
 namespace lacuna::test {
 namespace {
 
-enum class Lamp { Square, Point };
+enum class LampKind { Square, Point };
 
 /// A floor under a lamp, with a mirror ball and a ball of glass. The lamp is in a box of glass, or open.
-SceneBuilder floorUnderALamp(bool behindGlass, bool balls, Lamp kind = Lamp::Square) {
+SceneBuilder floorUnderALamp(bool behindGlass, bool balls, LampKind kind = LampKind::Square) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
     b.add(box({-2, 0, -2}, {2, 3, 2}, 0, true));
-    if (kind == Lamp::Square) {
+    if (kind == LampKind::Square) {
         const std::uint32_t lamp = b.add(emitter(Rgb(20.0f), true));
         b.add(quad({-0.2f, 2.5f, 0.2f}, {0, 0, -0.4f}, {0.4f, 0, 0}, lamp));
     } else {
@@ -53,19 +53,19 @@ TEST(GlassEffort, isLittleWhereFewPlacesGetAnyOfIt) {
 }
 
 TEST(GlassEffort, ofChainsIsLargeWhereAllLightComesByThem) {
-    const auto scene = floorUnderALamp(true, false, Lamp::Point).build();
+    const auto scene = floorUnderALamp(true, false, LampKind::Point).build();
     EXPECT_GT(effortIn(*scene).chains, 1);
     EXPECT_LE(effortIn(*scene).chains, 2);
 }
 
 TEST(GlassEffort, ofChainsIsLittleWhereFewPlacesGetAnyOfIt) {
-    const double effort = effortIn(*floorUnderALamp(false, true, Lamp::Point).build()).chains;
+    const double effort = effortIn(*floorUnderALamp(false, true, LampKind::Point).build()).chains;
     EXPECT_LT(effort, 0.5);
     EXPECT_GE(effort, 1.0 / 8);
 }
 
 TEST(GlassEffort, isOneWhereThereIsNothingToTry) {
-    for (const Lamp lamp : {Lamp::Square, Lamp::Point}) {
+    for (const LampKind lamp : {LampKind::Square, LampKind::Point}) {
         const GlassEffort effort = effortIn(*floorUnderALamp(false, false, lamp).build());
         EXPECT_EQ(effort.refractions, 1);
         EXPECT_EQ(effort.knownWays, 1);
