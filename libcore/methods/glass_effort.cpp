@@ -57,12 +57,11 @@ struct PilotPicture {
     double chainRays, otherRays;
 };
 
-PilotPicture rendered(const Scene& scene, const Camera& camera, const Techniques& techniques,
+PilotPicture rendered(const Scene& scene, const Camera& camera, const MethodRow& row,
                       Technique::By kind, const RenderSettings& settings,
                       const ThreadPool& threads) {
-    const MethodRow& row = findMethod("pt");
     const std::unique_ptr<Method> method = row.create(resolve(row, {}));
-    BidirIntegrator integrator(scene, camera, techniques, *method, settings, threads);
+    BidirIntegrator integrator(scene, camera, row.techniques, *method, settings, threads);
     const auto [width, height] = camera.film();
     const auto pixels = std::size_t(width) * std::size_t(height);
     PilotPicture pilot{width, {}, {}, 0.0, 0.0};
@@ -71,13 +70,18 @@ PilotPicture rendered(const Scene& scene, const Camera& camera, const Techniques
     std::vector<Rgb> picture(pixels);
     for (std::uint32_t i = 0; i < 2; ++i) {
         pilot.own[i].assign(pixels, 0.0);
-        pilot.rest[i].assign(pixels, 0.0);
+        pilot.rest[i].resize(pixels);
         integrator.delivery().setObserver([&](const PathEvent& event) {
             const auto value = double(mean(event.contribution));
-            if (!std::isfinite(value)) return;
-            (event.technique.by == kind ? pilot.own : pilot.rest)[i][event.pixel] += value;
+            // To the pixel of the task's own path: no other task adds to it.
+            if (event.technique.by == kind && std::isfinite(value)) {
+                pilot.own[i][event.pixel] += value;
+            }
         });
         integrator.render(i, picture, never, statistics);
+        for (std::size_t p = 0; p < pixels; ++p) {
+            pilot.rest[i][p] = double(mean(picture[p])) - pilot.own[i][p];
+        }
     }
     pilot.chainRays = double(statistics.rays[std::size_t(RayKind::Chain)]);
     pilot.otherRays = double(statistics.totalRays()) - pilot.chainRays;
@@ -122,15 +126,14 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     pilot.sampling = Sampling::Independent;
     pilot.transparentBackground = false;
     pilot.glassEffort = {};
-    Techniques neither = findMethod("pt").techniques;
-    neither.chains = neither.refractions = neither.knownWays = false;
-    const auto only = [&](bool Techniques::*one) {
-        Techniques tried = neither;
-        tried.*one = true;
-        return tried;
+    const auto with = [](const char* method, bool Techniques::*one) {
+        MethodRow row = findMethod(method);
+        row.techniques.chains = row.techniques.refractions = row.techniques.knownWays = false;
+        row.techniques.*one = true;
+        return row;
     };
-    const auto effortWith = [&](const Techniques& tried, Technique::By kind, const Range& range) {
-        return effortOf(rendered(scene, smallCamera, tried, kind, pilot, threads), range);
+    const auto effortBy = [&](const MethodRow& row, Technique::By kind, const Range& range) {
+        return effortOf(rendered(scene, smallCamera, row, kind, pilot, threads), range);
     };
     GlassEffort effort;
     const bool refracts =
@@ -138,19 +141,20 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
     const bool goesKnownWays =
         techniques.goKnownWays() && settings.chainSeeds && settings.chainSeeds->anyOfLamps();
     if (refracts) {
-        effort.refractions =
-            effortWith(only(&Techniques::refractions), Technique::By::Refraction, kOfRefractions);
+        effort.refractions = effortBy(with("pt", &Techniques::refractions),
+                                      Technique::By::Refraction, kOfRefractions);
     }
     if (goesKnownWays) {
         effort.knownWays =
-            effortWith(only(&Techniques::knownWays), Technique::By::Refraction, kOfRefractions);
+            effortBy(with("pt", &Techniques::knownWays), Technique::By::Refraction, kOfRefractions);
     }
     if (techniques.searchForChains() && settings.chainSeeds && settings.chainSeeds->hasPoints()) {
-        Techniques all = only(&Techniques::chains);
-        all.refractions = refracts;
-        all.knownWays = goesKnownWays;
+        // With splats chains are left to fewer paths.
+        MethodRow row = with(techniques.splats ? "bpt" : "pt", &Techniques::chains);
+        row.techniques.refractions = refracts;
+        row.techniques.knownWays = goesKnownWays;
         pilot.glassEffort = effort;
-        effort.chains = effortWith(all, Technique::By::Chain, kOfChains);
+        effort.chains = effortBy(row, Technique::By::Chain, kOfChains);
     }
     return effort;
 }

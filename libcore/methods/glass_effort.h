@@ -6,9 +6,9 @@
 
 namespace lacuna {
 
-/// By path tracing with each, at no more than 4096 pixels of the whole film. A function of the scene, the
-/// camera, the techniques and `settings`, but for its seed, crop, sampling, number of light paths and background. 1 for
-/// what the techniques do not hold, or the scene has not.
+/// By path tracing with each (chains: by bpt where `techniques` splat), at no more than 4096 pixels of the whole film.
+/// A function of the scene, the camera, the techniques and `settings`, but for its seed, crop, sampling, number of light
+/// paths and background. 1 for what the techniques do not hold, or the scene has not.
 GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techniques& techniques,
                            const RenderSettings& settings, const ThreadPool& threads);
 
