@@ -12,24 +12,13 @@
 namespace lacuna::test {
 namespace {
 
-bool refracts(const MethodRow& row) {
-    const Techniques& t = asSet(row, resolve(row, {})).techniques;
-    return t.hits && t.connects && t.refractions;
-}
-
-std::vector<std::string> rowsWithRefractions(Rows rows) {
-    std::vector<std::string> names;
-    for (const std::string& name : rowNames(rows)) {
-        if (refracts(rowNamed(name))) names.push_back(name);
-    }
-    return names;
-}
-
 class RefractedLampsOf : public RowTest {};
 INSTANTIATE_TEST_SUITE_P(All, RefractedLampsOf,
-                         testing::ValuesIn(rowsWithRefractions(Rows::OfTheTool)), ByParameter());
+                         testing::ValuesIn(rowNamesWith(&Techniques::refract, Rows::OfTheTool)),
+                         ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, RefractedLampsOf,
-                         testing::ValuesIn(rowsWithRefractions(Rows::OfTests)), ByParameter());
+                         testing::ValuesIn(rowNamesWith(&Techniques::refract, Rows::OfTests)),
+                         ByParameter());
 
 /// A floor under a slab of glass under an even sky: what both faces let through, from everywhere. Of such a sky
 /// next event leaves all to hits, unless a guide tells where to look.

@@ -297,6 +297,15 @@ std::vector<std::string> rowNames(Rows rows) {
     return names;
 }
 
+std::vector<std::string> rowNamesWith(bool (Techniques::*technique)() const, Rows rows) {
+    std::vector<std::string> names;
+    for (const std::string& name : rowNames(rows)) {
+        const MethodRow row = rowNamed(name);
+        if ((asSet(row, resolve(row, {})).techniques.*technique)()) names.push_back(name);
+    }
+    return names;
+}
+
 std::vector<std::string> rowNamesOfWeights() {
     std::vector<std::string> names;
     for (const MethodRow& row : allRows()) names.push_back(row.name);

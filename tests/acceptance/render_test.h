@@ -129,6 +129,8 @@ inline constexpr const char* kOfAllowed = "of the deviation allowed";
 /// Those that every test of pictures is for: photon mapping alone is left out. What few photons in a
 /// small radius give is too noisy to judge, and merging_test.cpp is for the rest.
 std::vector<std::string> rowNames(Rows rows);
+/// Those of them that have it with the settings that they have unasked.
+std::vector<std::string> rowNamesWith(bool (Techniques::*technique)() const, Rows rows);
 /// With photon mapping, and all that merge as they are set: for tests of weights.
 std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);

@@ -15,20 +15,14 @@
 namespace lacuna::test {
 namespace {
 
-std::vector<std::string> rowsWithChains(Rows rows) {
-    std::vector<std::string> names;
-    for (const std::string& name : rowNames(rows)) {
-        const MethodRow row = rowNamed(name);
-        const MethodRow set = asSet(row, resolve(row, {}));
-        if (set.techniques.connects && set.techniques.chains) names.push_back(name);
-    }
-    return names;
-}
-
 class SpecularChainsOf : public RowTest {};
-INSTANTIATE_TEST_SUITE_P(All, SpecularChainsOf, testing::ValuesIn(rowsWithChains(Rows::OfTheTool)),
+INSTANTIATE_TEST_SUITE_P(All, SpecularChainsOf,
+                         testing::ValuesIn(rowNamesWith(&Techniques::searchForChains,
+                                                        Rows::OfTheTool)),
                          ByParameter());
-INSTANTIATE_TEST_SUITE_P(Night, SpecularChainsOf, testing::ValuesIn(rowsWithChains(Rows::OfTests)),
+INSTANTIATE_TEST_SUITE_P(Night, SpecularChainsOf,
+                         testing::ValuesIn(rowNamesWith(&Techniques::searchForChains,
+                                                        Rows::OfTests)),
                          ByParameter());
 
 /// How far a ray at an angle to the vertical, by its sine, comes to the side through slabs and air.
