@@ -56,8 +56,15 @@ struct FullPath {
     bool mergesAt(int i, Merges where) const {
         const auto n = std::size_t(i);
         if (delta[n] || where == Merges::Nowhere) return false;
-        if (where == Merges::FirstFromEye) return orderOf(i) == 1;
+        if (where == Merges::FirstFromEye) return isSeenNearlySpecularly(i);
         return where != Merges::BetweenDeltas || (delta[n - 1] && delta[n + 1]);
+    }
+    /// Whether all between x_i and the lens are deltas or scatter narrowly.
+    bool isSeenNearlySpecularly(int i) const {
+        for (int j = i + 1; j < edges; ++j) {
+            if (!delta[std::size_t(j)] && vertex[std::size_t(j)]->scattersWidely()) return false;
+        }
+        return true;
     }
     /// Connection::order where the eye's end is x_i.
     int orderOf(int i) const {

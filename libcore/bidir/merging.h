@@ -3,6 +3,7 @@
 // "Merging")
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 
@@ -15,7 +16,7 @@ namespace lacuna {
 enum class Merges : std::uint8_t {
     Nowhere,
     Everywhere,
-    FirstFromEye,   ///< all between x_i and the lens are deltas: photon mapping
+    FirstFromEye,   ///< all between x_i and the lens are deltas or scatter narrowly: photon mapping
     BetweenDeltas,  ///< x_{i-1} and x_{i+1} are deltas: what no edge at x_i can be joined for
 };
 
@@ -40,12 +41,19 @@ inline bool isPhoton(Subpath light, Merges where) {
     return where != Merges::BetweenDeltas || isDelta(light[light.size() - 2].event);
 }
 
+/// Whether what the eye sees by a vertex of its walk is what lies where the walk goes on, in the main.
+inline bool isNearlySpecular(const PathVertex& z) {
+    return isDelta(z.event) || !z.scattersWidely();
+}
+
 /// Whether an eye subpath's last vertex may be merged with photons.
 inline bool asksForPhotons(Subpath eye, Merges where) {
     const PathVertex& z = eye.back();
     if (where == Merges::Nowhere) return false;
     if (z.kind != VertexKind::Surface || !z.connectable()) return false;
-    if (where == Merges::FirstFromEye) return connectionOrder(eye) == 1;
+    if (where == Merges::FirstFromEye) {
+        return std::ranges::all_of(eye.subspan(1, eye.size() - 2), isNearlySpecular);
+    }
     return where != Merges::BetweenDeltas || isDelta(eye[eye.size() - 2].event);
 }
 

@@ -67,6 +67,11 @@ struct PathVertex {
     bool infinite() const { return kind == VertexKind::Infinite; }
     /// Whether a connection may end here.
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
+    /// Whether a surface sends light anywhere but into narrow lobes, mirrors and smooth glass: then walks that
+    /// arrive from elsewhere are worth something here.
+    bool scattersWidely() const {
+        return kind == VertexKind::Surface && bsdf.connectable() && !bsdf.isNarrow();
+    }
 };
 static_assert(std::is_trivially_copyable_v<PathVertex>);
 static_assert(sizeof(PathVertex) == 248);  // pools hold millions of them

@@ -17,10 +17,9 @@ struct Sharing {
     bool any() const { return pixels > 1; }
 };
 
-/// Whether an eye walk may go on from the vertex along another pixel's walk. Not where all lobes are narrow: no
-/// other pixel's walk lies in them.
+/// Whether an eye walk may go on from the vertex along another pixel's walk, which lies in no narrow lobe.
 inline bool forks(const PathVertex& v) {
-    return v.kind == VertexKind::Surface && v.bsdf.connectable() && !v.bsdf.isNarrow();
+    return v.scattersWidely();
 }
 
 /// Whether another pixel's walk may go on from the vertex, which that pixel sees from elsewhere.

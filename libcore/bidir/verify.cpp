@@ -252,7 +252,10 @@ class Products {
             case Merges::Everywhere:
                 return true;
             case Merges::FirstFromEye:
-                return orderOf(i) == 1;
+                for (int j = i + 1; j < k_; ++j) {
+                    if (smooth(j) && !x(j).bsdf.isNarrow()) return false;
+                }
+                return true;
             case Merges::BetweenDeltas:
                 return i > 1 && i < k_ - 1 && !smooth(i - 1) && !smooth(i + 1);
         }

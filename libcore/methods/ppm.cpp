@@ -1,7 +1,7 @@
 // Progressive photon mapping [Hachisuka08], in its form without statistics per pixel [Knaus11], one
-// radius for all pixels: the first eye vertex that is neither mirror nor smooth glass is merged with
-// the photons around it. Eye paths that run into a light count as well, combined by the balance
-// heuristic, so that lamps and their mirror images are there. (theory.md, "ppm")
+// radius for all pixels: eye vertices are merged with the photons around them, up to the first one that
+// is neither mirror nor smooth glass, nor nearly so. Eye paths that run into a light count as well, combined
+// by the balance heuristic, so that lamps and their mirror images are there. (theory.md, "ppm")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/picks.h"
@@ -44,8 +44,8 @@ MethodRow ppmRow() {
     return methodRow(
         {.name = "ppm",
          .reference = "Hachisuka08",
-         .summary = "photon mapping: first diffuse or glossy eye vertices with photons "
-                    "around them",
+         .summary = "photon mapping: eye vertices up to the first that scatters widely with "
+                    "photons around them",
          .techniques = {.hits = true}},
         table, [](const Options& o) { return std::make_unique<PhotonMapping>(o); });
 }

@@ -2,6 +2,7 @@
 // bias of large ones is seen to be there and to go away.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -65,6 +66,30 @@ TEST(MergingSlow, photonMappingMeetsBpt) {
     shot.settings = {};
     expectSame(photons, render(*scene, rowNamed("bpt"), shot), "photon mapping",
                Judge::BlocksAndMean);
+}
+
+/// A wall of polished metal in a lit room: of the photons on it one in thousands comes from where the eye's lobe is.
+TEST(Merging, photonMappingLooksIntoPolishedMetal) {
+    SceneBuilder b;
+    b.d.materials[0] = matte(Rgb(0.6f));
+    b.add(box({-1, 0, -1}, {1, 2, 1}, 0, true));
+    b.add(quad({-1, 0, -0.99f}, {2, 0, 0}, {0, 2, 0}, b.add(metal(Rgb(0.9f), 0.15f))));
+    b.add(quad({-0.4f, 1.99f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, b.add(emitter(Rgb(5.0f)))));
+    b.add(lookAt({0, 0.9, 0.9}, {0, 0.7, -1}, 50));
+    const auto scene = b.build();
+    Shot shot = quickShot(20);
+    shot.maxDepth = 4;
+    shot.radius = 0.05;
+    shot.settings = {"photons=20000"};
+    const Picture photons = render(*scene, rowNamed("ppm"), shot);
+    const auto isDark = [&](const Rgb& c) { return mean(c) < 0.2 * photons.mean(); };
+    EXPECT_LT(std::ranges::count_if(photons.pixels.image().pixels, isDark), 7);
+    shot.seed = 101;
+    shot.iterations = 200;
+    shot.settings = {};
+    const Picture exact = render(*scene, rowNamed("bpt"), shot);
+    const double error = std::hypot(photons.standardError(), exact.standardError());
+    EXPECT_NEAR(photons.mean(), exact.mean(), 4.5 * error + 0.02 * exact.mean());
 }
 
 /// Rows that merge on demand make what hits make of a lamp that has a size.

@@ -26,10 +26,13 @@ std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
     return settings;
 }
 
-/// Rows that merge between deltas alone do so where there are some.
+/// Rows that merge between deltas alone do so where there are some; those that look through polished metal get
+/// some.
 FiniteSpace spaceFor(const MethodRow& row, const std::vector<std::string>& settings) {
     const Merging merging = row.create(resolve(row, settings))->merging();
-    return merging.where == Merges::BetweenDeltas ? FiniteSpace::ofMirrors() : FiniteSpace(3);
+    if (merging.where == Merges::BetweenDeltas) return FiniteSpace::ofMirrors();
+    if (merging.where == Merges::FirstFromEye) return FiniteSpace::ofPolishedMetal();
+    return FiniteSpace(3);
 }
 
 void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
