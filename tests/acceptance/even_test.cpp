@@ -21,11 +21,16 @@ void expectIndependentPathTracing(const Scene& scene, const std::vector<std::str
     }
 }
 
-TEST(EvenNumbersSlow, everyRowAgreesWithIndependentPathTracing) {
+class EvenNumbersOfRowsSlow : public testing::TestWithParam<Rows> {};
+INSTANTIATE_TEST_SUITE_P(Day, EvenNumbersOfRowsSlow, testing::Values(Rows::SecondHalf),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, EvenNumbersOfRowsSlow, testing::Values(Rows::FirstHalf),
+                         ByParameter());
+TEST_P(EvenNumbersOfRowsSlow, agreeWithIndependentPathTracing) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);
     addLight(b, LightChoice::Sphere);
-    expectIndependentPathTracing(*b.build(), rowNames(Rows::OfTheTool));
+    expectIndependentPathTracing(*b.build(), rowNames(GetParam()));
 }
 
 TEST(EvenNumbersSlow, theSkyIsTheSame) {

@@ -15,37 +15,39 @@ namespace {
 struct Pair {
     LightChoice a, b;
     Rows rows = Rows::OfTheTool;
-    bool operator==(const Pair&) const = default;
 };
 void PrintTo(const Pair& p, std::ostream* out) {
     *out << nameOf(p.a) << " and " << nameOf(p.b);
-    if (p.rows == Rows::OfTests) *out << " by rows of tests";
 }
 /// Every kind of light once, and those with alpha beside all that they could be taken for.
 std::vector<Pair> pairsOfADay() {
     using enum LightChoice;
-    return {{Quad, Environment},
-            {Sphere, Spot},
-            {TwoSided, Directional},
-            {Point, Environment},
-            {Hidden, Sphere},
-            {Quad, Veiled},
-            {VeiledTexture, MaskedTexture},
-            {MaskedTexture, Environment}};
+    std::vector<Pair> pairs = {{Quad, Environment},
+                               {Sphere, Spot},
+                               {TwoSided, Directional},
+                               {Point, Environment},
+                               {Hidden, Sphere},
+                               {Quad, Veiled},
+                               {VeiledTexture, MaskedTexture},
+                               {MaskedTexture, Environment}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].rows = halfOfADay(i);
+    return pairs;
 }
 std::vector<Pair> pairsOfANight() {
-    std::vector<Pair> pairs;
-    const std::vector<Pair> day = pairsOfADay();
-    for (Pair p : day) {
-        p.rows = Rows::OfTests;
-        pairs.push_back(p);
-    }
+    std::vector<Pair> pairs = pairsOfADay();
+    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].rows = halfOfANight(i);
     for (int i = 0; i < kLightChoices; ++i) {
         for (int j = i + 1; j < kLightChoices; ++j) {
             const Pair p{LightChoice(i), LightChoice(j)};
-            if (std::find(day.begin(), day.end(), p) == day.end()) pairs.push_back(p);
+            const auto isTheSame = [&](const Pair& day) { return day.a == p.a && day.b == p.b; };
+            if (std::ranges::none_of(pairs, isTheSame)) pairs.push_back(p);
         }
     }
+    return pairs;
+}
+std::vector<Pair> pairsByRowsOfTests() {
+    std::vector<Pair> pairs = pairsOfADay();
+    for (Pair& p : pairs) p.rows = Rows::OfTests;
     return pairs;
 }
 
@@ -83,10 +85,15 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
 
 INSTANTIATE_TEST_SUITE_P(Day, LightPairsSlow, testing::ValuesIn(pairsOfADay()), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, LightPairsSlow, testing::ValuesIn(pairsOfANight()), ByParameter());
+INSTANTIATE_TEST_SUITE_P(NightOfTests, LightPairsSlow, testing::ValuesIn(pairsByRowsOfTests()),
+                         ByParameter());
 
 /// What one vertex brings nothing to may be all that the one beside it has: whatever is learned at one and
 /// used at another has to allow for it.
-TEST(PureColoursSlow, everyRowAgreesWithBpt) {
+class PureColoursSlow : public testing::TestWithParam<Rows> {};
+INSTANTIATE_TEST_SUITE_P(Day, PureColoursSlow, testing::Values(Rows::SecondHalf), ByParameter());
+INSTANTIATE_TEST_SUITE_P(Night, PureColoursSlow, testing::Values(Rows::FirstHalf), ByParameter());
+TEST_P(PureColoursSlow, everyRowAgreesWithBpt) {
     const auto scene = tilesOfPureColours(Rgb(0.9f)).build();
     Shot shot;
     shot.maxDepth = 6;
@@ -96,7 +103,7 @@ TEST(PureColoursSlow, everyRowAgreesWithBpt) {
     shot.seed = 1;
     shot.iterations = 300;
     shot.lightPaths = 1024;
-    for (const std::string& name : rowNames(Rows::OfTheTool)) {
+    for (const std::string& name : rowNames(GetParam())) {
         const MethodRow row = rowNamed(name);
         if (mergesBetweenDeltas(row)) continue;
         expectSame(render(*scene, row, withSplatsForEveryPixel(shot, row)), reference, name,
@@ -164,31 +171,40 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
     }
 }
 
-std::vector<SceneFile> sceneFiles() {
-    return {{"cornell-box", 100},
-            {"door", 60},
-            {"glossy-room", 240, true, 24, 18},
-            {"kitchen-glass", 240, true, 24, 18},
-            {"night-window", 240, true, 24, 18, 8},  // four faces of panes
-            {"ring-caustic", 240, true, 24, 18},
-            {"furnace", 40},
-            {"light-quad", 60},
-            {"light-sphere", 60},
-            {"light-two-sided", 60},
-            {"light-point", 60},
-            {"light-directional", 60},
-            {"light-environment", 60},
-            {"light-mesh-instanced", 60}};
+std::vector<SceneFile> sceneFilesOfADay() {
+    std::vector<SceneFile> files = {{"cornell-box", 100},
+                                    {"door", 60},
+                                    {"glossy-room", 240, true, 24, 18},
+                                    {"kitchen-glass", 240, true, 24, 18},
+                                    {"night-window", 240, true, 24, 18, 8},  // four faces of panes
+                                    {"ring-caustic", 240, true, 24, 18},
+                                    {"furnace", 40},
+                                    {"light-quad", 60},
+                                    {"light-sphere", 60},
+                                    {"light-two-sided", 60},
+                                    {"light-point", 60},
+                                    {"light-directional", 60},
+                                    {"light-environment", 60},
+                                    {"light-mesh-instanced", 60}};
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].rows = halfOfADay(i);
+    return files;
 }
 std::vector<SceneFile> sceneFilesOfANight() {
-    std::vector<SceneFile> files = sceneFiles();
-    std::erase_if(files, [](const SceneFile& file) { return file.caustics; });
-    for (SceneFile& file : files) file.rows = Rows::OfTests;
+    std::vector<SceneFile> files = sceneFilesOfADay();
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].rows = halfOfANight(i);
     files.push_back({"light-spot", 1920, true, 20, 15});
     return files;
 }
-INSTANTIATE_TEST_SUITE_P(Day, SceneFilesSlow, testing::ValuesIn(sceneFiles()), ByParameter());
+std::vector<SceneFile> sceneFilesByRowsOfTests() {
+    std::vector<SceneFile> files = sceneFilesOfADay();
+    std::erase_if(files, [](const SceneFile& file) { return file.caustics; });
+    for (SceneFile& file : files) file.rows = Rows::OfTests;
+    return files;
+}
+INSTANTIATE_TEST_SUITE_P(Day, SceneFilesSlow, testing::ValuesIn(sceneFilesOfADay()), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, SceneFilesSlow, testing::ValuesIn(sceneFilesOfANight()),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(NightOfTests, SceneFilesSlow, testing::ValuesIn(sceneFilesByRowsOfTests()),
                          ByParameter());
 
 }  // namespace

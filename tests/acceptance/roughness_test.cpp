@@ -89,12 +89,17 @@ TEST_P(RoughnessSlow, theLimitMeetsTheDelta) {
     stabilityCase("delta-limit", worstDeviation(), kOfAllowed);
 }
 
-std::vector<Kind> kindsFor(Rows rows) {
-    return {{"metal", makeMetal, rows}, {"glass", makeGlass, rows}, {"coat", makeCoat, rows}};
+std::vector<Kind> kindsFor(Rows (*rowsOfScene)(std::size_t)) {
+    return {{"metal", makeMetal, rowsOfScene(0)},
+            {"glass", makeGlass, rowsOfScene(1)},
+            {"coat", makeCoat, rowsOfScene(2)}};
 }
-INSTANTIATE_TEST_SUITE_P(All, RoughnessSlow, testing::ValuesIn(kindsFor(Rows::OfTheTool)),
+INSTANTIATE_TEST_SUITE_P(Day, RoughnessSlow, testing::ValuesIn(kindsFor(halfOfADay)),
                          ByParameter());
-INSTANTIATE_TEST_SUITE_P(Night, RoughnessSlow, testing::ValuesIn(kindsFor(Rows::OfTests)),
+INSTANTIATE_TEST_SUITE_P(Night, RoughnessSlow, testing::ValuesIn(kindsFor(halfOfANight)),
+                         ByParameter());
+INSTANTIATE_TEST_SUITE_P(NightOfTests, RoughnessSlow,
+                         testing::ValuesIn(kindsFor([](std::size_t) { return Rows::OfTests; })),
                          ByParameter());
 
 }  // namespace

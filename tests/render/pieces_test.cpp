@@ -137,7 +137,7 @@ TEST_F(RenderKillsNight, leaveNothingToBeSeenByAnyRow) {
     for (const std::string& method : names) killAndGoOn(method, each, 7);
 }
 
-TEST_F(RenderPieces, anInterruptSavesTheCheckpoint) {
+TEST_F(RenderKills, anInterruptSavesTheCheckpoint) {
     for (const char* method : {"bpt", "tsrbpt"}) {
         SCOPED_TRACE(method);
         // What tsrbpt saves are whole blocks: there is one by then on a busy machine as well.
@@ -267,7 +267,7 @@ TEST_F(RenderPieces, aFullDiskCostsTheNewCheckpointAndNothingElse) {
 
 /// A save takes long then: the render goes on beside it, and a kill in its middle leaves the
 /// last file.
-TEST_F(RenderPieces, aSlowDiskCostsNeitherPictureNorCheckpoint) {
+TEST_F(RenderKills, onASlowDiskCostNeitherPictureNorCheckpoint) {
     if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer must be loaded first";
     const auto command = [&](const std::string& more) {
         return quick("bpt", "--quiet --width 64 --height 48 --block-iterations 8 " + more);

@@ -86,7 +86,7 @@ constexpr std::array<const char*, 3> kScenes = {"cornell-box", "kitchen-glass",
 
 std::string onScene(const char* scene, const std::string& method) {
     return std::string(LACUNA_SCENES) + "/" + scene +
-           ".glb -o @out.exr --width 96 --height 54 --iterations 4 --method " + method +
+           ".glb -o @out.exr --width 64 --height 36 --iterations 4 --method " + method +
            preparing(method);
 }
 

@@ -365,8 +365,10 @@ TEST_F(TrainTool, TrainingLooksThroughTheChosenCamera) {
     EXPECT_EQ(hashes.size(), 2u);  // the first is the default
 }
 
+using TrainToolInterrupt = TrainTool;
+
 /// What --prepare makes is not kept half made, and no picture is made without it.
-TEST_F(TrainTool, InterruptWhilePreparingPromisesNothing) {
+TEST_F(TrainToolInterrupt, WhilePreparingPromisesNothing) {
     const Outcome o = runAndSignal(
         "@room.gltf -o @out.exr --method spcbpt --prepare --cache @cache "
         "--set train.light_paths=1000000000 --set train.paths=1000 --set train.subspaces=10",
@@ -378,7 +380,7 @@ TEST_F(TrainTool, InterruptWhilePreparingPromisesNothing) {
     EXPECT_FALSE(exists("out.exr"));
 }
 
-TEST_F(TrainTool, InterruptWritesNothing) {
+TEST_F(TrainToolInterrupt, WritesNothing) {
     const Outcome o = runAndSignal(
         "@room.gltf --cache @cache --light-paths 1000000000 --paths 1000 "
         "--subspaces 10",
