@@ -53,7 +53,8 @@ std::string methodHelp(const MethodRow& row) {
     }
     if (t.hits && t.connects && t.refractions) {
         text +=
-            "\n  refractions    smooth glass between a lamp or the sky and an eye vertex, and "
+            "\n  refractions    smooth or nearly smooth glass between a lamp or the sky and an eye "
+            "vertex, and "
             "mirrors where "
             "nothing else joins the path";
     }

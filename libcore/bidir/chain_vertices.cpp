@@ -87,10 +87,19 @@ std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& 
                                         const PathVertex& y0, Subpath eye, RayTally& tally,
                                         std::vector<PathVertex>& light, FullPath& path) {
     const PathVertex& z = eye.back();
-    const BsdfEvaluation atEye =
-        walker.scattering(z, z.toPrevious, Vec3(found.chain.firstDirection()));
     light.assign(1, y0);
-    const float pdfWToEye = appendChain(walker, found.chain, light);
+    float pdfWToEye = appendChain(walker, found.chain, light);
+    Vec3 toChain(found.chain.firstDirection());
+    PathVertex& last = light.back();
+    if (!isDelta(last.event)) {
+        // A narrow lobe: by the edge as other strategies see it, between its ends in float.
+        toChain = edgeBetween(z, last).direction;
+        const BsdfEvaluation e = walker.scattering(last, -toChain, last.toPrevious);
+        last.scatter = e.f;
+        light[light.size() - 2].pdfReverseA = e.pdfWToLight * last.toPreviousFactor;
+        pdfWToEye = e.pdfWToEye;
+    }
+    const BsdfEvaluation atEye = walker.scattering(z, z.toPrevious, toChain);
     const Rgb contribution = broughtBy(walker, found, light, z, atEye.f);
     if (isBlack(contribution) || !isOpen(walker, light, z, tally)) return std::nullopt;
     const Closed closed = closeRefraction(walker, light, pdfWToEye, eye, atEye, contribution, path);

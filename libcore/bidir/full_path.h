@@ -17,6 +17,14 @@ namespace lacuna {
 /// Longest path in edges that can be asked for.
 inline constexpr int kMaxEdges = 254;
 
+/// How many times as likely next event through glass or along known ways makes a path as an eye walk does
+/// without roulette, s = 0; zero where it cannot (refracted_lamps.h, known_ways.h). To a light that no eye walk
+/// hits: as one does that would, if its density at x_0 were that of FullPath::eyePdfA.
+struct OverChain {
+    double ratio = 0.0;
+    int vertices = 0;  ///< of the chain
+};
+
 /// All arrays by vertex, x_0 first; valid up to `edges`. Filled while a path is closed (close.h).
 struct FullPath {
     template <class T>
@@ -35,9 +43,7 @@ struct FullPath {
     bool hittable = false;            ///< an eye walk can run into this light
     bool splattable = true;           ///< k = 1 under a punctual light is not splatted
     std::span<const Rgb> absorption;  ///< of the scene, by material (absorption.h)
-    /// How many times as likely next event through smooth glass or along known ways makes this path as an
-    /// eye walk does without roulette, s = 0; zero where it cannot (refracted_lamps.h, known_ways.h).
-    double refracted = 0.0;
+    OverChain refracted;
     /// How many of the first (last) edges the light's (the eye's) walk made.
     int lightEdges = 0, eyeEdges = 0;
     /// Merges: what the light's walk has in the place of its last vertex, x_i with i = lightEdges;

@@ -75,13 +75,15 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
         if (int(found.chain.size()) > left) return;
         auto event = closeNextEvent(walker_, found, y0, eye, tally, light, path);
         if (!event) return;
-        if (counts.refractedLamps && counts.refractedLamps->ratioOf(path, tally) > 0.0) return;
+        if (counts.refractedLamps && counts.refractedLamps->ratioOf(path, tally).ratio > 0.0)
+            return;
         const std::optional<Known> known =
             isUsual ? Known{found, true, 1.0}
                     : knownOf(path, found.chain.size(), query, ways, tally);
         if (!known || known->isUsual != isUsual) return;
         event->closed.contribution *= float(1.0 / (samples * known->pmf));
-        path.refracted = samples * densityOf(*known, y0) / event->eyePdfW;
+        path.refracted = {samples * densityOf(*known, y0) / event->eyePdfW,
+                          int(found.chain.size())};
         deliver(event->closed);
     };
     const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
@@ -134,12 +136,12 @@ double KnownWays::densityOf(const Known& known, const PathVertex& y0) const {
     return densityOfNextEvent(walker_, known.found, y0) * known.pmf;
 }
 
-double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
-                          RayTally& tally) const {
-    if (!path.hittable) return 0.0;
+OverChain KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
+                             RayTally& tally) const {
+    if (!path.hittable) return {};
     const auto count = std::size_t(path.deltasBehindLight());
-    if (count == 0 || count > Chain::kMost) return 0.0;
-    if (!SpecularChains::begin(path, count + 1, counts)) return 0.0;
+    if (count == 0 || count > Chain::kMost) return {};
+    if (!SpecularChains::begin(path, count + 1, counts)) return {};
     const PathVertex &z = *path.vertex[count + 1], &y0 = *path.vertex[0];
     const Vec3 toChain = -path.directionOf(int(count)), toEye = path.directionOf(int(count) + 1);
     // Where pixels share walks, z's own walk may have come from elsewhere.
@@ -147,18 +149,19 @@ double KnownWays::ratioOf(const FullPath& path, const TechniqueCounts& counts,
     const WaysNearby ways = seeds_->nearOfLamps(z.position, side);
     const double samples = mostSamples(path.orderOf(int(count) + 1)) * shareOfSamples(ways) *
                            walker_.seenSamples(y0, z);
-    if (!(samples > 0.0)) return 0.0;
+    if (!(samples > 0.0)) return {};
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
-    if (!(eyePdfW > 0.0)) return 0.0;
+    if (!(eyePdfW > 0.0)) return {};
     const std::optional<Known> known = knownOf(path, count, queryOf(z, side, y0), ways, tally);
-    return known ? samples * densityOf(*known, y0) / eyePdfW : 0.0;
+    if (!known) return {};
+    return {samples * densityOf(*known, y0) / eyePdfW, int(count)};
 }
 
-double refractedRatioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally,
-                        bool anew) {
-    const double ratio =
-        counts.refractedLamps ? counts.refractedLamps->ratioOf(path, tally, anew) : 0.0;
-    if (ratio > 0.0 || !counts.knownWays) return ratio;
+OverChain refractedRatioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally,
+                           bool anew) {
+    OverChain over;
+    if (counts.refractedLamps) over = counts.refractedLamps->ratioOf(path, tally, anew);
+    if (over.ratio > 0.0 || !counts.knownWays) return over;
     return counts.knownWays->ratioOf(path, counts, tally);
 }
 

@@ -31,7 +31,7 @@ class KnownWays {
 
     /// FullPath::refracted of a path that a walk made which ran into the light, and of which next event
     /// through glass knows nothing.
-    double ratioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally) const;
+    OverChain ratioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally) const;
 
   private:
     // n(z), the expected number of samples at an eye vertex, is the product of these.
@@ -54,7 +54,7 @@ class KnownWays {
 
 /// FullPath::refracted of a path that neither next event through glass made nor next event along known
 /// ways. `anew` as in RefractedLamps::ratioOf.
-double refractedRatioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally,
-                        bool anew = false);
+OverChain refractedRatioOf(const FullPath& path, const TechniqueCounts& counts, RayTally& tally,
+                           bool anew = false);
 
 }  // namespace lacuna

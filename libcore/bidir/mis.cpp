@@ -79,12 +79,12 @@ double effectiveCount(const FullPath& path, const TechniqueCounts& counts, int t
 }
 
 double refractedSamples(const FullPath& path, const TechniqueCounts& counts) {
-    if (path.refracted == 0.0) return 0.0;
-    double survival = path.eyeRoulette(0, counts.rouletteDepth);
-    for (int i = 1; path.delta[std::size_t(i)]; ++i) {
+    if (path.refracted.ratio == 0.0) return 0.0;
+    double survival = 1.0;
+    for (int i = 0; i <= path.refracted.vertices; ++i) {
         survival *= path.eyeRoulette(i, counts.rouletteDepth);
     }
-    return path.refracted / survival;
+    return path.refracted.ratio / survival;
 }
 
 namespace {

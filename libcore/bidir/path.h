@@ -55,7 +55,7 @@ struct PathVertex {
     std::uint32_t region =
         kNone;  ///< of the guide that walks follow here; kNone: none (walk_guide.h)
     std::uint32_t object = kNone;  ///< Surface only: the scene's
-    /// Light subpaths, at the first vertex behind nothing but smooth glass: the density of next event
+    /// Light subpaths, at the first vertex behind nothing but glass, smooth or nearly so: the density of next event
     /// through that glass, per what an eye walk's direction has from here; zero where it would not find
     /// this way (refracted_lamps.h).
     float throughGlass = 0;

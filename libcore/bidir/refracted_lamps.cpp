@@ -17,7 +17,33 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
     return {{z.position, z.ng, {}}, {y0.position, y0.infinite()}, Chain::kMost};
 }
 
+bool hasFacets(const Chain& chain) {
+    bool any = false;
+    for (std::size_t i = 0; i < chain.size(); ++i) any |= !isDelta(chain[i].event.event);
+    return any;
+}
+
 }  // namespace
+
+/// By the chain's vertices; those of smooth glass have none.
+class RefractedLamps::Facets {
+  public:
+    /// A path's, from its light's end.
+    void add(const FacetSlope& facet) { facets_[Chain::kMost - ++size_] = facet; }
+    void draw(std::size_t count, Rng& rng) {
+        for (size_ = 0; size_ < count;) {
+            const double u = rng.uniformDouble();
+            add(sampleFacet(u, rng.uniformDouble()));
+        }
+    }
+    std::size_t size() const { return size_; }
+    /// From the eye's.
+    std::span<const FacetSlope> inOrder() const { return std::span(facets_).last(size_); }
+
+  private:
+    std::array<FacetSlope, Chain::kMost> facets_;
+    std::size_t size_ = 0;
+};
 
 /// Of deep vertices there are many, and each carries little.
 double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
@@ -79,6 +105,23 @@ std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& no
     return way ? out(ways, *way, z, y0, tally) : std::nullopt;
 }
 
+/// The chain as its facets make it; by the same face out of the body around z.
+std::optional<RefractedLamps::Joined> RefractedLamps::turned(const Joined& smooth,
+                                                             const Facets& facets,
+                                                             const PathVertex& z,
+                                                             const PathVertex& y0,
+                                                             RayTally& tally) const {
+    const Chain& chain = smooth.found.chain;
+    if (!hasFacets(chain)) return smooth;
+    auto found = solver_.withFacets(queryOf(z, y0), smooth.found, facets.inOrder(), tally);
+    if (!found) return std::nullopt;
+    const GlassBodies::WaysOut ways = glass_->bodies().waysOut(z.position, queryOf(z, y0).target);
+    if (ways.through(found->chain[0].point.ng) != ways.through(chain[0].point.ng)) {
+        return std::nullopt;
+    }
+    return Joined{*found, smooth.pmf};
+}
+
 /// p(y_0) and the chain's pmf, likewise.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
                                  const Joined& joined) const {
@@ -87,54 +130,84 @@ double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
 
 /// That of a path through so many refractions, `last` the one next to z.
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
-                                      const PathVertex& last, std::size_t vertices,
+                                      const PathVertex& last, const Facets& facets,
                                       const Vec3& toChain, RayTally& tally) const {
     const double seenSamples = walker_.seenSamples(y0, z);
     if (!(seenSamples > 0.0)) return 0.0;
-    const auto joined = betweenOver(last.ng, z, y0, tally);
-    if (!joined || joined->found.chain.size() != vertices) return 0.0;
+    const auto smooth = betweenOver(last.ng, z, y0, tally);
+    if (!smooth || smooth->found.chain.size() != facets.size()) return 0.0;
+    const auto joined = turned(*smooth, facets, z, y0, tally);
+    if (!joined) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
     if (!solver_.isAlong(joined->found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
     return densityAt(y0, seenSamples, *joined);
 }
 
-bool RefractedLamps::isGlass(const PathVertex& v) const {
-    return v.event == ScatterEvent::DeltaTransmission &&
-           stopsAllRays(walker_.scene().description().materials[v.material]);
+/// Whether a path that comes and goes this way is refracted at v, by a smooth surface or by a facet.
+bool RefractedLamps::refracts(const PathVertex& v, bool delta, const Vec3& toEye,
+                              const Vec3& toLight) const {
+    if (v.kind != VertexKind::Surface) return false;
+    const Material& material = walker_.scene().description().materials[v.material];
+    if (delta) return v.event == ScatterEvent::DeltaTransmission && stopsAllRays(material);
+    return glass_->hasFacets() && v.bsdf.refractsNarrowly() && mayBeNarrowGlass(material) &&
+           stopsAllRays(material) && dot(toEye, v.ng) * dot(toLight, v.ng) < 0.0f;
+}
+
+/// Empty where it is not.
+std::optional<FacetSlope> RefractedLamps::facetAt(const PathVertex& v, bool delta,
+                                                  const Vec3& toEye, const Vec3& toLight) const {
+    if (!refracts(v, delta, toEye, toLight)) return std::nullopt;
+    return delta ? FacetSlope{} : facetBetween(v.bsdf, toEye, toLight);
+}
+
+/// Lights without a size have it only where a facet comes first behind them: over smooth surfaces alone their light
+/// is left to searches for chains, or missing.
+bool RefractedLamps::mayReach(std::uint32_t light, bool byFacet) const {
+    return byFacet || isHittable(walker_.lights().kind(light));
 }
 
 void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
-    if (light.empty() || !isHittable(walker_.lights().kind(light[0].light))) return;
+    if (light.size() < 2 || !mayReach(light[0].light, !isDelta(light[1].event))) return;
     // A connection may end at a vertex where the walk itself went on through a layer of glass.
+    Facets facets;
     for (std::size_t last = 1; last + 1 < light.size() && last <= Chain::kMost; ++last) {
-        if (!isGlass(light[last])) return;
+        const PathVertex& v = light[last];
         PathVertex& z = light[last + 1];
+        const auto facet = facetAt(v, isDelta(v.event), -z.toPrevious, v.toPrevious);
+        if (!facet) return;
+        facets.add(*facet);
         if (!z.connectable() || !mayBring(z)) continue;
-        z.throughGlass = float(densityOfChain(z, light[0], light[last], last, z.toPrevious, tally));
+        z.throughGlass = float(densityOfChain(z, light[0], v, facets, z.toPrevious, tally));
     }
 }
 
-double RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew) const {
-    if (!path.hittable) return 0.0;
+OverChain RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew) const {
+    if (path.edges < 2 || !mayReach(path.vertex[0]->light, !path.delta[1])) return {};
+    Facets facets;
     std::size_t count = 0;
-    while (int(count) + 1 < path.edges && path.delta[count + 1] &&
-           isGlass(*path.vertex[count + 1])) {
-        ++count;
+    for (; int(count) + 1 < path.edges; ++count) {
+        const std::size_t i = count + 1;
+        const Vec3 toEye = path.directionOf(int(i)), toLight = -path.directionOf(int(i) - 1);
+        if (!refracts(*path.vertex[i], path.delta[i], toEye, toLight)) break;
+        const auto facet = facetAt(*path.vertex[i], path.delta[i], toEye, toLight);
+        if (!facet || count == Chain::kMost) return {};
+        facets.add(*facet);
     }
     const bool ends = int(count) + 1 == path.edges || path.delta[count + 1];
-    if (count == 0 || count > Chain::kMost || ends) return 0.0;
+    if (count == 0 || ends) return {};
     const Vec3 toChain = -path.directionOf(int(count));
     const PathVertex &z = *path.vertex[count + 1], &end = path.lightsEnd(int(count));
     const double density =
         !anew && path.lightEdges > int(count)
             ? double(end.throughGlass)
-            : densityOfChain(end, *path.vertex[0], *path.vertex[count], count, toChain, tally);
-    if (!(density > 0.0)) return 0.0;
+            : densityOfChain(end, *path.vertex[0], *path.vertex[count], facets, toChain, tally);
+    if (!(density > 0.0)) return {};
     const Vec3 toEye = path.directionOf(int(count) + 1);
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
     const double samples = samplesAt(end, path.orderOf(int(count) + 1));
-    return eyePdfW > 0.0 ? samples * density / eyePdfW : 0.0;
+    if (!(eyePdfW > 0.0)) return {};
+    return {samples * density / eyePdfW, int(count)};
 }
 
 std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& tally,
@@ -147,13 +220,28 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     PathVertex y0;
     const double seenSamples = walker_.sampleSeenLight(z, rng, y0);
     const double samples = expected * seenSamples;
-    if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return std::nullopt;
-    const auto joined = drawBetween(z, y0, rng.uniformDouble(), tally);
-    if (!joined || int(joined->found.chain.size()) > left) return std::nullopt;
+    if (!(samples > 0.0) || !mayReach(y0.light, glass_->hasFacets())) return std::nullopt;
+    const auto smooth = drawBetween(z, y0, rng.uniformDouble(), tally);
+    if (!smooth || int(smooth->found.chain.size()) > left) return std::nullopt;
+    Facets facets;
+    if (glass_->hasFacets()) facets.draw(smooth->found.chain.size(), rng);
+    const auto joined = turned(*smooth, facets, z, y0, tally);
+    if (!joined) return std::nullopt;
+    const Chain& chain = joined->found.chain;
+    if (!mayReach(y0.light, !isDelta(chain[chain.size() - 1].event.event))) return std::nullopt;
+    // What is refracted at z itself is a longer chain's.
+    if (refracts(z, false, z.toPrevious, Vec3(chain.firstDirection()))) return std::nullopt;
     auto event = closeNextEvent(walker_, joined->found, y0, eye, tally, light, path);
     if (!event) return std::nullopt;
     event->closed.contribution *= float(1.0 / (samples * joined->pmf));
-    path.refracted = expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW;
+    if (hasFacets(chain)) {
+        // As other techniques know it: by facets from the directions of the path, in float.
+        path.refracted = ratioOf(path, tally, true);
+        if (!(path.refracted.ratio > 0.0)) return std::nullopt;
+    } else {
+        path.refracted = {expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW,
+                          int(chain.size())};
+    }
     return event->closed;
 }
 

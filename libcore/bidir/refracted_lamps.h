@@ -1,7 +1,7 @@
-// Next event through smooth glass [Hanika15]: at an eye vertex a point of a lamp or of the sky is drawn,
-// and joined over the one chain of refractions that the straight ray leads to. Unlike other specular
-// chains that one is a function of its ends, so that its density is known and other techniques share
-// their paths with it by weights. (theory.md, "Next event through glass")
+// Next event through glass [Hanika15]: at an eye vertex a point of a lamp or of the sky is drawn, and joined
+// over the one chain of refractions that the straight ray leads to. Where glass is nearly smooth, the facets that
+// refract are drawn too. Unlike other specular chains that one is a function of its ends and facets, so that its
+// density is known and other techniques share their paths with it by weights. (theory.md, "Next event through glass")
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ class RefractedLamps {
 
     /// FullPath::refracted of a path that another technique made. What its light subpath knows is not
     /// looked up again, unless `anew`.
-    double ratioOf(const FullPath& path, RayTally& tally, bool anew = false) const;
+    OverChain ratioOf(const FullPath& path, RayTally& tally, bool anew = false) const;
 
     /// Whether there may be anything to sample at z: mostly, in most scenes, there is not.
     bool mayBring(const PathVertex& z) const {
@@ -46,7 +46,12 @@ class RefractedLamps {
         FoundChain found;
         double pmf;  // of this one of all chains between the two
     };
-    bool isGlass(const PathVertex& v) const;
+    /// The facets at a path's refractions.
+    class Facets;
+    bool mayReach(std::uint32_t light, bool byFacet) const;
+    bool refracts(const PathVertex& v, bool delta, const Vec3& toEye, const Vec3& toLight) const;
+    std::optional<FacetSlope> facetAt(const PathVertex& v, bool delta, const Vec3& toEye,
+                                      const Vec3& toLight) const;
     std::optional<Joined> drawBetween(const PathVertex& z, const PathVertex& y0, double u,
                                       RayTally& tally) const;
     std::optional<Joined> betweenOver(const Vec3& normal, const PathVertex& z, const PathVertex& y0,
@@ -55,9 +60,11 @@ class RefractedLamps {
                                    RayTally& tally) const;
     std::optional<Joined> out(const GlassBodies::WaysOut& ways, const GlassBodies::WayOut& way,
                               const PathVertex& z, const PathVertex& y0, RayTally& tally) const;
+    std::optional<Joined> turned(const Joined& smooth, const Facets& facets, const PathVertex& z,
+                                 const PathVertex& y0, RayTally& tally) const;
     double densityAt(const PathVertex& y0, double seenSamples, const Joined& joined) const;
     double densityOfChain(const PathVertex& z, const PathVertex& y0, const PathVertex& last,
-                          std::size_t vertices, const Vec3& toChain, RayTally& tally) const;
+                          const Facets& facets, const Vec3& toChain, RayTally& tally) const;
 
     const Walker& walker_;
     ChainSolver solver_;

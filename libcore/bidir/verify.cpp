@@ -234,8 +234,9 @@ class Products {
     /// log p of next event through glass: an eye walk's, but that the chain is a function of its ends.
     double logRefraction() const {
         RayTally ignored;
-        double sum = logOf(refractedRatioOf(path_, counts_, ignored, true)) + logDensities(0, 0);
-        for (int i = 0; i == 0 || !smooth(i); ++i) sum -= logOf(eyeRoulette(i));
+        const OverChain over = refractedRatioOf(path_, counts_, ignored, true);
+        double sum = logOf(over.ratio) + logDensities(0, 0);
+        for (int i = 0; i <= over.vertices; ++i) sum -= logOf(eyeRoulette(i));
         return sum;
     }
 

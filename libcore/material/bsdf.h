@@ -127,6 +127,8 @@ class Bsdf {
     /// base (a smooth layer merely gets its mean reflectance faster from it). A layer without a
     /// table of its own takes that of a larger index. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
+    /// Whether lobes of this roughness are narrow.
+    static bool isNarrow(float roughness) { return roughness * roughness < kNarrowAlpha; }
     /// The roughness that a surface has across its grain, where it is smoothest.
     static float roughnessOf(float roughness, float anisotropy);
     /// Index of the layer that reflects, along the normal, what `ior` does times the largest
@@ -196,6 +198,13 @@ class Bsdf {
     Rgb diffusePart(const Vec3& toEye, const Vec3& toLight) const;
     /// Whether there is no lobe that is wide beside others of the same surface.
     bool isNarrow() const { return !has(kWide) && alpha_ < kNarrowAlpha; }
+    /// Whether it is nearly smooth glass: what it transmits goes through one narrow lobe, the same all around
+    /// the normal.
+    bool refractsNarrowly() const {
+        return isNarrow() && has(kRoughGlass) && !has(kBrushed | kOwnCoatNormal);
+    }
+    /// alpha of that lobe.
+    float narrowAlpha() const { return alpha_; }
     bool isBlack() const { return !has(kWide | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
     /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
     float survivalAlbedo() const;

@@ -113,6 +113,18 @@ bool mayBeSmoothGlass(const Material& m) {
            (mayPassSmoothly(m) && !m.without.has(LobeKind::SmoothThinTransmission));
 }
 
+bool mayBeNarrowGlass(const Material& m) {
+    const bool mayScatterWidely = mayBeDiffuse(m) || mayTransmitDiffusely(m) || hasSheen(m);
+    return ((mayRefractRoughly(m) && !m.without.has(LobeKind::RoughRefraction)) ||
+            (mayPassRoughly(m) && !m.without.has(LobeKind::RoughThinTransmission))) &&
+           !m.metallicRoughnessTexture && Bsdf::isNarrow(m.roughness) && m.anisotropy == 0.0f &&
+           !mayScatterWidely && !hasOwnClearcoatNormal(m);
+}
+
+bool mayBeClearGlass(const Material& m) {
+    return (mayBeSmoothGlass(m) || mayBeNarrowGlass(m)) && stopsAllRays(m);
+}
+
 bool mayBeSpecular(const Material& m) {
     return (mayBeMirror(m) && !m.without.has(LobeKind::Mirror)) || mayBeSmoothGlass(m);
 }

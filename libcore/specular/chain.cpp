@@ -14,16 +14,16 @@ std::array<Vec3d, 2> across(const Vec3d& n) {
 }
 
 /// A place in space, and its change by the two parameters.
-struct Moving {
+struct MovingPlace {
     Vec3d at;
     std::array<Vec3d, 2> by;
 };
 
 /// Where the ray meets the plane of a triangle.
-Moving meet(const MovingRay& ray, const SurfaceShape& shape) {
+MovingPlace meet(const MovingRay& ray, const SurfaceShape& shape) {
     const double towards = dot(ray.direction, shape.ng);
     const double t = dot(shape.corners[0] - ray.origin, shape.ng) / towards;
-    Moving meeting{ray.origin + ray.direction * t, {}};
+    MovingPlace meeting{ray.origin + ray.direction * t, {}};
     for (std::size_t i = 0; i < 2; ++i) {
         const Vec3d moved = ray.originBy[i] + ray.directionBy[i] * t;
         meeting.by[i] = moved - ray.direction * (dot(moved, shape.ng) / towards);
@@ -32,7 +32,7 @@ Moving meet(const MovingRay& ray, const SurfaceShape& shape) {
 }
 
 /// The unit shading normal at a point of the triangle's plane.
-Moving normalAt(const SurfaceShape& shape, const Moving& point) {
+MovingNormal normalAt(const SurfaceShape& shape, const MovingPlace& point) {
     const auto& [c0, c1, c2] = shape.corners;
     const auto& [n0, n1, n2] = shape.normals;
     const Vec3d u = c1 - c0, v = c2 - c0, turnU = n1 - n0, turnV = n2 - n0;
@@ -46,7 +46,7 @@ Moving normalAt(const SurfaceShape& shape, const Moving& point) {
     };
     const Vec3d sum = n0 + across(point.at - c0);
     const double scale = 1.0 / length(sum);
-    Moving normal{sum * scale, {}};
+    MovingNormal normal{sum * scale, {}};
     for (std::size_t i = 0; i < 2; ++i) {
         const Vec3d moved = across(point.by[i]) * scale;
         normal.by[i] = moved - normal.at * dot(normal.at, moved);
@@ -54,8 +54,25 @@ Moving normalAt(const SurfaceShape& shape, const Moving& point) {
     return normal;
 }
 
+/// The directions alone.
+MovingRay mirroredBy(const MovingNormal& normal, const MovingRay& ray) {
+    MovingRay mirrored = ray;
+    const double along = dot(ray.direction, normal.at);
+    mirrored.direction = ray.direction - normal.at * (2.0 * along);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double alongBy =
+            dot(ray.directionBy[i], normal.at) + dot(ray.direction, normal.by[i]);
+        mirrored.directionBy[i] =
+            ray.directionBy[i] - normal.at * (2.0 * alongBy) - normal.by[i] * (2.0 * along);
+    }
+    return mirrored;
+}
+
 bool isSpecular(const Bsdf& bsdf) {
     return bsdf.has(ScatterEvent::DeltaReflection) || bsdf.has(ScatterEvent::DeltaTransmission);
+}
+bool hasEvent(const Bsdf& bsdf, ScatterEvent event) {
+    return isDelta(event) ? bsdf.has(event) : bsdf.refractsNarrowly();
 }
 
 }  // namespace
@@ -68,34 +85,42 @@ MovingRay MovingRay::parallel(const Vec3d& origin, const Vec3d& direction) {
     return {origin, direction, across(direction), {}};
 }
 
-std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event) const {
+std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event,
+                                         const FacetSlope& facet) const {
     const auto& [shape, bsdf, isClearcoat, stopped] = layer;
-    if (!bsdf.has(event.event)) return std::nullopt;
+    if (!hasEvent(bsdf, event.event)) return std::nullopt;
+    const bool byFacet = !isDelta(event.event);
     const Vec3d& d = last_.direction;
     const double side = dot(d, shape.ng) < 0.0 ? 1.0 : -1.0;
-    const Moving at = meet(last_, shape);
-    Moving normal{shape.ng, {}};
+    const MovingPlace at = meet(last_, shape);
+    MovingNormal normal{shape.ng, {}};
     if (!event.aboutNg) normal = normalAt(shape, at);
+    const MovingNormal shading = normal;
+    if (byFacet) normal = facetAbout(shading, facet, double(bsdf.narrowAlpha()));
     const Vec3d n = normal.at * side;
     const double cosine = -dot(d, n);
     if (!(cosine >= double(kMinCosine))) return std::nullopt;
 
     Step step;
     step.event = event;
+    step.facet = facet;
     step.out = {at.at, d, at.by, last_.directionBy};
     const bool straight =
         event.event == ScatterEvent::DeltaTransmission && !bsdf.bends();  // about either normal
     const float aboutNg = bsdf.shareAboutNg(Vec3(-d));
-    if (!straight && (event.aboutNg ? aboutNg <= 0.0f : aboutNg >= 1.0f)) return std::nullopt;
-    const bool transmits = event.event == ScatterEvent::DeltaTransmission;
+    const bool isSeen = straight || byFacet || (event.aboutNg ? aboutNg > 0.0f : aboutNg < 1.0f);
+    if (!isSeen) return std::nullopt;
+    const bool transmits = event.event != ScatterEvent::DeltaReflection;
+    const bool bends = transmits && bsdf.bends();
+    double transmitted = 1.0, q = 2.0 * cosine;  // cosine behind the surface; the change along n
     if (!straight) {
         // d + q n with q a function of the cosine [Igehy99 eq 15, 18].
-        double scale = 1.0, q = 2.0 * cosine, qByCosine = 2.0;
-        if (transmits) {
+        double scale = 1.0, qByCosine = 2.0;
+        if (bends) {
             scale = 1.0 / double(bsdf.relativeIndex(side > 0.0));
             const double squared = 1.0 - scale * scale * (1.0 - cosine * cosine);
             if (!(squared > 0.0)) return std::nullopt;  // total internal reflection
-            const double transmitted = std::sqrt(squared);
+            transmitted = std::sqrt(squared);
             q = scale * cosine - transmitted;
             qByCosine = scale - scale * scale * cosine / transmitted;
         }
@@ -107,15 +132,21 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
                 last_.directionBy[i] * scale + n * (qByCosine * cosineBy) + nBy * q;
         }
         step.out.direction = normalize(step.out.direction);
+        // Through a sheet goes what would be reflected, mirrored by the sheet.
+        if (transmits && !bends) step.out = mirroredBy(shading, step.out);
     }
     if ((dot(step.out.direction, shape.ng) * side < 0.0) != transmits) return std::nullopt;
 
     step.toEye = Vec3(-d);
     step.toLight = Vec3(step.out.direction);
-    const BsdfEvaluation e = bsdf.evaluateDelta(step.toEye, step.toLight, event.event);
+    const BsdfEvaluation e = bsdf.evaluate(step.toEye, step.toLight, event.event);
     // f with its cosine over what a walk's generalised density has but for its pmf (bsdf.h).
     step.measure = std::fabs(dot(step.out.direction, n));
-    if (transmits) {
+    if (byFacet) {
+        // d h / d toLight [Walter07 eq 14, 17].
+        const double byLight = bends ? transmitted / (q * q) : 0.25 / cosine;
+        step.measure = pdfOfFacet(facet, double(bsdf.narrowAlpha())) * byLight;
+    } else if (transmits) {
         const double index = double(bsdf.indexOn(dot(step.out.direction, shape.ng) > 0.0));
         step.measure = straight ? std::fabs(dot(d, shape.ng)) : step.measure * index * index;
     }
@@ -135,7 +166,7 @@ bool Chain::arriveAt(const Scene& scene, const Hit& hit) {
     ChainVertex& v = vertices_[size_];
     scene.surfaceAt(hit, v.point);
     v.bsdf = scene.bsdfAt(v.point);
-    return isSpecular(v.bsdf);
+    return isSpecular(v.bsdf) || v.bsdf.refractsNarrowly();
 }
 
 /// None where it has no such layer, or one that is not specular.
@@ -147,7 +178,7 @@ std::optional<Chain::Layer> Chain::layerAt(const Scene& scene, const Hit& hit,
     const Bsdf bsdf = !two        ? v.bsdf
                       : clearcoat ? v.bsdf.clearcoatAlone()
                                   : v.bsdf.withoutClearcoat();
-    if (!isSpecular(bsdf)) return std::nullopt;
+    if (!isSpecular(bsdf) && !bsdf.refractsNarrowly()) return std::nullopt;
     return Layer{scene.shapeAt(hit, v.point, clearcoat), bsdf, clearcoat,
                  scene.shareStopped(hit, Vec3(last_.direction))};
 }
@@ -157,6 +188,7 @@ void Chain::take(const Hit& hit, const Layer& layer, const Step& step) {
     v.hit = hit;
     v.corners = layer.shape.corners;
     v.event = step.event;
+    v.facet = step.facet;
     v.toEye = step.toEye;
     v.toLight = step.toLight;
     v.through = step.through;
@@ -166,11 +198,15 @@ void Chain::take(const Hit& hit, const Layer& layer, const Step& step) {
     last_ = step.out;
 }
 
-bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event) {
+bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event, FacetSlope facet) {
     if (!arriveAt(scene, hit)) return false;
+    const std::uint32_t material = vertices_[size_].point.material;
+    if (!isDelta(event.event) && !mayBeNarrowGlass(scene.description().materials[material])) {
+        return false;
+    }
     const std::optional<Layer> layer = layerAt(scene, hit, event.onClearcoat);
     if (!layer) return false;
-    const std::optional<Step> step = stepAt(*layer, event);
+    const std::optional<Step> step = stepAt(*layer, event, facet);
     if (step) take(hit, *layer, *step);
     return step.has_value();
 }

@@ -10,6 +10,7 @@
 #include "libcore/base/vec.h"
 #include "libcore/material/bsdf.h"
 #include "libcore/scene/scene.h"
+#include "libcore/specular/narrow_glass.h"
 
 namespace lacuna {
 
@@ -26,7 +27,8 @@ struct MovingRay {
 };
 
 /// What happens at a vertex of a chain. Where the shading normal is not the geometric one, some of
-/// what an eye sees is scattered about the latter (bsdf.h): an event of its own.
+/// what an eye sees is scattered about the latter (bsdf.h): an event of its own. ScatterEvent::Smooth: a facet of
+/// nearly smooth glass refracts the ray.
 struct SpecularEvent {
     ScatterEvent event = ScatterEvent::DeltaReflection;
     bool aboutNg = false;
@@ -40,12 +42,14 @@ struct ChainVertex {
     std::array<Vec3d, 3> corners;  ///< of its triangle
     Bsdf bsdf;
     SpecularEvent event;
+    FacetSlope facet;     ///< of ScatterEvent::Smooth
     Vec3 toEye, toLight;  ///< unit
     /// Share of the radiance from toLight that leaves along toEye, with the square of the index that
     /// refraction changes it by, and with the share of rays that meet the surface at all.
     Rgb through;
     Rgb scatter;  ///< f of the event (bsdf.h)
-    /// What the event's generalised densities have beside their probabilities (bsdf.h).
+    /// What the event's generalised densities have beside their probabilities (bsdf.h); where a facet refracts, the
+    /// density of toLight if facets are drawn (pdfOfFacet).
     double measure;
 };
 
@@ -72,8 +76,8 @@ class Chain {
     Vec3 lastNormal() const { return size_ > 0 ? vertices_[size_ - 1].point.ng : Vec3{}; }
 
     /// Goes on at `hit` of last() by `event`. False, with the chain as it was, where the surface has no
-    /// such event for this ray.
-    bool extend(const Scene& scene, const Hit& hit, SpecularEvent event);
+    /// such event for this ray. `facet`: of ScatterEvent::Smooth.
+    bool extend(const Scene& scene, const Hit& hit, SpecularEvent event, FacetSlope facet = {});
     /// Likewise by one of all events that there are, each with the probability that is its share of the
     /// mean of `through`. `u` in [0, 1).
     bool extend(const Scene& scene, const Hit& hit, double u);
@@ -86,6 +90,7 @@ class Chain {
   private:
     struct Step {
         SpecularEvent event;
+        FacetSlope facet;
         MovingRay out;
         Vec3 toEye, toLight;
         Rgb through, scatter;
@@ -100,7 +105,8 @@ class Chain {
     };
     bool arriveAt(const Scene& scene, const Hit& hit);
     std::optional<Layer> layerAt(const Scene& scene, const Hit& hit, bool clearcoat) const;
-    std::optional<Step> stepAt(const Layer& layer, SpecularEvent event) const;
+    std::optional<Step> stepAt(const Layer& layer, SpecularEvent event,
+                               const FacetSlope& facet = {}) const;
     void take(const Hit& hit, const Layer& layer, const Step& step);
 
     MovingRay first_, last_;

@@ -73,15 +73,16 @@ std::optional<Hit> ChainSolver::next(const ChainStart& start, const Chain& chain
 
 /// Makes `chain`, whatever it was, that of the same events along another first ray; false where there is
 /// none. It stays on the same triangles where it can: mostly so, without tracing rays. Whether it sees its
-/// way is asked of what is found.
+/// way is asked of what is found. Facets are those of the events, or `facets`.
 bool ChainSolver::retrace(const ChainStart& start, const Vec3d& direction, const Chain& events,
-                          Chain& chain, RayTally& tally) const {
+                          Chain& chain, RayTally& tally, std::span<const FacetSlope> facets) const {
     chain.restart(MovingRay::from(Vec3d(start.position), direction));
     while (chain.size() < events.size()) {
         const ChainVertex& before = events[chain.size()];
         std::optional<Hit> hit = chain.meetAgain(before);
         if (!hit) hit = next(start, chain, tally);
-        if (!hit || !chain.extend(scene_, *hit, before.event)) return false;
+        const FacetSlope facet = facets.empty() ? before.facet : facets[chain.size()];
+        if (!hit || !chain.extend(scene_, *hit, before.event, facet)) return false;
     }
     return true;
 }
@@ -131,6 +132,12 @@ struct ChainSolver::Refracted {
     std::optional<Hit> first;  // what it meets, glass or not
 };
 
+/// Glass, smooth or as if it were.
+bool ChainSolver::refractAt(const Hit& hit, Chain& chain) const {
+    return chain.extend(scene_, hit, {.event = ScatterEvent::DeltaTransmission}) ||
+           chain.extend(scene_, hit, {.event = ScatterEvent::Smooth});
+}
+
 ChainSolver::Refracted ChainSolver::refracted(const ChainQuery& query, const Vec3d& direction,
                                               RayTally& tally) const {
     const ChainTarget& target = query.target;
@@ -143,7 +150,7 @@ ChainSolver::Refracted ChainSolver::refracted(const ChainQuery& query, const Vec
                             double(hit->distance) >= length(target.wayFrom(chain.last().origin));
         if (behind) break;
         if (chain.size() == 0) ray.first = hit;
-        if (!chain.extend(scene_, *hit, {.event = ScatterEvent::DeltaTransmission})) break;
+        if (!refractAt(*hit, chain)) break;
     }
     return ray;
 }
@@ -171,7 +178,8 @@ std::optional<Vec3d> ChainSolver::turnedToLeave(const ChainQuery& query,
     scene_.surfaceAt(*ray.first, point);
     if (!(dot(ray.chain.firstDirection(), Vec3d(point.ng)) > 0.0)) return std::nullopt;
     const Bsdf bsdf = scene_.bsdfAt(point);
-    if (!bsdf.has(ScatterEvent::DeltaTransmission) || !bsdf.bends()) return std::nullopt;
+    const bool refracts = bsdf.has(ScatterEvent::DeltaTransmission) || bsdf.refractsNarrowly();
+    if (!refracts || !bsdf.bends()) return std::nullopt;
     const Vec3d n(point.ns);
     return refractedWay(Vec3d(query.start.position),
                         {n, dot(n, Vec3d(point.position)), double(bsdf.relativeIndex(true))},
@@ -186,6 +194,16 @@ std::optional<FoundChain> ChainSolver::throughGlass(const ChainQuery& query, con
     const auto turned = turnedToLeave(query, ray);
     if (!turned) return std::nullopt;
     return solvedThroughGlass(query, refracted(query, *turned, tally).chain, tally);
+}
+
+std::optional<FoundChain> ChainSolver::withFacets(const ChainQuery& query, const FoundChain& smooth,
+                                                  std::span<const FacetSlope> facets,
+                                                  RayTally& tally) const {
+    Chain turned(smooth.chain.first());
+    if (!retrace(query.start, turned.firstDirection(), smooth.chain, turned, tally, facets)) {
+        return std::nullopt;
+    }
+    return solvedThroughGlass(query, turned, tally);
 }
 
 bool ChainSolver::isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "libcore/scene/scene.h"
 #include "libcore/specular/chain.h"
@@ -57,9 +58,12 @@ class ChainSolver {
     /// The chain of refractions alone that a ray along a unit direction leads to: by what it runs through
     /// before the target, then by Newton's method. Where that finds none and the ray leaves glass, once more
     /// by where the surface would refract it to the target. A function of all three. Through glass alone that
-    /// stops every ray.
+    /// stops every ray; what is nearly smooth refracts as if it were smooth.
     std::optional<FoundChain> throughGlass(const ChainQuery& query, const Vec3d& direction,
                                            RayTally& tally) const;
+    /// That chain once its facets are turned, one for each vertex (used where glass is nearly smooth).
+    std::optional<FoundChain> withFacets(const ChainQuery& query, const FoundChain& smooth,
+                                         std::span<const FacetSlope> facets, RayTally& tally) const;
     /// Whether a path of the same events between the same ends, which begins along a unit direction that
     /// is known but for an angle, is this chain.
     bool isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
@@ -67,9 +71,10 @@ class ChainSolver {
 
   private:
     bool retrace(const ChainStart& start, const Vec3d& direction, const Chain& events, Chain& chain,
-                 RayTally& tally) const;
+                 RayTally& tally, std::span<const FacetSlope> facets = {}) const;
     bool stopsAllRaysAlong(const Chain& chain) const;
     struct Refracted;
+    bool refractAt(const Hit& hit, Chain& chain) const;
     Refracted refracted(const ChainQuery& query, const Vec3d& direction, RayTally& tally) const;
     std::optional<FoundChain> solvedThroughGlass(const ChainQuery& query, const Chain& chain,
                                                  RayTally& tally) const;

@@ -149,7 +149,7 @@ GlassBodies::GlassBodies(const Scene& scene) : slack_(kSlack * double(scene.radi
     const std::span<const Material> materials = scene.description().materials;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const Material& material = materials[i];
-        if (!mayBeSmoothGlass(material) || material.thin || !stopsAllRays(material)) continue;
+        if (!mayBeClearGlass(material) || material.thin) continue;
         for (const std::vector<Triangle>& part : connectedParts(scene.trianglesOf(i))) {
             std::optional<Body> body = bodyOf(part, double(material.ior), slack_);
             if (body) {

@@ -6,15 +6,22 @@
 
 namespace lacuna {
 
+namespace {
+constexpr int kDivisions = 5;
+}
+
 float boxMargin(const Scene& scene) {
     constexpr float kMargin = 1e-4f;
     return kMargin * scene.radius();
 }
 
 std::vector<BoxedTriangles> glassInBoxes(const Scene& scene) {
-    constexpr int kDivisions = 5;
+    return inBoxes(scene.trianglesOf(mayBeClearGlass), kDivisions, boxMargin(scene));
+}
+
+std::vector<BoxedTriangles> facetsInBoxes(const Scene& scene) {
     return inBoxes(scene.trianglesOf([](const Material& material) {
-        return mayBeSmoothGlass(material) && stopsAllRays(material);
+        return mayBeNarrowGlass(material) && stopsAllRays(material);
     }),
                    kDivisions, boxMargin(scene));
 }

@@ -1,4 +1,4 @@
-// Where there is smooth glass, so that rays which could not meet any need not be traced.
+// Where there is smooth or nearly smooth glass, so that rays which could not meet any need not be traced.
 #pragma once
 
 #include <span>
@@ -9,9 +9,11 @@
 
 namespace lacuna {
 
-/// At most 32 boxes around the triangles of all instances whose material is smooth glass that stops all
+/// At most 32 boxes around the triangles of all instances whose material is such glass that stops all
 /// rays.
 std::vector<BoxedTriangles> glassInBoxes(const Scene& scene);
+/// Likewise those of nearly smooth glass alone.
+std::vector<BoxedTriangles> facetsInBoxes(const Scene& scene);
 
 /// How much wider boxes are than what is in them: rays leave surfaces by an offset.
 float boxMargin(const Scene& scene);

@@ -27,6 +27,29 @@ std::vector<BoxedTriangles> lampsInBoxes(const Scene& scene) {
     return inBoxes(std::move(triangles), kLampDivisions, boxMargin(scene));
 }
 
+/// Points and spots, as triangles without a size.
+std::vector<BoxedTriangles> pointsInBoxes(const Scene& scene) {
+    const Lights& lights = scene.lights();
+    std::vector<std::array<Vec3, 3>> points;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (isHittable(lights.kind(i)) || isInfinite(lights.kind(i))) continue;
+        const Vec3 at = lights.punctualPoint(i).position;
+        points.push_back({at, at, at});
+    }
+    return inBoxes(std::move(points), kLampDivisions, boxMargin(scene));
+}
+
+/// Towards suns.
+std::vector<Vec3> parallelLight(const Scene& scene) {
+    const Lights& lights = scene.lights();
+    std::vector<Vec3> directions;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (lights.kind(i) != LightKind::Directional) continue;
+        directions.push_back(lights.punctualPoint(i).position);
+    }
+    return directions;
+}
+
 /// How often to try where this share of the light comes as far as the glass. The best number of samples
 /// goes by the root of what they bring, and half of a body's surface is turned away from the lamp.
 double triesFor(double shareLit) {
@@ -46,7 +69,8 @@ double shareLit(const TrianglesByArea& glass, Rng& rng, const Shines& shines) {
 
 }  // namespace
 
-GlassShadows::GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass) {
+GlassShadows::GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass,
+                           std::span<const BoxedTriangles> facets) {
     const Environment* sky = scene.environment();
     Rng rng(0, 0, StreamKind::Refraction, ~std::uint64_t(0));
     RayTally ignored;
@@ -54,6 +78,22 @@ GlassShadows::GlassShadows(const Scene& scene, std::span<const BoxedTriangles> g
     const auto add = [&](const Box& around, const Box& lamp, bool isSky, double lit) {
         pairs.push_back({around, lamp, isSky, std::uint8_t(std::lround(triesFor(lit) / kOfCode))});
     };
+    const std::vector<BoxedTriangles> points = pointsInBoxes(scene);
+    const std::vector<Vec3> suns = parallelLight(scene);
+    for (const BoxedTriangles& part : facets) {
+        const TrianglesByArea byArea(part.triangles);
+        const auto one = [&](const auto& all) { return all[rng.below(std::uint32_t(all.size()))]; };
+        for (const BoxedTriangles& lamp : points) {
+            add(part.box, lamp.box, false, shareLit(byArea, rng, [&](Vec3 at, Vec3 normal) {
+                    return scene.visible(at, normal, one(lamp.triangles)[0], {}, RayKind::Chain,
+                                         ignored);
+                }));
+        }
+        if (suns.empty()) continue;
+        add(part.box, {}, true, shareLit(byArea, rng, [&](Vec3 at, Vec3 normal) {
+                return scene.visibleToInfinity(at, normal, one(suns), RayKind::Chain, ignored);
+            }));
+    }
     const std::vector<BoxedTriangles> lamps = lampsInBoxes(scene);
     std::vector<TrianglesByArea> lampsByArea;
     for (const BoxedTriangles& lamp : lamps) lampsByArea.emplace_back(lamp.triangles);

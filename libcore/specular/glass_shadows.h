@@ -15,10 +15,12 @@ namespace lacuna {
 
 class GlassShadows {
   public:
-    /// `glass`: glassInBoxes().
-    GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass);
+    /// `glass`: glassInBoxes(), `facets`: facetsInBoxes(). Lights without a size are brought through the latter
+    /// alone.
+    GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass,
+                 std::span<const BoxedTriangles> facets = {});
 
-    /// There is no glass, or neither a lamp with a size nor a sky.
+    /// There is no glass, or no light behind it.
     bool empty() const { return cells_.empty(); }
     /// Whether some straight way from a place of the scene to a lamp or the sky may meet glass. Not to be
     /// called when empty(), nor is the next one.

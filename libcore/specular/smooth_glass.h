@@ -1,4 +1,4 @@
-// What next event through glass knows of a scene's smooth glass: made once for all renders of it.
+// What next event through glass knows of a scene's smooth and nearly smooth glass: made once for all renders of it.
 // (theory.md, "Next event through glass")
 #pragma once
 
@@ -11,24 +11,30 @@ namespace lacuna {
 class SmoothGlass {
   public:
     /// A function of the scene.
-    explicit SmoothGlass(const Scene& scene) : SmoothGlass(scene, glassInBoxes(scene)) {}
+    explicit SmoothGlass(const Scene& scene)
+        : SmoothGlass(scene, glassInBoxes(scene), facetsInBoxes(scene)) {}
 
-    /// The scene has no lamp with a size and no sky, or no smooth glass.
+    /// The scene has no such glass, or no light that next event brings through it.
     bool empty() const { return shadows_.empty(); }
+    /// Whether some of it is nearly smooth, so that facets refract there (mayBeNarrowGlass).
+    bool hasFacets() const { return hasFacets_; }
 
     const GlassBoxes& boxes() const { return boxes_; }
     const GlassShadows& shadows() const { return shadows_; }
     const GlassBodies& bodies() const { return bodies_; }
 
   private:
-    SmoothGlass(const Scene& scene, std::span<const BoxedTriangles> glass)
+    SmoothGlass(const Scene& scene, std::span<const BoxedTriangles> glass,
+                std::span<const BoxedTriangles> facets)
         : boxes_(glass),
-          shadows_(scene, glass),
-          bodies_(shadows_.empty() ? GlassBodies() : GlassBodies(scene)) {}
+          shadows_(scene, glass, facets),
+          bodies_(shadows_.empty() ? GlassBodies() : GlassBodies(scene)),
+          hasFacets_(!facets.empty()) {}
 
     GlassBoxes boxes_;
     GlassShadows shadows_;
     GlassBodies bodies_;
+    bool hasFacets_;
 };
 
 }  // namespace lacuna

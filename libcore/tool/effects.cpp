@@ -132,13 +132,14 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
           lensRadius > 0.0 ? "the aperture is above 0" : "the aperture is 0: a pinhole");
 
     if (method) {
-        const std::vector<Effect> techniques = techniqueEffects(*method, t.rows);
+        const std::vector<Effect> techniques = techniqueEffects(*method, scene, t.rows);
         t.rows.insert(t.rows.end(), techniques.begin(), techniques.end());
     }
     return t.rows;
 }
 
-std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Effect> ofScene) {
+std::vector<Effect> techniqueEffects(const MethodRow& method, const SceneDescription& scene,
+                                     std::span<const Effect> ofScene) {
     const auto simulated = [&](std::initializer_list<const char*> names) {
         return std::ranges::any_of(ofScene, [&](const Effect& e) {
             return e.simulated && std::ranges::find(names, e.name) != names.end();
@@ -171,11 +172,15 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Ef
                   ? "lights without a size that are seen over up to six mirrors or surfaces of "
                     "smooth glass, where no connection can be; over more they are missing"
                   : "no mirror and no smooth glass");
-    const bool glass = simulated({"smooth_refraction", "smooth_thin_transmission"});
+    const bool facets = simulated({"rough_refraction", "rough_thin_transmission"}) &&
+                        std::ranges::any_of(scene.materials, mayBeNarrowGlass);
+    const bool glass = facets || simulated({"smooth_refraction", "smooth_thin_transmission"});
     const bool ways = t.knownWays && specular;
-    table.add("refractions", t.hits && t.connects && t.refractions && hittable && (glass || ways),
+    const bool reaches = (hittable && (glass || ways)) || (noSize && facets);
+    table.add("refractions", t.hits && t.connects && t.refractions && reaches,
               !t.connects ? method.name + " connects no vertices"
               : !t.hits   ? method.name + " has no technique s = 0"
+              : facets    ? "next event through up to six surfaces of smooth or nearly smooth glass"
               : !hittable ? "no lamp with a size and no sky"
               : ways      ? "next event over up to six mirrors or surfaces of smooth glass"
               : glass     ? "next event through up to six surfaces of smooth glass"

@@ -24,7 +24,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
                               const MethodRow* method);
 
 /// The rows of a method's techniques, from those of the scene.
-std::vector<Effect> techniqueEffects(const MethodRow& method, std::span<const Effect> ofScene);
+std::vector<Effect> techniqueEffects(const MethodRow& method, const SceneDescription& scene,
+                                     std::span<const Effect> ofScene);
 
 /// The table that --effects prints.
 std::string effectsText(const std::vector<Effect>& effects);

@@ -235,7 +235,7 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
 
 void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& method) {
     std::erase_if(stage.effects, [](const Effect& e) { return !e.ofScene; });
-    std::vector<Effect> rows = techniqueEffects(method, stage.effects);
+    std::vector<Effect> rows = techniqueEffects(method, stage.scene->description(), stage.effects);
     std::vector<EffectSwitch> switches = options.effectSwitches;
     std::erase_if(switches, [&](const EffectSwitch& s) {
         return std::ranges::find(rows, s.name, &Effect::name) == rows.end();

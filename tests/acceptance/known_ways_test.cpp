@@ -112,7 +112,7 @@ TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     shot.iterations = 20000;
     Sums known(shot.iterations), walks(shot.iterations);
     shot.observer = [&](const PathEvent& event) {
-        if (!(event.path.refracted > 0) || lengthOfReflectedWay(event.path) < 5) return;
+        if (!(event.path.refracted.ratio > 0) || lengthOfReflectedWay(event.path) < 5) return;
         Sums& sums = event.technique.refracts() ? known : walks;
         sums.add(event.sample.iteration, double(mean(event.contribution)) / event.weight);
     };
@@ -133,10 +133,10 @@ TEST(KnownWays, countTheSameFromBothSides) {
         double worst = 0;
         shot.observer = [&](const PathEvent& event) {
             const FullPath& path = event.path;
-            if (!(path.refracted > 0) || !isReflected(path)) return;
+            if (!(path.refracted.ratio > 0) || !isReflected(path)) return;
             RayTally ignored;
-            const double again = event.counts.knownWays->ratioOf(path, event.counts, ignored);
-            worst = std::max(worst, std::fabs(again / path.refracted - 1));
+            const double again = event.counts.knownWays->ratioOf(path, event.counts, ignored).ratio;
+            worst = std::max(worst, std::fabs(again / path.refracted.ratio - 1));
             ++(event.technique.refracts() ? own : others);
         };
         render(*scene, rowNamed(name), shot);
@@ -156,7 +156,7 @@ TEST(KnownWays, areNearlyAll) {
         if (event.technique.refracts() || !isReflected(event.path)) return;
         const double light = double(mean(event.contribution)) / event.weight;
         all += light;
-        if (event.path.refracted > 0) known += light;
+        if (event.path.refracted.ratio > 0) known += light;
     };
     render(*scene, rowNamed("pt"), shot);
     EXPECT_GT(known, 0.8 * all) << all;

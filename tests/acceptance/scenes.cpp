@@ -281,6 +281,7 @@ NamedScene behindGlass() {
     milky.transmission = 0.6f;
     milky.baseColor = Rgb(0.7f);
     b.add(box({-1.2f, 0.2f, -0.2f}, {-0.5f, 0.4f, 0.5f}, b.add(milky)));
+    b.add(box({0.5f, 0.2f, -0.2f}, {1.2f, 0.4f, 0.5f}, b.add(glass(1.3f, 0.2f))));
     b.add(quad({-0.5f, 1.8f, -0.4f}, {1, 0, 0}, {0, 0, 0.8f}, b.add(emitter({2, 3, 4}))));
     b.environment(sunnySky());
     b.add(lookAt({0.3, 1.2, 3}, {0, 0.4, 0}, 45));

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "libcore/material/fresnel.h"
+#include "libcore/material/microfacet.h"
 #include "libcore/specular/chain_search.h"
 #include "libcore/specular/chain_seeds.h"
 #include "libcore/specular/glass_boxes.h"
@@ -49,7 +51,8 @@ std::optional<Chain> again(const Scene& scene, const Chain& chain, const Vec3d& 
     while (moved.size() < chain.size()) {
         const auto hit = scene.trace(Vec3(moved.last().origin), moved.lastNormal(),
                                      Vec3(moved.last().direction), RayKind::Chain, tally);
-        if (!hit || !moved.extend(scene, *hit, chain[moved.size()].event)) return std::nullopt;
+        const ChainVertex& before = chain[moved.size()];
+        if (!hit || !moved.extend(scene, *hit, before.event, before.facet)) return std::nullopt;
         // The change of a shading normal jumps from triangle to triangle.
         const SurfacePoint& p = moved[moved.size() - 1].point;
         const SurfacePoint& q = chain[moved.size() - 1].point;
@@ -72,7 +75,12 @@ void expectDerivatives(const Scene& scene, double step, double tolerance, double
         while (chain.size() < wanted) {
             const auto hit = scene.trace(Vec3(chain.last().origin), chain.lastNormal(),
                                          Vec3(chain.last().direction), RayKind::Chain, tally);
-            if (!hit || !chain.extend(scene, *hit, rng.uniformDouble())) break;
+            if (!hit) break;
+            const FacetSlope facet = sampleFacet(rng.uniformDouble(), rng.uniformDouble());
+            if (!chain.extend(scene, *hit, rng.uniformDouble()) &&
+                !chain.extend(scene, *hit, {.event = ScatterEvent::Smooth}, facet)) {
+                break;
+            }
         }
         if (chain.size() == 0) continue;
         for (std::size_t i = 0; i < 2; ++i) {
@@ -100,6 +108,68 @@ TEST(Chain, movesAsItsDerivativesSay) {
     SceneBuilder b;
     b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f))));
     expectDerivatives(*b.build(), 1e-8, 1e-4);
+}
+
+lacuna::Material frostedPane() {
+    lacuna::Material m = pane({0.9f, 0.9f, 0.9f});
+    m.roughness = 0.3f;
+    return m;
+}
+
+TEST(Chain, movesAsItsDerivativesSayByFacets) {
+    SceneBuilder b;
+    b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f, 0.3f))));
+    expectDerivatives(*b.build(), 1e-8, 1e-4);
+    SceneBuilder sheet;
+    sheet.add(ball({0, 0, 0}, 1, sheet.add(frostedPane())));
+    expectDerivatives(*sheet.build(), 1e-8, 1e-4);
+}
+
+/// What refracts there is found again, and drawn as often as it says.
+void expectFacetsKnown(const lacuna::Material& material, double alpha) {
+    Rng rng(1, 0, StreamKind::User, 0);
+    SceneBuilder b;
+    b.add(box({-1, -1, -1}, {1, 1, 1}, b.add(material)), rotation({3, 1, 2}, 20));
+    const auto scene = b.build();
+    const double index = double(material.ior);
+    const double share = kSteepest * kSteepest / (1 + kSteepest * kSteepest);
+    double whole = 0;
+    RayTally tally;
+    int found = 0;
+    for (int n = 0; n < 2000; ++n) {
+        const FacetSlope facet = sampleFacet(rng.uniformDouble(), rng.uniformDouble());
+        // The sum of 1 / p over directions that are not too steep: their solid angle.
+        whole += 1 / pdfOfFacet(facet, alpha) / 2000;
+        EXPECT_LT(std::hypot(facet.s, facet.t), kSteepest);
+        const Vec3d target{rng.uniform() * 1.6 - 0.8, rng.uniform() * 1.6 - 0.8, 0};
+        const Vec3d origin{0.1, 0.2, 3};
+        Chain chain(MovingRay::from(origin - scene->centre(), normalize(target - origin)));
+        const auto hit = scene->trace(Vec3(chain.last().origin), chain.lastNormal(),
+                                      Vec3(chain.last().direction), RayKind::Chain, tally);
+        if (!hit || !chain.extend(*scene, *hit, {.event = ScatterEvent::Smooth}, facet)) continue;
+        const ChainVertex& v = chain[0];
+        const auto again = facetBetween(v.bsdf, v.toEye, v.toLight);
+        ASSERT_TRUE(again);
+        EXPECT_NEAR(again->s, facet.s, 1e-4 * (1 + std::fabs(facet.s)));
+        EXPECT_NEAR(again->t, facet.t, 1e-4 * (1 + std::fabs(facet.t)));
+        // An eye walk draws what it sees of the same facets, and goes through with what they transmit.
+        const double pdfW =
+            double(v.bsdf.evaluate(v.toEye, v.toLight, ScatterEvent::Smooth).pdfWToLight);
+        const Vec3d normal(v.bsdf.ns());
+        const Vec3d facing = facetAbout({normal, {}}, *again, alpha).at;
+        const double ofFacet = dot(Vec3d(v.toEye), facing), cosine = dot(Vec3d(v.toEye), normal);
+        const double seen = ggx::g1OverCosine(cosine, ggx::smithS(cosine, alpha * alpha)) *
+                            ofFacet / dot(facing, normal) * (1 - fresnelDielectric(ofFacet, index));
+        EXPECT_NEAR(v.measure * share * seen / pdfW, 1, 2e-3);
+        ++found;
+    }
+    EXPECT_GT(found, 300);
+    const double steepest = std::atan(kSteepest * alpha);
+    EXPECT_NEAR(whole / (2 * std::numbers::pi * (1 - std::cos(steepest))), 1, 0.2);
+}
+TEST(Chain, knowsItsFacets) {
+    expectFacetsKnown(glass(1.4f, 0.3f), 0.09);
+    expectFacetsKnown(frostedPane(), 0.09);
 }
 
 TEST(Chain, movesAsItsDerivativesSayInAnInstance) {
