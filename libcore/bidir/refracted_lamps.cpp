@@ -161,10 +161,10 @@ std::optional<FacetSlope> RefractedLamps::facetAt(const PathVertex& v, bool delt
     return delta ? FacetSlope{} : facetBetween(v.bsdf, toEye, toLight);
 }
 
-/// Lights without a size have it only where a facet comes first behind them: over smooth surfaces alone their light
-/// is left to searches for chains, or missing.
+/// Whether light may come from there if what is first behind it refracts by a facet, or else is smooth. Over smooth
+/// surfaces that of lights without a size is left to searches for chains, or missing.
 bool RefractedLamps::mayReach(std::uint32_t light, bool byFacet) const {
-    return byFacet || isHittable(walker_.lights().kind(light));
+    return byFacet ? glass_->hasFacets() : isHittable(walker_.lights().kind(light));
 }
 
 void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
