@@ -54,9 +54,7 @@ std::string methodHelp(const MethodRow& row) {
     if (t.hits && t.connects && t.refractions) {
         text +=
             "\n  refractions    smooth or nearly smooth glass between a lamp or the sky and an eye "
-            "vertex, and "
-            "mirrors where "
-            "nothing else joins the path";
+            "vertex, and mirrors where nothing else joins the path";
     }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {
