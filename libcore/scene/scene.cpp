@@ -84,8 +84,12 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
 
 Scene::~Scene() = default;
 
+const Material& Scene::materialAt(const Hit& hit) const {
+    return surfaces_.materialOf(baked_.objects[hit.object]);
+}
+
 float Scene::shareStopped(const Hit& hit, const Vec3& direction) const {
-    const Material& material = surfaces_.materialOf(baked_.objects[hit.object]);
+    const Material& material = materialAt(hit);
     if (stopsAllRays(material)) return 1.0f;
     if (!material.pane) return surfaces_.opacity(hit);
     SurfacePoint point;

@@ -98,6 +98,8 @@ class Scene {
     /// The share of rays along `direction`, of any length, that a surface stops: one, but where alpha
     /// or a pane lets some of them pass.
     float shareStopped(const Hit& hit, const Vec3& direction) const;
+    /// Of the object that was hit.
+    const Material& materialAt(const Hit& hit) const;
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const { return shading_.bsdfAt(point); }
     const AlbedoTables& albedoTables() const { return shading_.albedoTables(); }

@@ -199,11 +199,8 @@ void Chain::take(const Hit& hit, const Layer& layer, const Step& step) {
 }
 
 bool Chain::extend(const Scene& scene, const Hit& hit, SpecularEvent event, FacetSlope facet) {
+    if (!isDelta(event.event) && !mayBeNarrowGlass(scene.materialAt(hit))) return false;
     if (!arriveAt(scene, hit)) return false;
-    const std::uint32_t material = vertices_[size_].point.material;
-    if (!isDelta(event.event) && !mayBeNarrowGlass(scene.description().materials[material])) {
-        return false;
-    }
     const std::optional<Layer> layer = layerAt(scene, hit, event.onClearcoat);
     if (!layer) return false;
     const std::optional<Step> step = stepAt(*layer, event, facet);

@@ -134,8 +134,9 @@ struct ChainSolver::Refracted {
 
 /// Glass, smooth or as if it were.
 bool ChainSolver::refractAt(const Hit& hit, Chain& chain) const {
-    return chain.extend(scene_, hit, {.event = ScatterEvent::DeltaTransmission}) ||
-           chain.extend(scene_, hit, {.event = ScatterEvent::Smooth});
+    const bool byFacet = mayBeNarrowGlass(scene_.materialAt(hit));
+    return chain.extend(
+        scene_, hit, {.event = byFacet ? ScatterEvent::Smooth : ScatterEvent::DeltaTransmission});
 }
 
 ChainSolver::Refracted ChainSolver::refracted(const ChainQuery& query, const Vec3d& direction,
