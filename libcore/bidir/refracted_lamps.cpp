@@ -18,9 +18,10 @@ ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
 }
 
 bool hasFacets(const Chain& chain) {
-    bool any = false;
-    for (std::size_t i = 0; i < chain.size(); ++i) any |= !isDelta(chain[i].event.event);
-    return any;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        if (!isDelta(chain[i].event.event)) return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -28,8 +29,12 @@ bool hasFacets(const Chain& chain) {
 /// By the chain's vertices; those of smooth glass have none.
 class RefractedLamps::Facets {
   public:
-    /// A path's, from its light's end.
-    void add(const FacetSlope& facet) { facets_[Chain::kMost - ++size_] = facet; }
+    /// A path's that is refracted at v, from its light's end. False where the facet is too steep.
+    bool add(const PathVertex& v, bool delta, const Vec3& toEye, const Vec3& toLight) {
+        const auto facet = delta ? FacetSlope{} : facetBetween(v.bsdf, toEye, toLight);
+        if (facet) add(*facet);
+        return facet.has_value();
+    }
     void draw(std::size_t count, Rng& rng) {
         for (size_ = 0; size_ < count;) {
             const double u = rng.uniformDouble();
@@ -41,6 +46,8 @@ class RefractedLamps::Facets {
     std::span<const FacetSlope> inOrder() const { return std::span(facets_).last(size_); }
 
   private:
+    void add(const FacetSlope& facet) { facets_[Chain::kMost - ++size_] = facet; }
+
     std::array<FacetSlope, Chain::kMost> facets_;
     std::size_t size_ = 0;
 };
@@ -149,16 +156,10 @@ bool RefractedLamps::refracts(const PathVertex& v, bool delta, const Vec3& toEye
                               const Vec3& toLight) const {
     if (v.kind != VertexKind::Surface) return false;
     const Material& material = walker_.scene().description().materials[v.material];
-    if (delta) return v.event == ScatterEvent::DeltaTransmission && stopsAllRays(material);
+    if (!stopsAllRays(material)) return false;
+    if (delta) return v.event == ScatterEvent::DeltaTransmission;
     return glass_->hasFacets() && v.bsdf.refractsNarrowly() && mayBeNarrowGlass(material) &&
-           stopsAllRays(material) && dot(toEye, v.ng) * dot(toLight, v.ng) < 0.0f;
-}
-
-/// Empty where it is not.
-std::optional<FacetSlope> RefractedLamps::facetAt(const PathVertex& v, bool delta,
-                                                  const Vec3& toEye, const Vec3& toLight) const {
-    if (!refracts(v, delta, toEye, toLight)) return std::nullopt;
-    return delta ? FacetSlope{} : facetBetween(v.bsdf, toEye, toLight);
+           dot(toEye, v.ng) * dot(toLight, v.ng) < 0.0f;
 }
 
 /// Whether light may come from there if what is first behind it refracts by a facet, or else is smooth. Over smooth
@@ -174,9 +175,9 @@ void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
     for (std::size_t last = 1; last + 1 < light.size() && last <= Chain::kMost; ++last) {
         const PathVertex& v = light[last];
         PathVertex& z = light[last + 1];
-        const auto facet = facetAt(v, isDelta(v.event), -z.toPrevious, v.toPrevious);
-        if (!facet) return;
-        facets.add(*facet);
+        const Vec3 toEye = -z.toPrevious;
+        if (!refracts(v, isDelta(v.event), toEye, v.toPrevious)) return;
+        if (!facets.add(v, isDelta(v.event), toEye, v.toPrevious)) return;
         if (!z.connectable() || !mayBring(z)) continue;
         z.throughGlass = float(densityOfChain(z, light[0], v, facets, z.toPrevious, tally));
     }
@@ -190,9 +191,8 @@ OverChain RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool an
         const std::size_t i = count + 1;
         const Vec3 toEye = path.directionOf(int(i)), toLight = -path.directionOf(int(i) - 1);
         if (!refracts(*path.vertex[i], path.delta[i], toEye, toLight)) break;
-        const auto facet = facetAt(*path.vertex[i], path.delta[i], toEye, toLight);
-        if (!facet || count == Chain::kMost) return {};
-        facets.add(*facet);
+        if (count == Chain::kMost) return {};
+        if (!facets.add(*path.vertex[i], path.delta[i], toEye, toLight)) return {};
     }
     const bool ends = int(count) + 1 == path.edges || path.delta[count + 1];
     if (count == 0 || ends) return {};

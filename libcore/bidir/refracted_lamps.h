@@ -50,8 +50,6 @@ class RefractedLamps {
     class Facets;
     bool mayReach(std::uint32_t light, bool byFacet) const;
     bool refracts(const PathVertex& v, bool delta, const Vec3& toEye, const Vec3& toLight) const;
-    std::optional<FacetSlope> facetAt(const PathVertex& v, bool delta, const Vec3& toEye,
-                                      const Vec3& toLight) const;
     std::optional<Joined> drawBetween(const PathVertex& z, const PathVertex& y0, double u,
                                       RayTally& tally) const;
     std::optional<Joined> betweenOver(const Vec3& normal, const PathVertex& z, const PathVertex& y0,

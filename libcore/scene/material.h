@@ -130,7 +130,7 @@ bool mayBeSpecular(const Material& material);
 bool stopsAllRays(const Material& material);
 /// Whether rays go on straight or bent through it, scattered nowhere else.
 bool mayBeSmoothGlass(const Material& material);
-/// Whether they go on through a lobe that may be narrow, as wide everywhere on the surface (Bsdf::refractsNarrowly).
+/// Whether they go on through one narrow lobe, as wide everywhere on the surface (Bsdf::refractsNarrowly).
 bool mayBeNarrowGlass(const Material& material);
 /// Either of the two, which stops all rays: what next event goes through.
 bool mayBeClearGlass(const Material& material);

@@ -93,10 +93,9 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
     const Vec3d& d = last_.direction;
     const double side = dot(d, shape.ng) < 0.0 ? 1.0 : -1.0;
     const MovingPlace at = meet(last_, shape);
-    MovingNormal normal{shape.ng, {}};
-    if (!event.aboutNg) normal = normalAt(shape, at);
-    const MovingNormal shading = normal;
-    if (byFacet) normal = facetAbout(shading, facet, double(bsdf.narrowAlpha()));
+    const MovingNormal shading = event.aboutNg ? MovingNormal{shape.ng, {}} : normalAt(shape, at);
+    const MovingNormal normal =
+        byFacet ? facetAbout(shading, facet, double(bsdf.narrowAlpha())) : shading;
     const Vec3d n = normal.at * side;
     const double cosine = -dot(d, n);
     if (!(cosine >= double(kMinCosine))) return std::nullopt;

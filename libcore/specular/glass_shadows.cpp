@@ -78,8 +78,12 @@ GlassShadows::GlassShadows(const Scene& scene, std::span<const BoxedTriangles> g
     const auto add = [&](const Box& around, const Box& lamp, bool isSky, double lit) {
         pairs.push_back({around, lamp, isSky, std::uint8_t(std::lround(triesFor(lit) / kOfCode))});
     };
-    const std::vector<BoxedTriangles> points = pointsInBoxes(scene);
-    const std::vector<Vec3> suns = parallelLight(scene);
+    std::vector<BoxedTriangles> points;
+    std::vector<Vec3> suns;
+    if (!facets.empty()) {
+        points = pointsInBoxes(scene);
+        suns = parallelLight(scene);
+    }
     for (const BoxedTriangles& part : facets) {
         const TrianglesByArea byArea(part.triangles);
         const auto one = [&](const auto& all) { return all[rng.below(std::uint32_t(all.size()))]; };
