@@ -135,20 +135,26 @@ double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
     return densityOfNextEvent(walker_, joined.found, y0) * seenSamples * joined.pmf;
 }
 
-/// That of a path through so many refractions, `last` the one next to z.
-double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
-                                      const PathVertex& last, const Facets& facets,
-                                      const Vec3& toChain, RayTally& tally) const {
-    const double seenSamples = walker_.seenSamples(y0, z);
-    if (!(seenSamples > 0.0)) return 0.0;
-    const auto smooth = betweenOver(last.ng, z, y0, tally);
-    if (!smooth || smooth->found.chain.size() != facets.size()) return 0.0;
-    const auto joined = turned(*smooth, facets, z, y0, tally);
+/// That of a path through these refractions over the smooth chain between its ends; `last` is the one next to z.
+double RefractedLamps::densityOver(const Joined& smooth, const PathVertex& z, const PathVertex& y0,
+                                   const PathVertex& last, const Facets& facets,
+                                   const Vec3& toChain, RayTally& tally) const {
+    if (smooth.found.chain.size() != facets.size()) return 0.0;
+    const auto joined = turned(smooth, facets, z, y0, tally);
     if (!joined) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
     if (!solver_.isAlong(joined->found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
-    return densityAt(y0, seenSamples, *joined);
+    return densityAt(y0, walker_.seenSamples(y0, z), *joined);
+}
+
+/// Likewise where that chain is not known.
+double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
+                                      const PathVertex& last, const Facets& facets,
+                                      const Vec3& toChain, RayTally& tally) const {
+    if (!(walker_.seenSamples(y0, z) > 0.0)) return 0.0;
+    const auto smooth = betweenOver(last.ng, z, y0, tally);
+    return smooth ? densityOver(*smooth, z, y0, last, facets, toChain, tally) : 0.0;
 }
 
 /// Whether a path that comes and goes this way is refracted at v, by a smooth surface or by a facet.
@@ -183,31 +189,45 @@ void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
     }
 }
 
-OverChain RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew) const {
-    if (path.edges < 2 || !mayReach(path.vertex[0]->light, !path.delta[1])) return {};
+/// Of a path that is refracted behind its light until z; empty where no chain is asked for.
+std::optional<RefractedLamps::Facets> RefractedLamps::facetsOf(const FullPath& path) const {
+    if (path.edges < 2 || !mayReach(path.vertex[0]->light, !path.delta[1])) return std::nullopt;
     Facets facets;
-    std::size_t count = 0;
-    for (; int(count) + 1 < path.edges; ++count) {
-        const std::size_t i = count + 1;
-        const Vec3 toEye = path.directionOf(int(i)), toLight = -path.directionOf(int(i) - 1);
-        if (!refracts(*path.vertex[i], path.delta[i], toEye, toLight)) break;
-        if (count == Chain::kMost) return {};
-        if (!facets.add(*path.vertex[i], path.delta[i], toEye, toLight)) return {};
+    int i = 1;
+    for (; i < path.edges; ++i) {
+        const PathVertex& v = *path.vertex[std::size_t(i)];
+        const bool delta = path.delta[std::size_t(i)];
+        const Vec3 toEye = path.directionOf(i), toLight = -path.directionOf(i - 1);
+        if (!refracts(v, delta, toEye, toLight)) break;
+        if (facets.size() == Chain::kMost) return std::nullopt;
+        if (!facets.add(v, delta, toEye, toLight)) return std::nullopt;
     }
-    const bool ends = int(count) + 1 == path.edges || path.delta[count + 1];
-    if (count == 0 || ends) return {};
-    const Vec3 toChain = -path.directionOf(int(count));
-    const PathVertex &z = *path.vertex[count + 1], &end = path.lightsEnd(int(count));
-    const double density =
-        !anew && path.lightEdges > int(count)
-            ? double(end.throughGlass)
-            : densityOfChain(end, *path.vertex[0], *path.vertex[count], facets, toChain, tally);
+    const bool ends = i == path.edges || path.delta[std::size_t(i)];
+    if (facets.size() == 0 || ends) return std::nullopt;
+    return facets;
+}
+
+/// FullPath::refracted, from the chain's density.
+OverChain RefractedLamps::ratioBy(const FullPath& path, int vertices, double density) const {
     if (!(density > 0.0)) return {};
-    const Vec3 toEye = path.directionOf(int(count) + 1);
+    const PathVertex& z = *path.vertex[std::size_t(vertices) + 1];
+    const Vec3 toEye = path.directionOf(vertices + 1), toChain = -path.directionOf(vertices);
     const auto eyePdfW = double(walker_.scattering(z, toEye, toChain).pdfWToLight);
-    const double samples = samplesAt(end, path.orderOf(int(count) + 1));
+    const double samples = samplesAt(path.lightsEnd(vertices), path.orderOf(vertices + 1));
     if (!(eyePdfW > 0.0)) return {};
-    return {samples * density / eyePdfW, int(count)};
+    return {samples * density / eyePdfW, vertices};
+}
+
+OverChain RefractedLamps::ratioOf(const FullPath& path, RayTally& tally, bool anew) const {
+    const auto facets = facetsOf(path);
+    if (!facets) return {};
+    const auto count = int(facets->size());
+    const PathVertex& end = path.lightsEnd(count);
+    const double density = !anew && path.lightEdges > count
+                               ? double(end.throughGlass)
+                               : densityOfChain(end, *path.vertex[0], *path.vertex[facets->size()],
+                                                *facets, -path.directionOf(count), tally);
+    return ratioBy(path, count, density);
 }
 
 std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& tally,
@@ -236,7 +256,12 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     event->closed.contribution *= float(1.0 / (samples * joined->pmf));
     if (hasFacets(chain)) {
         // As other techniques know it: by facets from the directions of the path, in float.
-        path.refracted = ratioOf(path, tally, true);
+        const auto known = facetsOf(path);
+        if (!known) return std::nullopt;
+        const std::size_t count = known->size();
+        path.refracted = ratioBy(path, int(count),
+                                 densityOver(*smooth, z, y0, *path.vertex[count], *known,
+                                             -path.directionOf(int(count)), tally));
         if (!(path.refracted.ratio > 0.0)) return std::nullopt;
     } else {
         path.refracted = {expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW,

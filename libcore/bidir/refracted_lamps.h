@@ -48,6 +48,8 @@ class RefractedLamps {
     };
     /// The facets at a path's refractions.
     class Facets;
+    std::optional<Facets> facetsOf(const FullPath& path) const;
+    OverChain ratioBy(const FullPath& path, int vertices, double density) const;
     bool mayReach(std::uint32_t light, bool byFacet) const;
     bool refracts(const PathVertex& v, bool delta, const Vec3& toEye, const Vec3& toLight) const;
     std::optional<Joined> drawBetween(const PathVertex& z, const PathVertex& y0, double u,
@@ -61,6 +63,9 @@ class RefractedLamps {
     std::optional<Joined> turned(const Joined& smooth, const Facets& facets, const PathVertex& z,
                                  const PathVertex& y0, RayTally& tally) const;
     double densityAt(const PathVertex& y0, double seenSamples, const Joined& joined) const;
+    double densityOver(const Joined& smooth, const PathVertex& z, const PathVertex& y0,
+                       const PathVertex& last, const Facets& facets, const Vec3& toChain,
+                       RayTally& tally) const;
     double densityOfChain(const PathVertex& z, const PathVertex& y0, const PathVertex& last,
                           const Facets& facets, const Vec3& toChain, RayTally& tally) const;
 

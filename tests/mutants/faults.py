@@ -833,7 +833,7 @@ FAULTS = [
           {"specular": "GlassBoxes.*"}),
     Fault("weights-count-dark-glass-whole", "other techniques take glass in the dark to be tried as often as any",
           "libcore/bidir/refracted_lamps.cpp",
-          "path.orderOf(int(count) + 1));\n    if (!(eyePdfW", "path.orderOf(int(count) + 1)) / glass_->shadows().triesAt(end.position);\n    if (!(eyePdfW",
+          "path.orderOf(vertices + 1));", "path.orderOf(vertices + 1)) / glass_->shadows().triesAt(z.position);",
           {"acceptance": "RefractedLamps.*"}),
     Fault("facets-too-seldom", "facets count as drawn from all, steep ones too",
           "libcore/specular/narrow_glass.cpp",
