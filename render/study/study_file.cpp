@@ -27,9 +27,9 @@ const std::set<std::string> kOptions = {"width",  "height",     "crop",      "ca
 
 /// Beside the study's file, unless absolute or in the folder of scenes that others made.
 std::string resolvePath(const std::string& studyFile, const std::string& path) {
-    constexpr std::string_view kShared = "$LACUNA_SHARED_SCENES/";
-    if (path.starts_with(kShared)) {
-        const std::string name = path.substr(kShared.size());
+    constexpr std::string_view kSharedFolder = "$LACUNA_SHARED_SCENES/";
+    if (path.starts_with(kSharedFolder)) {
+        const std::string name = path.substr(kSharedFolder.size());
         const char* folder = std::getenv("LACUNA_SHARED_SCENES");
         if (!folder || !*folder) {
             throw InputError(studyFile + ": " + name +

@@ -35,7 +35,7 @@ Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, do
 }
 
 std::vector<std::string> rowsOfADay() {
-    return {"spcbpt", "sharebpt"};
+    return {"sharebpt"};
 }
 std::vector<std::string> rowsOfANight() {
     const std::vector<std::string> day = rowsOfADay();

@@ -45,7 +45,7 @@ struct Stack {
 };
 
 /// Both faces of a slab.
-double openOf(double sine) {
+double throughSlab(double sine) {
     const double f = fresnelDielectric(std::sqrt(1 - sine * sine), 1.5);
     return (1 - f) * (1 - f);
 }
@@ -88,9 +88,9 @@ void expectLampsBySlab(const MethodRow& row, std::span<const Lamp> lamps, float 
             const double by = 1e-6;
             const double ring = (toLamp.across(sine + by) - toLamp.across(sine - by)) / (2 * by);
             const double cosine = std::sqrt(1 - sine * sine);
-            irradiance += intensity * openOf(sine) * sine / (cosine * distance * ring);
+            irradiance += intensity * throughSlab(sine) * sine / (cosine * distance * ring);
         }
-        const double radiance = irradiance * openOf(eyeSine) * 0.6 / std::numbers::pi;
+        const double radiance = irradiance * throughSlab(eyeSine) * 0.6 / std::numbers::pi;
         return Vec3d{radiance, radiance, radiance};
     });
     expectRadiance(render(*scene, row, shot), exact, row.name + ", lamps and slab",

@@ -12,11 +12,11 @@
 namespace lacuna::test {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kColumns = 64, kLines = 48;
 
 struct Column {
     const char* name;
-    std::vector<double> values = std::vector<double>(std::size_t(kWidth) * kHeight);
+    std::vector<double> values = std::vector<double>(std::size_t(kColumns) * kLines);
 };
 
 class OneSample final : public ConnectionDensity {
@@ -36,8 +36,8 @@ class NotesNumbers final : public Method {
         const auto seen =
             camera_.project(context.eyePath[0].position, -context.eyePath[1].toPrevious);
         ASSERT_TRUE(seen.has_value());
-        eye[0].values[pixel] = double(seen->raster.x) - double(pixel % kWidth);
-        eye[1].values[pixel] = double(seen->raster.y) - double(pixel / kWidth);
+        eye[0].values[pixel] = double(seen->raster.x) - double(pixel % kColumns);
+        eye[1].values[pixel] = double(seen->raster.y) - double(pixel / kColumns);
         const PathVertex& y0 = context.ownLightPath[0];
         light[0].values[pixel] = double(y0.light);
         light[1].values[pixel] = double(y0.lightUv.x);
@@ -82,15 +82,15 @@ class Streams : public testing::TestWithParam<Sampling> {};
 
 TEST_P(Streams, ofAPixelAreIndependent) {
     const auto scene = room(4);
-    const Camera camera = scene->makeCamera("", {kWidth, kHeight}, {});
+    const Camera camera = scene->makeCamera("", {kColumns, kLines}, {});
     NotesNumbers method(camera);
     RenderSettings settings;
-    settings.crop = {0, kWidth, 0, kHeight};
+    settings.crop = {0, kColumns, 0, kLines};
     settings.sampling = GetParam();
     const ThreadPool threads(2);
     BidirIntegrator integrator(*scene, camera, {.connects = true, .ownLightPath = true}, method,
                                settings, threads);
-    std::vector<Rgb> pixels(std::size_t(kWidth) * kHeight);
+    std::vector<Rgb> pixels(std::size_t(kColumns) * kLines);
     IterationStatistics statistics;
     ASSERT_TRUE(integrator.render(0, pixels, std::atomic<bool>(false), statistics));
 

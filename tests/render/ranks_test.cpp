@@ -159,8 +159,7 @@ void RenderRanks::expectThePictureOfOneProcess(const std::string& method) const 
 }
 
 TEST_F(RenderRanks, makeThePictureOfOneProcess) {
-    for (const char* method : {"bpt", "lvcbpt", "risbpt", "spcbpt"})
-        expectThePictureOfOneProcess(method);
+    for (const char* method : {"bpt", "spcbpt"}) expectThePictureOfOneProcess(method);
 }
 
 using RenderRanksNight = RenderRanks;

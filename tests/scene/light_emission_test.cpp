@@ -14,7 +14,6 @@
 namespace lacuna::test {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kSignificance = 1e-3 / 16;  // Sidak of fewer than 16 comparisons
 
 struct Source {
@@ -49,7 +48,7 @@ std::vector<Source> sources() {
     s.push_back({"point", punctual(pointLight({1, 2, 3}, Rgb(7.0f))), axis, -1, false});
     s.push_back({"spot", spot(0.3, 0.7), axis, std::cos(0.7), false});
     s.push_back({"spot, inner = outer", spot(0.5, 0.5), axis, std::cos(0.5), false});
-    s.push_back({"spot, half space", spot(0, kPiD / 2), axis, 0, false});
+    s.push_back({"spot, half space", spot(0, std::numbers::pi / 2), axis, 0, false});
     s.push_back({"spot, 0.01", spot(0.005, 0.01), axis, std::cos(0.01), false});
     s.push_back({"spot, 0.001", spot(0.0005, 0.001), axis, std::cos(0.001), false});
     s.push_back({"spot, 0.001, inner = outer", spot(0.001, 0.001), axis, std::cos(0.001), false});
@@ -132,7 +131,7 @@ TEST(Emission, ExitanceTimesProfileIsWhatTheFileSays) {
 
     for (const auto& [inner, outer] : {std::pair{0.2, 1.0},
                                        {0.6, 0.6},
-                                       {0.0, kPiD / 2},
+                                       {0.0, std::numbers::pi / 2},
                                        {0.005, 0.01},
                                        {0.0005, 0.001},
                                        {0.0, 1e-4}}) {
@@ -181,7 +180,7 @@ TEST(Emission, LightsAtInfinityCoverTheScene) {
         ASSERT_TRUE(ray);
         ASSERT_EQ(ray->direction, -p.position);
         const double disk = lights.diskRadius();
-        EXPECT_NEAR(ray->emission.pdfW * kPiD * disk * disk, 1, 1e-5);
+        EXPECT_NEAR(ray->emission.pdfW * std::numbers::pi * disk * disk, 1, 1e-5);
         EXPECT_EQ(ray->emission.profile, 1.0f);
         if (p.kind == LightKind::Directional) {
             ASSERT_LT(length(ray->direction - direction), 1e-6f);
@@ -198,7 +197,7 @@ TEST(Emission, LightsAtInfinityCoverTheScene) {
         const Frame frame(p.position);
         const double turn = std::atan2(dot(across, Vec3d(frame.t)), dot(across, Vec3d(frame.s)));
         ++counts[std::min(7u, unsigned(r2 * 8)) * 8 +
-                 std::min(7u, unsigned((turn / (2 * kPiD) + 0.5) * 8))];
+                 std::min(7u, unsigned((turn / (2 * std::numbers::pi) + 0.5) * 8))];
     }
     EXPECT_GT(chiSquareSignificance(counts, std::vector<double>(64, 1.0 / 64), kSamples),
               kSignificance);
