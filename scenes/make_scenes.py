@@ -22,7 +22,7 @@ sys.dont_write_bytecode = True  # leave nothing behind in the source tree
 from generator import pictures, scenes_interior, scenes_large, scenes_small, validate  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
-TOTAL_LIMIT = 2_100_000  # bytes; the files are kept in the repository
+TOTAL_LIMIT = 2_200_000  # bytes; the files are kept in the repository
 EXPORTED = ("blender-still-life.glb",)  # by make_blender_scene.py: checked as they are, not made here
 
 

@@ -59,6 +59,12 @@ def moved(mesh: Mesh, offset: Sequence[float]) -> Mesh:
     return Mesh([add(p, offset) for p in mesh.positions], list(mesh.normals), list(mesh.uvs), list(mesh.triangles))
 
 
+def inside_out(mesh: Mesh) -> Mesh:
+    """Its other side: what lies outside of a hollow."""
+    normals = [scaled(n, -1.0) for n in mesh.normals]
+    return Mesh(list(mesh.positions), normals, list(mesh.uvs), [(a, c, b) for a, b, c in mesh.triangles])
+
+
 def flat_shaded(mesh: Mesh) -> Mesh:
     """Own corners for every triangle: where shading normals must be the geometry's (furnace)."""
     out = Mesh()

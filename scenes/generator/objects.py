@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from .building import SUNK
-from .mesh import Mesh, box, lathe, merged, moved, sphere, torus
+from .mesh import Mesh, box, inside_out, lathe, merged, moved, sphere, torus
 
 
 def vase(height: float) -> Mesh:
@@ -53,6 +53,11 @@ def chair() -> Mesh:
     legs = [box((x - 0.02, -SUNK, z - 0.02), (x + 0.02, 0.44, z + 0.02)) for x in (-0.17, 0.17) for z in (-0.17, 0.17)]
     posts = [box((x - 0.018, 0.44, 0.16), (x + 0.018, 0.85, 0.19)) for x in (-0.15, 0.15)]
     return merged([box((-0.2, 0.43, -0.2), (0.2, 0.46, 0.2)), box((-0.2, 0.66, 0.165), (0.2, 0.84, 0.185)), *legs, *posts])
+
+
+def globe(radius: float, thickness: float) -> Mesh:
+    """A hollow ball of glass around the origin, as lamps have."""
+    return merged([sphere(radius, 8, 16), inside_out(sphere(radius - thickness, 8, 16))])
 
 
 def column(height: float, radius: float, segments: int = 24) -> Mesh:

@@ -7,7 +7,7 @@ from . import objects, pictures
 from .building import SUNK, X, Y, boxes, room, slab, table, table_legs
 from .glb import SceneFile
 from .mesh import Mesh, box, box_at, cylinder, drapery, lathe, quad, sphere, torus
-from .vector import Vec3, about, about_x, about_y, about_z
+from .vector import Vec3, about, about_x, about_y, about_z, towards
 
 
 def _put_room(s: SceneFile, sides: dict[str, Mesh], finish: dict[str, int]) -> None:
@@ -258,6 +258,45 @@ def night_window() -> SceneFile:
     return s
 
 
+def frosted_bath() -> SceneFile:
+    s = SceneFile("frosted-bath", "Bathroom behind a window of frosted glass, with a bulb in a frosted globe", 640, 360)
+    plaster = s.material(m.lambert("plaster", (0.72, 0.71, 0.68)))
+    tiles = s.material(m.coated("wall tiles", (0.24, 0.46, 0.50), 0.3))
+    slate = s.material(m.coated("slate floor", (0.20, 0.20, 0.21), 0.3))
+    enamel = s.material(m.coated("enamel", (0.78, 0.78, 0.76), 0.15))
+    oak = s.material(m.lambert("oak", (0.42, 0.27, 0.15)))
+    towel = s.material(m.lambert("towel", (0.62, 0.24, 0.16)))
+    steel = s.material(m.metal("steel", (0.75, 0.75, 0.77), 0.3))
+    mirror = s.material(m.metal("mirror", (0.92, 0.92, 0.92), 0.0))
+    glass = s.material(m.glass("glass"))
+    etched = s.material(m.glass("etched pane", roughness=0.2))
+    opal = s.material(m.glass("satin globe", roughness=0.1))
+    bulb = s.material(m.emitter("bulb", (2600.0, 2200.0, 1600.0)))
+
+    z0, z1, y0, y1 = -1.1, -0.1, 1.0, 2.0
+    _put_room(s, room((-1.5, 0, -1.7), (1.5, 2.4, 1.9), 0.2, {"left": [(z0, z1, y0, y1)]}), {"walls": plaster, "floor": slate})
+    s.add("etched pane", box((-1.553, y0 - SUNK, z0 - SUNK), (-1.547, y1 + SUNK, z1 + SUNK)), etched)
+    s.add("window bar", box((-1.53, y0 - SUNK, -0.62), (-1.505, y1 + SUNK, -0.58)), oak)
+    s.light("sun", "directional", 20.0, (1.0, 0.93, 0.82), turned=towards((0.8, -0.62, 0.22)))
+    s.add("tiled wall", slab((-1.5 - SUNK, -SUNK, -1.69), X, Y, 3.0 + 2 * SUNK, 1.35, 0.03), tiles)
+
+    s.add("cabinet", boxes(((0.1, 0.15, -1.69), (1.2, 0.75, -1.2)), ((0.06, 0.75 - SUNK, -1.695), (1.24, 0.79, -1.16))), oak)
+    s.add("basin", slab((0.4, 0.788, -1.22), X, (0, 0, -1), 0.44, 0.36, 0.1, [(0.03, 0.41, 0.03, 0.33)]), enamel)
+    s.add("tap", boxes(((0.60, 0.789, -1.64), (0.63, 1.02, -1.61)), ((0.602, 0.985, -1.615), (0.628, 1.018, -1.48))), steel)
+    s.add("tumbler", cylinder(0.035, 0.11, 12), glass, at=(0.97, 0.7905, -1.36))
+    s.add("mirror", box((0.2, 1.42, -1.7 - SUNK), (1.05, 2.1, -1.68)), mirror)
+    lamp = s.node("wall lamp", at=(-0.25, 1.72, -1.5))
+    s.add("globe", objects.globe(0.12, 0.006), opal, parent=lamp)
+    s.add("bulb", sphere(0.022, 6, 12), bulb, parent=lamp)
+    s.add("bracket", box((-0.03, -0.19, -0.2 - SUNK), (0.03, -0.13, 0.03)), steel, parent=lamp)
+    s.add("bath", boxes(((-1.5 - SUNK, -SUNK, -1.66), (-0.62, 0.55, -0.1)), ((-1.5 - 2 * SUNK, 0.55 - SUNK, -1.665), (-0.58, 0.60, -0.06))), enamel)
+    s.add("towel rail", box((-1.43, 1.42, 0.2), (-1.41, 1.44 + SUNK, 0.85)), steel)
+    s.add("towel", box((-1.44, 0.8, 0.3), (-1.4, 1.44, 0.75)), towel)
+    _put_table(s, "stool", (0.52, 0.0, -0.32), (0.45, 0.43, 0.45), oak)
+    s.camera((0.95, 1.55, 1.75), (-0.3, 1.05, -1.2), 55.0)
+    return s
+
+
 def glossy_room() -> SceneFile:
     s = SceneFile("glossy-room", "Everything is glossy (roughness 0.1 to 0.3); the lamp shines up into a cove", 640, 360)
     wall = s.material(m.coated("satin wall", (0.55, 0.52, 0.48), 0.25))
@@ -295,4 +334,4 @@ def glossy_room() -> SceneFile:
     return s
 
 
-SCENES = [door, bedroom_curtain, classroom_windows, kitchen_glass, night_window, glossy_room]
+SCENES = [door, bedroom_curtain, classroom_windows, kitchen_glass, night_window, frosted_bath, glossy_room]
