@@ -178,8 +178,9 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, const SceneDescrip
     const bool ways = t.knownWays && specular;
     const bool reaches = (hittable && (glass || ways)) || (noSize && facets);
     table.add("refractions", t.hits && t.connects && t.refractions && reaches,
-              !t.connects ? method.name + " connects no vertices"
-              : !t.hits   ? method.name + " has no technique s = 0"
+              !t.connects      ? method.name + " connects no vertices"
+              : !t.hits        ? method.name + " has no technique s = 0"
+              : !t.refractions ? method.name + " merges: its photons make those paths"
               : facets    ? "next event through up to six surfaces of smooth or nearly smooth glass"
               : !hittable ? "no lamp with a size and no sky"
               : ways      ? "next event over up to six mirrors or surfaces of smooth glass"
