@@ -28,7 +28,9 @@ while (($#)); do
 done
 
 install_packages build test
-(install_packages browser) || say "No browser: the test of lacuna-study's page will be skipped"
+# While all else is built: it is large, and one test alone wants it.
+install_packages browser &
+browser=$!
 
 say "Layout of the sources"
 bash "$project/.ci/format.sh"
@@ -38,6 +40,7 @@ SECONDS=0
 configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON -DLACUNA_MPI=ON
 build_targets
 say "Built in $SECONDS s"
+wait "$browser" || say "No browser: the test of lacuna-study's page will be skipped"
 
 say "Scenes: the files are what their generator makes"
 python3 -B -m unittest discover -s "$project/scenes" -t "$project/scenes"

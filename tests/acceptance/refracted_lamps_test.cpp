@@ -299,7 +299,7 @@ void expectTheSameFromAllSides(float roughness, double allowed) {
     b.add(quad({0.06f, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));
     b.add(lookAt({0.3, 0.8, 2}, {0, 0, 0.2}, 40));
     const auto scene = b.build();
-    for (const char* name : {"pt", "bpt", "vcm"}) {
+    for (const char* name : {"pt", "bpt", "lvcbpt-merging"}) {
         Shot shot = quickShot(150);
         shot.maxDepth = 6;
         int own = 0, others = 0, few = 0;
