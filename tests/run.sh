@@ -28,9 +28,7 @@ while (($#)); do
 done
 
 install_packages build test
-# While all else is built: it is large, and one test alone wants it.
-install_packages browser &
-browser=$!
+(install_packages browser) || say "No browser: the test of lacuna-study's page will be skipped"
 
 say "Layout of the sources"
 bash "$project/.ci/format.sh"
@@ -40,7 +38,6 @@ SECONDS=0
 configure -DLACUNA_TESTS=ON -DLACUNA_BENCHMARKS=ON -DLACUNA_MPI=ON
 build_targets
 say "Built in $SECONDS s"
-wait "$browser" || say "No browser: the test of lacuna-study's page will be skipped"
 
 say "Scenes: the files are what their generator makes"
 python3 -B -m unittest discover -s "$project/scenes" -t "$project/scenes"

@@ -136,25 +136,28 @@ double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
 }
 
 /// That of a path through these refractions over the smooth chain between its ends; `last` is the one next to z.
-double RefractedLamps::densityOver(const Joined& smooth, const PathVertex& z, const PathVertex& y0,
-                                   const PathVertex& last, const Facets& facets,
-                                   const Vec3& toChain, RayTally& tally) const {
+double RefractedLamps::densityOver(const Joined& smooth, double seenSamples, const PathVertex& z,
+                                   const PathVertex& y0, const PathVertex& last,
+                                   const Facets& facets, const Vec3& toChain,
+                                   RayTally& tally) const {
     if (smooth.found.chain.size() != facets.size()) return 0.0;
     const auto joined = turned(smooth, facets, z, y0, tally);
     if (!joined) return 0.0;
     const double distance = length(Vec3d(last.position) - Vec3d(z.position));
     const double angle = kAngle + kOffset * double(walker_.scene().radius()) / distance;
     if (!solver_.isAlong(joined->found, queryOf(z, y0), Vec3d(toChain), angle, tally)) return 0.0;
-    return densityAt(y0, walker_.seenSamples(y0, z), *joined);
+    return densityAt(y0, seenSamples, *joined);
 }
 
 /// Likewise where that chain is not known.
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const PathVertex& last, const Facets& facets,
                                       const Vec3& toChain, RayTally& tally) const {
-    if (!(walker_.seenSamples(y0, z) > 0.0)) return 0.0;
+    const double seenSamples = walker_.seenSamples(y0, z);
+    if (!(seenSamples > 0.0)) return 0.0;
     const auto smooth = betweenOver(last.ng, z, y0, tally);
-    return smooth ? densityOver(*smooth, z, y0, last, facets, toChain, tally) : 0.0;
+    if (!smooth) return 0.0;
+    return densityOver(*smooth, seenSamples, z, y0, last, facets, toChain, tally);
 }
 
 /// Whether a path that comes and goes this way is refracted at v, by a smooth surface or by a facet.
@@ -260,8 +263,8 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
         if (!known) return std::nullopt;
         const std::size_t count = known->size();
         path.refracted = ratioBy(path, int(count),
-                                 densityOver(*smooth, z, y0, *path.vertex[count], *known,
-                                             -path.directionOf(int(count)), tally));
+                                 densityOver(*smooth, seenSamples, z, y0, *path.vertex[count],
+                                             *known, -path.directionOf(int(count)), tally));
         if (!(path.refracted.ratio > 0.0)) return std::nullopt;
     } else {
         path.refracted = {expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW,

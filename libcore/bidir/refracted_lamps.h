@@ -63,9 +63,9 @@ class RefractedLamps {
     std::optional<Joined> turned(const Joined& smooth, const Facets& facets, const PathVertex& z,
                                  const PathVertex& y0, RayTally& tally) const;
     double densityAt(const PathVertex& y0, double seenSamples, const Joined& joined) const;
-    double densityOver(const Joined& smooth, const PathVertex& z, const PathVertex& y0,
-                       const PathVertex& last, const Facets& facets, const Vec3& toChain,
-                       RayTally& tally) const;
+    double densityOver(const Joined& smooth, double seenSamples, const PathVertex& z,
+                       const PathVertex& y0, const PathVertex& last, const Facets& facets,
+                       const Vec3& toChain, RayTally& tally) const;
     double densityOfChain(const PathVertex& z, const PathVertex& y0, const PathVertex& last,
                           const Facets& facets, const Vec3& toChain, RayTally& tally) const;
 

@@ -30,7 +30,7 @@ MethodRow vcmRow() {
                         .connects = true,
                         .splats = true,
                         .ownLightPath = true,
-                        // Photons make those paths, in half to nine tenths of the time.
+                        // Photons make those paths, and for less. (theory.md, "vcm")
                         .chains = false,
                         .refractions = false,
                         .knownWays = false}},

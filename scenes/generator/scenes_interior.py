@@ -270,7 +270,7 @@ def frosted_bath() -> SceneFile:
     mirror = s.material(m.metal("mirror", (0.92, 0.92, 0.92), 0.0))
     glass = s.material(m.glass("glass"))
     etched = s.material(m.glass("etched pane", roughness=0.2))
-    opal = s.material(m.glass("satin globe", roughness=0.1))
+    satin = s.material(m.glass("satin globe", roughness=0.1))
     bulb = s.material(m.emitter("bulb", (2600.0, 2200.0, 1600.0)))
 
     z0, z1, y0, y1 = -1.1, -0.1, 1.0, 2.0
@@ -286,7 +286,7 @@ def frosted_bath() -> SceneFile:
     s.add("tumbler", cylinder(0.035, 0.11, 12), glass, at=(0.97, 0.7905, -1.36))
     s.add("mirror", box((0.2, 1.42, -1.7 - SUNK), (1.05, 2.1, -1.68)), mirror)
     lamp = s.node("wall lamp", at=(-0.25, 1.72, -1.5))
-    s.add("globe", objects.globe(0.12, 0.006), opal, parent=lamp)
+    s.add("globe", objects.globe(0.12, 0.006), satin, parent=lamp)
     s.add("bulb", sphere(0.022, 6, 12), bulb, parent=lamp)
     s.add("bracket", box((-0.03, -0.19, -0.2 - SUNK), (0.03, -0.13, 0.03)), steel, parent=lamp)
     s.add("bath", boxes(((-1.5 - SUNK, -SUNK, -1.66), (-0.62, 0.55, -0.1)), ((-1.5 - 2 * SUNK, 0.55 - SUNK, -1.665), (-0.58, 0.60, -0.06))), enamel)
