@@ -31,9 +31,16 @@ def iterations_of(head):
     return int.from_bytes(found[1], "little") if found[1] else int(found[3][:int.from_bytes(found[2], "little")])
 
 
-def iterations_in(log):
+def end_of(log):
+    """The last bytes of a file that grows for a day."""
+    with open(log, "rb") as content:
+        content.seek(max(0, os.fstat(content.fileno()).st_size - 4096))
+        return content.read().decode(errors="replace")
+
+
+def iterations_in(lines):
     """Of the last line of progress; 0 before the first one."""
-    found = re.findall(r"\biteration (\d+)", log)
+    found = re.findall(r"\biteration (\d+)", lines)
     return int(found[-1]) if found else 0
 
 
@@ -69,7 +76,7 @@ def watch(process, picture, log, folder, seconds):
     memory, copies, begin, at = [], [], time.monotonic(), seconds / 64
     while process.poll() is None:
         time.sleep(SAMPLE_SECONDS)
-        memory.append((iterations_in(log.read_text(errors="replace")), resident(process.pid)))
+        memory.append((iterations_in(end_of(log)), resident(process.pid)))
         if time.monotonic() - begin > at and picture.exists():
             copies.append(folder / f"{len(copies)}.exr")
             shutil.copyfile(picture, copies[-1])  # it is replaced as a whole, never written into

@@ -2,6 +2,7 @@
 
 import math
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -52,6 +53,11 @@ class LongRender(unittest.TestCase):
         self.assertTrue(math.isnan(long_render.growth([(1, 100), (3, 100)])))
         self.assertEqual(long_render.iterations_in("rendering  iteration 7  1s\rrendering  iteration 12  2s"), 12)
         self.assertEqual(long_render.iterations_in("preparing"), 0)
+        with tempfile.NamedTemporaryFile() as log:
+            self.assertEqual(long_render.end_of(log.name), "")
+            Path(log.name).write_text("rendering  iteration 7\r" * 1000 + "rendering  iteration 1234\r")
+            self.assertEqual(long_render.iterations_in(long_render.end_of(log.name)), 1234)
+            self.assertLessEqual(len(long_render.end_of(log.name)), 4096)
         self.assertTrue(long_render.resident("self") > 1e6)
         self.assertIsNone(long_render.resident("none"))
 
