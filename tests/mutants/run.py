@@ -38,9 +38,9 @@ def fail(text):
 
 
 def tests_in(folder):
-    """Suite.name of every test in a folder, as its sources have it."""
+    """Suite.name of every test in a folder of tests/, as its sources have it."""
     names = set()
-    for source in (ROOT / "tests" / folder).glob("*.cpp"):
+    for source in (ROOT / "tests" / folder).rglob("*.cpp"):
         for suite, name in re.findall(r"^TEST(?:_F|_P|)\((\w+),\s*(\w+)\)", source.read_text(), re.M):
             names.add(f"{suite}.{name}")
     return names
@@ -74,6 +74,11 @@ def check():
             for pattern in patterns.split(":"):
                 if not exists(pattern, known):
                     wrong.append(f"{f.name}: expected a test {pattern} in tests/{folder}, found none")
+    everywhere = tests_in("")
+    for name, noticed in table_rows()[1].items():
+        for test in re.findall(r"\w+\.\w+", noticed):
+            if test not in everywhere:
+                wrong.append(f"{name}: expected tests/README.md to name tests that there are, found {test}")
     missing = [n for n in names if n not in table_rows()[1]]
     if missing or README.read_text() != readme_with({}):
         wrong.append("tests/README.md: expected a table of all faults, in order, and of no others; missing: "
