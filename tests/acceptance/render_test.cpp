@@ -48,7 +48,7 @@ double threshold(double tests, std::uint64_t samples) {
 }
 
 /// Rows that are tested as they are, and their weights with merging as well.
-constexpr const char* kOtherMerging[] = {"risbpt", "tsrbpt", "spcbpt"};
+constexpr const char* kOtherMerging[] = {"risbpt", "tsrbpt", "spcbpt", "sharebpt"};
 
 float channel(const Rgb& c, int i) {
     return i == 0 ? c.r : i == 1 ? c.g : c.b;

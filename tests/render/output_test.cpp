@@ -490,6 +490,34 @@ TEST_F(RenderOutput, BiasedMethodsSaySo) {
     EXPECT_EQ(biased, 2u);
 }
 
+/// Rows that merge, and settings that do, say so as well, and no others.
+TEST_F(RenderOutput, MethodsThatMergeSayThatTheyAreConsistentOnly) {
+    const auto expectSaid = [&](const std::string& method, const std::string& more, bool merges) {
+        const Outcome o = run(quick(method, "--json @o.json --quiet" + more));
+        ASSERT_EQ(o.exitCode, 0) << o.err;
+        EXPECT_EQ(json("o.json")["consistent"], merges) << method;
+        const LayeredImage image = readExrLayers(path("out.exr"));
+        ASSERT_EQ(image.attributes.contains("consistent"), merges) << method;
+        if (!merges) return;
+        EXPECT_EQ(attribute<std::string>(image, "consistent").find("not unbiased"), 0u);
+    };
+    const std::string list = run("--list-methods").out;
+    std::size_t merging = 0;
+    for (const MethodRow& row : methods()) {
+        const bool merges = isConsistentOnly(row, resolve(row, {}));
+        const std::string help = run("--help-method " + row.name).out;
+        EXPECT_EQ(help.find("\nconsistent, not unbiased") != std::string::npos, merges) << row.name;
+        const std::size_t line = list.find("\n" + row.name + " ") + 1;
+        const std::string said = list.substr(line, list.find('\n', line) - line);
+        EXPECT_EQ(said.find("consistent, not unbiased") != std::string::npos, merges) << said;
+        if (merges) expectSaid(row.name, "", true);
+        merging += merges;
+    }
+    EXPECT_EQ(merging, 2u);
+    expectSaid("lvcbpt", "", false);
+    expectSaid("lvcbpt", " --set merge=on", true);
+}
+
 TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
     TinyScene scene;
     scene.lamp = false;

@@ -18,25 +18,27 @@
 namespace lacuna::test {
 namespace {
 
-/// A ball of triangles, of few so that normals change much within each.
-Mesh ball(Vec3 centre, float radius, std::uint32_t material) {
-    constexpr int kColumns = 12, kRows = 6;
+constexpr int kFew = 12;  // columns of a ball
+
+/// A ball of triangles, mostly of few so that normals change much within each.
+Mesh ball(Vec3 centre, float radius, std::uint32_t material, int columns = kFew) {
+    const int rows = columns / 2;
     Mesh m;
     m.material = material;
-    for (int j = 0; j <= kRows; ++j) {
-        for (int i = 0; i <= kColumns; ++i) {
-            const double phi = 2 * std::numbers::pi * i / kColumns;
-            const double theta = std::numbers::pi * j / kRows;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i <= columns; ++i) {
+            const double phi = 2 * std::numbers::pi * i / columns;
+            const double theta = std::numbers::pi * j / rows;
             const Vec3 n(Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta),
                                std::sin(theta) * std::sin(phi)});
             m.positions.push_back(centre + n * radius);
             m.normals.push_back(n);
-            m.uvs.push_back({float(i) / kColumns, float(j) / kRows});
+            m.uvs.push_back({float(i) / columns, float(j) / rows});
         }
     }
-    const auto at = [](int j, int i) { return std::uint32_t(j * (kColumns + 1) + i); };
-    for (int j = 0; j < kRows; ++j) {
-        for (int i = 0; i < kColumns; ++i) {
+    const auto at = [=](int j, int i) { return std::uint32_t(j * (columns + 1) + i); };
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
             m.triangles.push_back({at(j, i), at(j, i + 1), at(j + 1, i)});
             m.triangles.push_back({at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)});
         }
@@ -606,6 +608,41 @@ TEST(ChainSolver, goesThroughASlabByItself) {
     shut.add(box({-50, 1, -50}, {50, 1.5f, 50}, shut.add(mirror())));
     const auto closed = shut.build();
     EXPECT_FALSE(throughGlass(ChainSolver(*closed), {floorOf(*closed), sky, Chain::kMost}, tally));
+}
+
+/// Along the axis of a ball of glass nothing bends, and a ray near it is moved and turned in proportion to
+/// how far off it is. What reaches the lamp, or the sky, follows from the ball's two faces in turn.
+TEST(ChainSolver, knowsTheLensThatABallIs) {
+    constexpr double kIndex = 1.5, kRadius = 0.5, kBefore = 1.5;  // from the start to the centre
+    constexpr double kPower = (kIndex - 1) / kRadius;             // of either face
+    const Vec3d axis = normalize(Vec3d{0.6, 0.7, 0.4});  // through no pole of the triangles
+    SceneBuilder b;
+    b.add(ball(Vec3(axis * kBefore), float(kRadius), b.add(glass(float(kIndex))), 400));
+    const auto scene = b.build();
+    const ChainSolver solver(*scene);
+    const ChainStart start = floorOf(*scene);
+    // Of a ray that leaves the start with an angle of one to the axis.
+    const double meets = kBefore - kRadius;
+    const double inside = (1 - kPower * meets) / kIndex;
+    const double leaves = meets + 2 * kRadius * inside;
+    const double turned = kIndex * inside - kPower * leaves;
+    const double reflected = std::pow((kIndex - 1) / (kIndex + 1), 2);
+    RayTally tally;
+    const auto expectOnAxis = [&](const ChainTarget& target, double apart) {
+        const auto found = throughGlass(solver, {start, target, Chain::kMost}, tally);
+        ASSERT_TRUE(found) << apart;
+        ASSERT_EQ(found->chain.size(), 2u);
+        EXPECT_LT(length(found->chain.firstDirection() - axis), 1e-4);
+        EXPECT_NEAR(found->spread * apart * apart, 1.0, 1e-2) << apart;
+        const Rgb through = found->chain[0].through * found->chain[1].through;
+        EXPECT_NEAR(double(mean(through)), (1 - reflected) * (1 - reflected), 1e-4);
+    };
+    // Before, near and behind where the ball brings the start's rays together, 1.5 behind its centre.
+    for (const double behind : {0.6, 1.0, 1.4, 1.6, 2.0, 4.0, 20.0}) {
+        const Vec3d lamp = axis * (kBefore + behind);
+        expectOnAxis(lampAt(*scene, lamp), leaves + (behind - kRadius) * turned);
+    }
+    expectOnAxis({Vec3(axis), true}, turned);
 }
 
 /// From under water the straight way to a low sun would be reflected back; the one that is found obeys Snell's law.
