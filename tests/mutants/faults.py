@@ -489,6 +489,10 @@ FAULTS = [
           {"render": "TevPackets.areWrittenAsTevReadsThem:RenderLive.theViewerEndsWithThePictureOfTheFile"}),
 
     # Resampling
+    Fault("length-limits-a-cosine", "what limits 1 / length^2 dims the sun and the sky too",
+          "libcore/resampling/cache_points.h",
+          "return light.infinite() ? geometry", "return light.infinite() && share > 1 ? geometry",
+          {"resampling": "CachePoints.limitLengthsAndNoCosines"}),
     Fault("light-tree-without-cosines", "a cut does not ask where lamps face",
           "libcore/resampling/light_tree.cpp",
           "atLight = inside ? 1.0f :", "atLight = inside || !inside ? 1.0f :",
