@@ -14,7 +14,8 @@ AliasTable::AliasTable(std::span<const double> weights) : slots_(weights.size())
     for (const double w : weights) sum += w / largest;
     total_ = sum * largest;
 
-    // What each outcome has, in slots; those with less than one are filled up by those with more.
+    // Each outcome's share, in slots. Outcomes with more than one slot fill up the slots of those
+    // with less.
     const auto n = double(weights.size());
     std::vector<double> share(weights.size());
     std::vector<std::uint32_t> small, large;
@@ -33,7 +34,8 @@ AliasTable::AliasTable(std::span<const double> weights) : slots_(weights.size())
         large.pop_back();
         small.push_back(rich);
     }
-    // What is left has one slot but for rounding; a weight of zero must not get it.
+    // Each remaining outcome has one slot but for rounding. An outcome of weight zero must not get
+    // its slot.
     const auto heaviest =
         std::uint32_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
     for (const auto* left : {&small, &large}) {

@@ -1,4 +1,4 @@
-// A table to pick one of n outcomes with given weights by a single look into memory.
+// A table that picks one of n outcomes with given weights in a single memory access.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace lacuna {
 
-/// Alias table [Vose91] over n outcomes, for tables that are too large for the processor's caches
-/// or drawn from too often; otherwise DiscreteDistribution, which realises its pmf exactly. Here
-/// the reported pmf is the nominal one: sums are in double, what is stored is float, so that the
-/// realised probability is off by less than 1e-6 of it.
+/// Alias table [Vose91] over n outcomes. It is for tables that are too large for the processor's
+/// caches or sampled very often. Elsewhere DiscreteDistribution serves, which realises its pmf
+/// exactly. The pmf reported here is the nominal one: sums are in double but the stored values in
+/// float, so that the realised probability differs from it by a relative error below 1e-6.
 class AliasTable {
   public:
     AliasTable() = default;
@@ -20,7 +20,7 @@ class AliasTable {
     /// first bad entry. A zero sum (or no entries) gives an empty table.
     explicit AliasTable(std::span<const double> weights);
 
-    /// No outcome can be picked: all weights are zero, or there are none.
+    /// Whether no outcome can be picked: all weights are zero, or there are none.
     bool empty() const { return total_ <= 0.0; }
     std::size_t size() const { return slots_.size(); }
     /// Sum of the weights.
@@ -31,21 +31,23 @@ class AliasTable {
     struct Pick {
         std::uint32_t index;
         double pmf;
-        double remapped;  ///< u, stretched to [0, 1) inside what leads here: for use again
+        double remapped;  ///< u, rescaled to [0, 1) within the part that leads here; can be reused
     };
-    /// u in [0, 1). Not to be called when empty(). Never an outcome of weight zero.
+    /// Picks an outcome with u in [0, 1), never one of weight zero. Must not be called when
+    /// empty().
     Pick sample(double u) const {
         const std::size_t k = slotOf(u);
         const Slot& slot = slots_[k];
         const double inside = u * double(slots_.size()) - double(k), edge = double(slot.threshold);
-        // Selections, not branches: no predictor could know them, and a wrong guess would be found
-        // out when the slot arrives from memory, with all that follows to be done again.
+        // Selections, not branches: the outcome is random, so that a branch predictor would often
+        // be wrong. A misprediction would be noticed only when the slot arrives from memory, and
+        // all later work would be repeated.
         const bool own = inside < edge;
         const double from = own ? 0.0 : edge, width = own ? edge : 1.0 - edge;
         return {own ? std::uint32_t(k) : slot.alias, double(own ? slot.pmf : slot.aliasPmf),
                 below1((inside - from) / width)};
     }
-    /// Asks the cache for what sample(u) will look at. Harmless when empty().
+    /// Prefetches the slot that sample(u) will read. Harmless when empty().
     void prefetch(double u) const {
         __builtin_prefetch(slots_.data() + std::size_t(u * double(slots_.size())));
     }
@@ -53,7 +55,7 @@ class AliasTable {
 
   private:
     struct Slot {
-        float threshold = 0;  ///< of the way through the slot: below it, the slot's own outcome
+        float threshold = 0;  ///< fraction of the slot that belongs to its own outcome
         std::uint32_t alias = 0;
         float pmf = 0, aliasPmf = 0;
     };

@@ -24,15 +24,16 @@ std::string directoryOf(const std::string& path) {
     return parent.empty() ? "." : parent;
 }
 
-/// Where the bytes end up: links followed, to where there is nothing yet as well.
+/// The path at which the bytes end up: symbolic links are followed, also to a file that does not
+/// exist yet.
 std::string resolved(const std::string& path) {
-    constexpr int kMostLinks = 40;  // as the system has it
+    constexpr int kMostLinks = 40;  // as in Linux
     fs::path at = path;
     std::error_code error;
     for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(at, error)); ++i) {
         const fs::path to = fs::read_symlink(at, error);
         if (error) return path;
-        at = at.parent_path() / to;  // an absolute one replaces it
+        at = at.parent_path() / to;  // an absolute path replaces `at`
     }
     const fs::path real = fs::canonical(at, error);
     return error ? at.string() : real.string();
@@ -41,13 +42,14 @@ std::string resolved(const std::string& path) {
 constexpr const char* kTemporaryStart = ".lacuna-";
 constexpr const char* kTemporaryEnd = ".tmp";
 
-/// Whoever writes a temporary file holds its lock, which ends with the process: what can be locked
-/// was left by one that was killed. Nothing is known of file systems without locks.
+/// Tries to lock a temporary file. Its writer holds the lock, which ends with the process: a file
+/// that can be locked was left by a killed process. On file systems without locks the answer is
+/// always true.
 bool lockOwn(int fd) {
     return ::flock(fd, LOCK_EX | LOCK_NB) == 0 || errno == EOPNOTSUPP || errno == ENOLCK;
 }
 
-/// What killed processes left in the directory.
+/// Removes the temporary files that killed processes left in the directory.
 void removeLeftovers(const std::string& directory) {
     std::error_code error;
     for (fs::directory_iterator at(directory, error), end; !error && at != end;
@@ -61,9 +63,10 @@ void removeLeftovers(const std::string& directory) {
     }
 }
 
-/// A pipe with a name. Opened once and kept until the process ends: its reader would take a check
-/// whether it can be written for the end of what comes. -1 and errno ENXIO where nobody reads it,
-/// which an ordinary open would wait for.
+/// Opens a named pipe and returns a duplicate of its descriptor. The pipe is opened once and kept
+/// open until the process ends: otherwise its reader would take the end of a mere check for
+/// writability for the end of the data. Returns -1 with errno ENXIO where nobody reads the pipe; an
+/// ordinary open would wait for a reader.
 int openPipe(const std::string& path) {
     static std::mutex mutex;
     static std::map<std::string, int> open;
@@ -79,16 +82,17 @@ int openPipe(const std::string& path) {
     return ::fcntl(kept, F_DUPFD_CLOEXEC, 0);
 }
 
-/// A file without a name, which a killed process cannot leave behind; -1 where the file system has
-/// none, or where there is no /proc to name it by.
+/// Opens a file without a name, which a killed process cannot leave behind. Returns -1 where the
+/// file system does not support such files, or where no /proc exists through which to name it.
 int openNameless(const std::string& directory) {
     if (::access("/proc/self/fd", X_OK) != 0) return -1;
     return ::open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
 }
 
-/// Names it over the target; -1 and errno where that fails. There is no single call for that: a
-/// process that is killed between the two leaves a name that the next one for this target reuses.
-/// Two at a time take each other's; each file is whole.
+/// Gives the nameless file the target's name. Returns -1 with errno where that fails. It takes two
+/// calls, link and rename: a process that is killed between them leaves a temporary name, which the
+/// next process for this target reuses. Two processes at a time may take each other's temporary
+/// name; each file is whole.
 int nameOver(int fd, const std::string& directory, const std::string& target) {
     const std::string link = "/proc/self/fd/" + std::to_string(fd);
     const std::string name = directory + "/" + kTemporaryStart +
@@ -110,8 +114,8 @@ int nameOver(int fd, const std::string& directory, const std::string& target) {
     return -1;
 }
 
-/// Opens a new file beside the target. The name does not grow with the target's (NAME_MAX), and is
-/// created with O_EXCL so that two tools never share one.
+/// Opens a new file beside the target. Its name does not grow with the target's (NAME_MAX). The
+/// file is created with O_EXCL, so that two tools never share one.
 int openNamed(const std::string& directory, std::string& name) {
     const std::string stem = directory + "/" + kTemporaryStart + std::to_string(::getpid()) + "-";
     for (int attempt = 0;; ++attempt) {
@@ -119,7 +123,7 @@ int openNamed(const std::string& directory, std::string& name) {
         const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST && attempt < 9999) continue;
         if (fd < 0) return fd;
-        // Somebody who cleaned up may have taken it for a leftover before it had its lock.
+        // Another process may have removed the file as a leftover before it was locked.
         struct stat info {};
         if (lockOwn(fd) && ::fstat(fd, &info) == 0 && info.st_nlink > 0) return fd;
         ::close(fd);
@@ -213,8 +217,7 @@ void AtomicFile::commit() {
         fail("expected to rename " + temporary_ + " to it", errno);
     }
     temporary_.clear();
-    // The rename itself is made durable where the file system lets us; the file is whole either
-    // way.
+    // This makes the rename durable where the file system allows it. The file is whole either way.
     const int directory = ::open(directoryOf(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory >= 0) {
         (void)::fsync(directory);

@@ -8,15 +8,15 @@
 
 namespace lacuna {
 
-/// A file under construction. What is written goes to a temporary file beside the target, without
-/// a name where the file system can do that; `commit` syncs it and renames it over the target.
-/// Without a commit (an exception, an early return, a kill) the temporary file is gone and an older
-/// target stays as it was.
+/// A file under construction. The bytes go to a temporary file beside the target, which has no name
+/// where the file system supports that. `commit` syncs the file and renames it over the target.
+/// Without a commit (an exception, an early return, a kill) the temporary file vanishes and an
+/// older target stays as it was.
 ///
-/// A target that is a symbolic link keeps the link; one that is no regular file (/dev/stdout, a
+/// A target that is a symbolic link stays one. A target that is no regular file (/dev/stdout, a
 /// pipe) is written to directly. A write-protected target is refused although it could be replaced.
-/// Constructing and dropping one is the test whether a file can be written (it leaves no trace).
-/// Every member that fails throws RunError, one line that names the target.
+/// To construct and drop an AtomicFile tests whether the file can be written, and leaves no trace.
+/// Every member that fails throws RunError with one line that names the target.
 class AtomicFile {
   public:
     explicit AtomicFile(const std::string& path);
@@ -29,7 +29,7 @@ class AtomicFile {
     void seek(std::uint64_t position);
     std::uint64_t tell() const { return position_; }
 
-    /// Throws as well if an earlier write failed and its exception was swallowed by a library.
+    /// Also throws if an earlier write failed and a library swallowed its exception.
     void commit();
 
   private:
@@ -37,14 +37,14 @@ class AtomicFile {
 
     std::string path_;       // as the user named it
     std::string target_;     // symbolic links resolved
-    std::string temporary_;  // empty: without a name yet, written directly, or committed
+    std::string temporary_;  // empty: nameless so far, written directly, or committed
     bool nameless_ = false;
     int fd_ = -1;
     int error_ = 0;  // errno of the first failure
     std::uint64_t position_ = 0;
 };
 
-/// All of `content` to `path`, atomically. Throws RunError.
+/// Writes all of `content` to `path` atomically. Throws RunError.
 void writeFileAtomically(const std::string& path, std::string_view content);
 
 }  // namespace lacuna

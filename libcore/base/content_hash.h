@@ -1,4 +1,5 @@
-// Names for content: the same bytes have the same name, whatever they are called or lie in.
+// Names for content: equal bytes have equal names, whatever their file is called and wherever it
+// lies.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace lacuna {
 
-/// XXH3-128 of bytes that are given piece by piece.
+/// XXH3-128 of bytes that are added piece by piece.
 class ContentHash {
   public:
     ContentHash();
@@ -20,7 +21,7 @@ class ContentHash {
     ContentHash& operator=(const ContentHash&) = delete;
 
     void add(std::span<const std::byte> bytes);
-    /// The bytes of trivially copyable values, which must have no padding.
+    /// Adds the bytes of trivially copyable values, which must have no padding.
     template <class T>
     void addValues(std::span<const T> values) {
         add(std::as_bytes(values));
@@ -30,12 +31,12 @@ class ContentHash {
         addValues(std::span(&value, 1));
     }
 
-    /// All that is left of a stream. At its end the stream is at its end, or failed to read.
+    /// Adds the rest of a stream. Afterwards the stream has reached its end or failed to read.
     void addStream(std::istream& stream);
 
-    /// Low half first.
+    /// The hash, low half first.
     std::array<std::uint64_t, 2> digest() const;
-    /// 32 hexadecimal digits, high half first.
+    /// The hash in 32 hexadecimal digits, high half first.
     std::string hex() const;
 
   private:

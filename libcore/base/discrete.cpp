@@ -26,7 +26,7 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
 
     guide_.reserve(ends.size() + 1);
     for (std::size_t k = 0, i = 0; k < ends.size(); ++k) {
-        while (bucket(ends[i]) < k) ++i;  // it ends: the last entry is one
+        while (bucket(ends[i]) < k) ++i;  // terminates: the last entry is one
         guide_.push_back(std::uint32_t(i));
     }
     guide_.push_back(std::uint32_t(lastPositive));

@@ -1,4 +1,4 @@
-// A table to pick one of n outcomes with given weights.
+// A table that picks one of n outcomes with given weights.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace lacuna {
 
-/// Cumulative distribution over n outcomes. Accumulated in double; the last POSITIVE entry and all
-/// after it are one, so that no outcome of weight zero is ever returned. One whose share of the sum
-/// is below 2^-53 may get probability zero. The reported pmf is the one that is realised: a
-/// difference of two stored entries. A guide table [Chen74] makes a pick cost two looks into
-/// memory, however many outcomes there are.
+/// Cumulative distribution over n outcomes, accumulated in double. The entry of the last outcome
+/// with POSITIVE weight and all entries after it are one, so that no outcome of weight zero is ever
+/// returned. An outcome whose share of the sum is below 2^-53 may get probability zero. The
+/// reported pmf is the realised one: a difference of two stored entries. With a guide table
+/// [Chen74], a pick costs two memory accesses, however many outcomes there are.
 class DiscreteDistribution {
   public:
     DiscreteDistribution() = default;
@@ -22,7 +22,7 @@ class DiscreteDistribution {
     /// first bad entry. A zero sum (or no entries) gives an empty distribution.
     explicit DiscreteDistribution(std::span<const double> weights);
 
-    /// No outcome can be picked: all weights are zero, or there are none.
+    /// Whether no outcome can be picked: all weights are zero, or there are none.
     bool empty() const { return total_ <= 0.0; }
     std::size_t size() const { return cdf_.size() - 1; }
     /// Sum of the weights.
@@ -32,25 +32,26 @@ class DiscreteDistribution {
         return index < size() ? cdf_[index + 1] - cdf_[index] : 0.0;
     }
 
-    /// Of all outcomes before `index`, at most size().
+    /// Realised probability of all outcomes before `index`, which is at most size().
     double before(std::size_t index) const { return cdf_[index]; }
 
     struct Pick {
         std::uint32_t index;
         double pmf;
-        double rest;  ///< u less the probability of all outcomes before this one
-        /// u, stretched to [0, 1) inside the outcome: to be used again.
+        double rest;  ///< u minus the probability of all outcomes before this one
+        /// u, rescaled to [0, 1) within the outcome; can be reused.
         double remapped() const { return std::max(0.0, below1(rest / pmf)); }
     };
-    /// u in [0, 1). Not to be called when empty().
+    /// Picks an outcome with u in [0, 1). Must not be called when empty().
     Pick sample(double u) const {
         const std::size_t k = std::min(bucket(u), size() - 1);
-        // The first outcome that ends above u: one of zero width can never be it. Those that end in
-        // smaller buckets end at most at u, and the first one that ends in a larger one, above it.
+        // The pick is the first outcome that ends above u, which never has zero width. Outcomes
+        // that end in smaller buckets end at most at u; the first outcome that ends in a larger
+        // bucket ends above u.
         const double* const ends = cdf_.data() + 1;
         std::size_t index = guide_[k];
-        // A sum and not a branch: no predictor could know on which side of it a random number is,
-        // and where outcomes are about equally likely it is the only step.
+        // A sum and not a branch: u is random, so that a branch predictor would often be wrong.
+        // Where outcomes are about equally likely, this is the only step.
         index += std::size_t(ends[index] <= u);
         if (ends[index] <= u) {
             index = std::size_t(std::upper_bound(ends + index, ends + guide_[k + 1], u) - ends);
@@ -63,11 +64,11 @@ class DiscreteDistribution {
     }
 
   private:
-    /// Which guide entry serves u; monotonic, whatever rounding does.
+    /// Index of the guide entry of u; monotonic, whatever rounding does.
     std::size_t bucket(double u) const { return std::size_t(u * double(size())); }
 
     std::vector<double> cdf_ = {0.0};   // where each outcome begins, and the end of the last one
-    std::vector<std::uint32_t> guide_;  // by bucket: the first outcome that it may pick; one more
+    std::vector<std::uint32_t> guide_;  // by bucket: its first outcome; and one more entry
     double total_ = 0.0;
 };
 

@@ -13,7 +13,7 @@ constexpr std::size_t kPointsPerLeaf = 8;
 constexpr std::size_t kStackResults = 16;
 
 struct Points {
-    std::vector<Vec3> points, sides;  // sides times the length that they count
+    std::vector<Vec3> points, sides;  // sides, times sideLength
 
     // Names that nanoflann asks for.
     std::size_t kdtree_get_point_count() const { return points.size(); }

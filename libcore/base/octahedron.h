@@ -1,4 +1,4 @@
-// The square [-1, 1]^2 as all directions.
+// Map between the square [-1, 1]^2 and all directions.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-/// Direction of a point of [-1, 1]^2: the octahedron |x| + |y| + |z| = 1, its lower half folded
-/// outwards [Praun03]. Unit.
+/// Unit direction of a point of [-1, 1]^2: the octahedron |x| + |y| + |z| = 1, whose lower half is
+/// folded outwards [Praun03].
 inline Vec3 octahedronDirection(Vec2 p) {
     Vec3 d{p.x, p.y, 1.0f - std::abs(p.x) - std::abs(p.y)};
     if (d.z < 0.0f) {
@@ -19,7 +19,7 @@ inline Vec3 octahedronDirection(Vec2 p) {
     return normalize(d);
 }
 
-/// The point of a direction of any length but zero.
+/// The point in [-1, 1]^2 of a direction, which need not be unit but not zero.
 inline Vec2 octahedronPoint(const Vec3& d) {
     const float sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
     const float x = d.x / sum, y = d.y / sum;

@@ -1,6 +1,6 @@
-// Options in one place each: a record's field with its name, range, unit and help. Command lines,
-// study files, help texts, headers of pictures and the keys of caches all read the same table; code
-// reads typed fields, never names.
+// Each option is defined in one place: a record's field with its name, range, unit and help.
+// Command lines, study files, help texts, headers of pictures and the keys of caches all read the
+// same table. Code reads typed fields, never names.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace lacuna {
 
-/// Something that people may set, in words and bounds.
+/// A setting that users can change: its name, help, range and default.
 struct Option {
     enum class Kind : std::uint8_t { Integer, Real, Switch, Choice, Text };
 
@@ -26,10 +26,11 @@ struct Option {
     Kind kind = Kind::Text;
     std::string help = {};
     double low = 0.0, high = 0.0;           ///< of numbers, inclusive
-    std::string unit = {};                  ///< of numbers: what they count or measure, or nothing
+    std::string unit = {};                  ///< of numbers: what they count or measure; may be
+                                            ///< empty
     std::vector<std::string> choices = {};  ///< of a Choice
-    std::string standard = {};              ///< the default, as it would be given
-    std::string standardText = {};          ///< what help shows in its place, if it says more
+    std::string standard = {};              ///< the default, as a user would give it
+    std::string standardText = {};          ///< what help shows instead of `standard`, unless empty
 
     /// "an integer from 1 to 100", "one of ris plain"
     std::string range() const;
@@ -39,21 +40,21 @@ struct Option {
     const std::string& shownDefault() const {
         return standardText.empty() ? standard : standardText;
     }
-    /// The value in its shortest form. Throws UsageError: `title`: expected .., found ..
+    /// The value in its shortest form. Throws UsageError "`title`: expected .., found ..".
     std::string checked(std::string_view value, const std::string& title) const;
 };
 
 /// Values by option name, complete and checked.
 using Settings = std::map<std::string, std::string>;
 
-/// Defaults overridden by "name=value" texts, later ones winning. Throws UsageError naming the
-/// option, its range and what was found; `owner` ("method risbpt") has the options, and `title`
-/// ("--set ") stands before names.
+/// The defaults, overridden by "name=value" texts, of which later ones win. `owner` ("method
+/// risbpt") is what the options belong to, and `title` ("--set ") stands before names in messages.
+/// Throws UsageError naming the option, its range and what was found.
 Settings resolveOptions(std::span<const Option> options, std::span<const std::string> assignments,
                         const std::string& owner, const std::string& title);
 
-/// Options bound to the fields of a Record, whose own values are the defaults. A field is a pointer
-/// to member, or a function that gives a record's field by reference.
+/// Options bound to the fields of a Record. The fields' initial values are the defaults. A field is
+/// a pointer to member, or a function that returns a record's field by reference.
 template <class Record>
 class OptionTable {
   public:
@@ -78,7 +79,7 @@ class OptionTable {
             [field](Record& r, const std::string& text) { std::invoke(field, r) = text == "on"; },
             [field](const Record& r) { return text(bool(std::invoke(field, r))); });
     }
-    /// `names`: of the field's values.
+    /// `names`: the names of the field's values.
     template <class Value, class Field>
     OptionTable& choice(std::string name, Field field,
                         std::vector<std::pair<std::string, Value>> names, std::string help) {
@@ -105,12 +106,12 @@ class OptionTable {
             [field](Record& r, const std::string& value) { std::invoke(field, r) = value; },
             [field](const Record& r) { return std::string(std::invoke(field, r)); });
     }
-    /// Of the option that was added last: what help shows for its default.
+    /// Sets what help shows for the default of the option that was added last.
     OptionTable& standardText(std::string text) {
         rows_.back().option.standardText = std::move(text);
         return *this;
     }
-    /// The options of a part of the record, their names behind `prefix`.
+    /// Adds the options of a part of the record, with `prefix` before their names.
     template <class Field, class Part>
     OptionTable& include(const std::string& prefix, Field field, const OptionTable<Part>& part) {
         for (const auto& row : part.rows()) {
@@ -131,8 +132,8 @@ class OptionTable {
         for (const Row& row : rows_) all.push_back(row.option);
         return all;
     }
-    /// The record that complete settings describe; names of other tables' options may be among
-    /// them. `prefix`: of this table's in the settings.
+    /// The record that complete settings describe. The settings may hold options of other tables
+    /// too. `prefix` stands before the names of this table's options in the settings.
     Record read(const Settings& settings, const std::string& prefix = {}) const {
         Record record = defaults_;
         for (const Row& row : rows_) row.set(record, settings.at(prefix + row.option.name));
@@ -147,7 +148,7 @@ class OptionTable {
 
     struct Row {
         Option option;
-        std::function<void(Record&, const std::string&)> set;  ///< of a checked value
+        std::function<void(Record&, const std::string&)> set;  ///< takes a checked value
         std::function<std::string(const Record&)> get;
     };
     const std::vector<Row>& rows() const { return rows_; }
@@ -183,7 +184,7 @@ class OptionTable {
     std::vector<Row> rows_;
 };
 
-/// The record of those that have none.
+/// The record of a method without options.
 struct NoOptions {};
 
 }  // namespace lacuna

@@ -1,9 +1,10 @@
-// Points that fill the unit square evenly: the first two dimensions of Sobol's sequence [Sobol67;
-// Joe08], a (0,2)-sequence in base 2, under Owen's scrambling [Owen98] by hashes [Burley20].
+// A low-discrepancy sequence in the unit square: the first two dimensions of Sobol's sequence
+// [Sobol67; Joe08], a (0,2)-sequence in base 2, with Owen scrambling [Owen98] by hashes [Burley20].
 //
-// Any 2^m points of it whose indices begin at a multiple of 2^m lie one in each of the 2^m boxes of
-// every shape 2^-a x 2^-(m-a), and every single point is uniform. Sequences of different seeds are
-// independent, so that pairs of dimensions can be put side by side.
+// Take 2^m consecutive points whose indices begin at a multiple of 2^m. For every shape 2^-a x
+// 2^-(m-a), each of the 2^m boxes of this shape holds one of them. Every single point is uniform.
+// Sequences of different seeds are independent, so that pairs of dimensions can be padded (put side
+// by side).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ constexpr std::uint32_t reverseBits(std::uint32_t x) {
     return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-/// Flips every bit or not by those below it: Owen's scrambling of a number whose bits are reversed.
-/// Constants: [Vegdahl21].
+/// Flips each bit or not, depending on the bits below it: Owen scrambling of a number whose bits
+/// are reversed. Constants: [Vegdahl21].
 constexpr std::uint32_t scrambleReversed(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -27,8 +28,8 @@ constexpr std::uint32_t scrambleReversed(std::uint32_t x, std::uint32_t seed) {
     return x ^ x * 0x53a22864u;
 }
 
-/// Sobol's second dimension with its bits reversed: Pascal's triangle mod 2 times the index, the
-/// same as by the direction numbers of Joe and Kuo.
+/// Sobol's second dimension with its bits reversed: Pascal's triangle mod 2 times the index. The
+/// direction numbers of Joe and Kuo give the same.
 constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
     index ^= index >> 16;
     index ^= (index & 0xff00ff00u) >> 8;
@@ -37,14 +38,14 @@ constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
     return index ^ (index & 0xaaaaaaaau) >> 1;
 }
 
-/// 64 bits in which every bit of the key shows (SplitMix64).
+/// A hash of 64 bits in which every bit depends on every bit of the key (SplitMix64).
 constexpr std::uint64_t mixBits(std::uint64_t key) {
     key = (key ^ key >> 30) * 0xbf58476d1ce4e5b9u;
     key = (key ^ key >> 27) * 0x94d049bb133111ebu;
     return key ^ key >> 31;
 }
 
-/// A number of 32 bits after the binary point each.
+/// Two fractions in [0, 1), each as 32 bits after the binary point.
 struct OwenPair {
     std::uint32_t x, y;
 };
@@ -52,14 +53,14 @@ struct OwenPair {
 /// Point `index` of the sequence of `seed`.
 constexpr OwenPair owenPair(std::uint32_t index, std::uint64_t seed) {
     const std::uint64_t one = mixBits(seed + 0x9e3779b97f4a7c15u), other = mixBits(~seed);
-    // Which point comes when is scrambled as well, or pairs side by side would know each other.
+    // The order of the points is scrambled as well; otherwise padded pairs would be correlated.
     const std::uint32_t order =
         reverseBits(scrambleReversed(reverseBits(index), std::uint32_t(one)));
     return {reverseBits(scrambleReversed(order, std::uint32_t(one >> 32))),
             reverseBits(scrambleReversed(sobolSecondReversed(order), std::uint32_t(other)))};
 }
 
-/// The same in one dimension.
+/// Element `index` of the one-dimensional sequence of `seed`.
 constexpr std::uint32_t owenNumber(std::uint32_t index, std::uint64_t seed) {
     const std::uint64_t one = mixBits(seed + 0x9e3779b97f4a7c15u);
     const std::uint32_t order =

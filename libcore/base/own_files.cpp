@@ -10,13 +10,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of files that are not there yet as well: "a.png" and "./a.png".
+/// Whether two paths name one file, which need not exist yet: "a.png" and "./a.png".
 bool isSame(const std::string& a, const std::string& b) {
     if (a.empty() || b.empty()) return false;
     std::error_code error;
     if (fs::is_character_file(a, error)) return false;
     if (fs::equivalent(a, b, error)) return true;
-    // A relative path of which nothing is there would stay relative.
+    // weakly_canonical leaves a relative path relative if no part of it exists.
     const fs::path one = fs::weakly_canonical(fs::absolute(a, error), error),
                    other = fs::weakly_canonical(fs::absolute(b, error), error);
     return one == other;

@@ -17,14 +17,16 @@
 namespace lacuna {
 
 namespace {
-/// Those that this process may run on: mpirun, taskset and containers leave it some of them.
+/// The number of processors that this process may run on: mpirun, taskset and containers can
+/// restrict it to some of them.
 int processors() {
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
     return std::max(1, int(std::thread::hardware_concurrency()));
 }
 
-/// More only wait for each other: 4096 threads on two processors take 50 times as long as two.
+/// Limits the number of threads. More threads only wait for each other: 4096 threads on two
+/// processors take 50 times as long as two.
 int sensible(int threads) {
     constexpr int kAlways = 64, kPerProcessor = 4;
     const int available = processors();
@@ -32,8 +34,8 @@ int sensible(int threads) {
     return std::min(threads, std::max(kAlways, kPerProcessor * available));
 }
 
-/// oneTBB starts threads where nobody can catch what it throws if there is no room for another, so
-/// that is found out before.
+/// Throws RunError if the system cannot start `count` threads. oneTBB would throw where nobody can
+/// catch it, so that the check comes before.
 void requireRoomForThreads(int count) {
     std::promise<void> allStarted;
     const std::shared_future<void> wait = allStarted.get_future().share();
@@ -42,7 +44,7 @@ void requireRoomForThreads(int count) {
     bool room = true;
     try {
         for (int i = 1; i < count; ++i) probes.emplace_back([wait] { wait.wait(); });
-    } catch (const std::exception&) {  // no process or no memory left
+    } catch (const std::exception&) {  // no thread or no memory left
         room = false;
     }
     const std::size_t started = probes.size() + 1;

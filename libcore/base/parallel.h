@@ -1,5 +1,5 @@
-// Parallel loops over oneTBB. Every loop of ours writes to places that belong to one index alone,
-// so results never depend on the number of threads.
+// Parallel loops over oneTBB. Every loop here writes only to memory that belongs to one index
+// alone, so that results never depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,9 @@
 namespace lacuna {
 
 /// The worker threads of one tool run. `threads` = 0 means one for each processor that the process
-/// may run on; never more than 64, or four for each of them if that is more.
-/// Keeps the floating point environment of the constructing thread in every worker
-/// (Embree would otherwise leave flush-to-zero set in some of them, so that denormals depended on
-/// the order of calls).
+/// may run on. The limit is 64 threads, or four per processor if that is more. Every worker keeps
+/// the floating point environment of the constructing thread. (Otherwise Embree would leave
+/// flush-to-zero set in some workers, and denormals would depend on the order of calls.)
 class ThreadPool {
   public:
     /// Throws RunError where the system has no room for that many threads.

@@ -7,7 +7,7 @@ namespace lacuna {
 
 namespace {
 
-/// Bytes of the UTF-8 sequence that begins the text; 0 if none does (RFC 3629).
+/// Length in bytes of the UTF-8 sequence at the start of the text; 0 if there is none (RFC 3629).
 std::size_t sequenceLength(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned first = byte(0);
@@ -18,7 +18,7 @@ std::size_t sequenceLength(std::string_view text) {
     for (std::size_t i = 1; i < length; ++i) {
         if (byte(i) < 0x80 || byte(i) > 0xBF) return 0;
     }
-    // Longer than need be, halves of UTF-16, and beyond Unicode's end.
+    // Overlong forms, UTF-16 surrogates, and code points beyond Unicode's end.
     const bool tooLong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
     const bool none = (first == 0xED && byte(1) > 0x9F) || (first == 0xF4 && byte(1) > 0x8F);
     return tooLong || none ? 0 : length;

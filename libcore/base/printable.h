@@ -1,4 +1,4 @@
-// Text of foreign files in messages.
+// Text from foreign files in messages.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace lacuna {
 
-/// Text of a file's own (names, URIs, what libraries say of them) made safe for one line of a terminal:
-/// control characters become blanks, what is no UTF-8 question marks, and text beyond `longest` bytes is cut
-/// between two characters.
+/// Makes text from a file (names, URIs, libraries' messages about it) safe for one line of a terminal. Control
+/// characters become blanks, invalid UTF-8 becomes question marks, and text beyond `longest` bytes is cut between two
+/// characters.
 std::string printable(const std::string& text, std::size_t longest = 120);
 
 }  // namespace lacuna

@@ -23,7 +23,7 @@ Rng::Pair Rng::evenSquare() {
 
 double Rng::evenDouble(std::uint32_t index) const {
     const std::uint64_t seed = seedOf(point_, dimension_);
-    // Behind the 32 bits that are even, any that are uniform.
+    // The high 32 bits are even; the low bits are merely uniform.
     return doubleOf(owenNumber(index, seed), mixBits(seed ^ mixBits(index)) >> 32);
 }
 

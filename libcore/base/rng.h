@@ -1,6 +1,6 @@
-// Counter-based random numbers: a stream is addressed, never advanced from a shared state, so that
-// any sample of any iteration can be drawn again alone and no result depends on the number of
-// threads.
+// Counter-based random numbers. A stream is addressed, never advanced from a shared state. Any
+// sample of any iteration can therefore be drawn again alone, and no result depends on the number
+// of threads.
 #pragma once
 
 #include <Random123/philox.h>
@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// What a stream is used for; streams of different kinds are independent.
+/// The purpose of a stream. Streams of different kinds are independent.
 enum class StreamKind : std::uint32_t {
     LightPath,   ///< index = light path
     EyePath,     ///< index = pixel (row * width + column)
@@ -21,17 +21,17 @@ enum class StreamKind : std::uint32_t {
     CachePath,   ///< eye paths that leave cache points, index = path
     CacheDraw,   ///< draws at a cache point, index = cache point
     Chain,       ///< searches for specular chains along an eye path, index = pixel
-    Mattes,      ///< coverage by objects and materials, index = pixel
-    Refraction,  ///< next event through glass along an eye path, index = pixel
-    Sharing,     ///< what a pixel takes of the eye walks of others, index = pixel
-    KnownWay,    ///< next event along known ways, along an eye path, index = pixel
+    Mattes,      ///< coverage by objects and materials (Cryptomatte), index = pixel
+    Refraction,  ///< next-event estimation through glass, along an eye path, index = pixel
+    Sharing,     ///< a pixel's choices among the eye paths of other pixels, index = pixel
+    KnownWay,    ///< next-event estimation along known ways, along an eye path, index = pixel
 };
 
-/// A point of a sequence whose points lie evenly (owen.h).
+/// A point of a low-discrepancy sequence (owen.h). Its numbers are called even.
 struct EvenPoint {
     std::uint64_t sequence = 0;
     std::uint32_t index = 0;
-    std::uint32_t dimensions = 0;  ///< how many it has; 0: there is no sequence
+    std::uint32_t dimensions = 0;  ///< dimensions of the point; 0: there is no sequence
 };
 
 /// One stream of uniform numbers: Philox4x32-7 [Salmon et al. 2011], the fewest rounds that pass
@@ -53,17 +53,18 @@ class Rng {
     }
     /// Uniform float in [0, 1): 24 bits, never 1.
     float uniform() { return floatOf(bits()); }
-    /// Uniform double in [0, 1): 53 bits, for choices among very many or very unequal outcomes.
+    /// Uniform double in [0, 1): 53 bits, for choices among very many or very unlikely outcomes.
     double uniformDouble() {
         const std::uint32_t high = bits(), low = bits();
         return doubleOf(high, low);
     }
-    /// What uniformDouble() and two uniform() would give in turn, for less.
+    /// One double and two floats, each uniform in [0, 1).
     struct Draw {
         double pick;
         float u1, u2;
-        bool even = false;  ///< u1, u2: in the square; pick: by itself
+        bool even = false;  ///< the pair (u1, u2) is even, and pick by itself
     };
+    /// The numbers that uniformDouble() and two uniform() would give in turn, at a lower cost.
     Draw draw() {
         if (used_ != 4) {
             const double pick = uniformDouble();
@@ -74,29 +75,29 @@ class Rng {
         ++counter_.v[0];
         return {doubleOf(b.v[0], b.v[1]), floatOf(b.v[2]), floatOf(b.v[3])};
     }
-    /// Uniform integer in [0, n), n >= 1, without the bias of a remainder beyond 2^-64 n.
+    /// Uniform integer in [0, n), n >= 1. Each probability is 1/n to within 2^-32.
     std::uint32_t below(std::uint32_t n) {
         return std::uint32_t((std::uint64_t(bits()) * n) >> 32);
     }
 
-    /// Where the stream's even numbers come from. Beyond the point's dimensions, and without a
-    /// point, they are the stream's next ones.
+    /// Sets the point that the stream's even numbers come from. Beyond the point's dimensions, and
+    /// without a point, they are the stream's next random numbers.
     void follow(const EvenPoint& point) { point_ = point; }
-    /// The next even number is that of `dimension`: the same whatever was drawn before.
+    /// The next even number will be that of `dimension`, whatever was drawn before.
     void toDimension(std::uint32_t dimension) { dimension_ = dimension; }
     struct Pair {
         float u1, u2;
     };
-    /// Of one dimension each.
+    /// Even numbers, each call from one dimension.
     float evenUniform() { return isEven() ? evenFloat() : uniform(); }
     Pair evenPair() {
         if (isEven()) return evenSquare();
         const float u1 = uniform(), u2 = uniform();
         return {u1, u2};
     }
-    /// Of two dimensions.
+    /// An even draw from two dimensions: `pick` from the first, (u1, u2) from the second.
     Draw evenDraw() { return isEven() ? evenDrawn() : draw(); }
-    /// The i-th of n that are drawn from one dimension, even together.
+    /// The i-th of n numbers that are drawn from one dimension and are even together.
     double evenPick(std::uint32_t i, std::uint32_t n) {
         return isEven() ? evenDouble(point_.index * n + i) : uniformDouble();
     }
@@ -123,7 +124,8 @@ class Rng {
     EvenPoint point_;
 };
 
-/// Uniform float in [0, 1) that depends on nothing but the words: a draw where there is no stream.
+/// Uniform float in [0, 1) that depends on the words alone: a random number where there is no
+/// stream.
 inline float hashToUniform(const std::array<std::uint32_t, 8>& words) {
     using Philox = r123::Philox4x32_R<7>;
     Philox::ctr_type block{{words[0], words[1], words[2], words[3]}};

@@ -32,7 +32,7 @@ struct SineCosine {
     float sine, cosine;
 };
 
-/// Of an angle in [-pi/4, pi/4]: Cephes' sinf and cosf kernels.
+/// Sine and cosine of an angle in [-pi/4, pi/4]: the kernels of Cephes' sinf and cosf.
 inline SineCosine sineCosineNearZero(float x) {
     const float z = x * x;
     return {
@@ -42,7 +42,7 @@ inline SineCosine sineCosineNearZero(float x) {
                 (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f))};
 }
 
-/// Of an angle in whole turns, |turns| at most a few.
+/// Sine and cosine of an angle in whole turns, where |turns| is at most a few.
 inline SineCosine sineCosineOfTurns(float turns) {
     const float quarters = std::nearbyint(4.0f * turns);
     const SineCosine near = sineCosineNearZero((turns - 0.25f * quarters) * (2.0f * kPi));
@@ -52,8 +52,8 @@ inline SineCosine sineCosineOfTurns(float turns) {
     return {quadrant >= 2 ? -sine : sine, quadrant == 1 || quadrant == 2 ? -cosine : cosine};
 }
 
-/// atan2(y, x) in whole turns, in [-1/2, 1/2], to 1e-8 of a turn and rounding; of (0, 0) it is 0
-/// [Abramowitz64 4.4.49].
+/// atan2(y, x) in whole turns, in [-1/2, 1/2], accurate to 1e-8 of a turn but for rounding; 0 for
+/// (0, 0) [Abramowitz64 4.4.49].
 inline float turnsOf(float y, float x) {
     const float ax = std::abs(x), ay = std::abs(y);
     const float longer = std::max(ax, ay), shorter = std::min(ax, ay);
@@ -73,7 +73,7 @@ inline float turnsOf(float y, float x) {
     return std::copysign(turns, y);
 }
 
-/// Barycentrics of the second and the third corner, even over a triangle.
+/// Barycentrics of the second and the third corner, uniform over the area of a triangle.
 inline Vec2 uniformTriangle(float u1, float u2) {
     const float s = std::sqrt(u1);
     return {1.0f - s, u2 * s};
@@ -83,7 +83,7 @@ inline Vec2 uniformTriangle(float u1, float u2) {
 inline Vec2 concentricDisk(float u1, float u2) {
     const float a = 2.0f * u1 - 1.0f;
     const float b = 2.0f * u2 - 1.0f;
-    // Selections, not branches: no predictor could know which of two random numbers is larger.
+    // Selections, not branches: a predictor cannot know which of two random numbers is larger.
     const bool aLonger = std::abs(a) > std::abs(b);
     const float radius = aLonger ? a : b;
     const float other = aLonger ? b : a;
@@ -93,12 +93,12 @@ inline Vec2 concentricDisk(float u1, float u2) {
     return {aLonger ? cosine : sine, aLonger ? sine : cosine};
 }
 
-/// A vector that is unit but for rounding, unit again: one Newton step for 1 / sqrt.
+/// Normalises a vector that is unit but for rounding: one Newton step for 1 / sqrt.
 inline Vec3 renormalize(Vec3 v) {
     return v * (1.5f - 0.5f * dot(v, v));
 }
 
-/// Local direction (z up) with pdfW = z / pi.
+/// Local direction (z up), sampled with pdfW = z / pi.
 inline Vec3 cosineHemisphere(float u1, float u2) {
     const Vec2 p = concentricDisk(u1, u2);
     return {p.x, p.y, std::sqrt(std::max(0.0f, 1.0f - p.x * p.x - p.y * p.y))};

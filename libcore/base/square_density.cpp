@@ -12,8 +12,8 @@ SquareDensity::SquareDensity(std::vector<Node> nodes) : nodes_(std::move(nodes))
         if (!good) throw std::invalid_argument(std::string("density on the square: ") + what);
     };
     require(!nodes_.empty() && nodes_.size() < kSecondAxis, "no nodes, or too many");
-    // Children stand behind their node and are those of one node alone, so that nothing goes in
-    // circles, and levels are known before they are looked at.
+    // Children come after their node and belong to one node alone. The tree therefore has no
+    // cycles, and each node's level is known before the node is visited.
     std::vector<int> level(nodes_.size(), -1);
     std::vector<bool> seen(nodes_.size());
     level[0] = 0;
@@ -50,7 +50,7 @@ SquarePoint SquareDensity::warp(SquarePoint u) const {
         const bool upper = u[axis] >= lower;
         low[axis] += upper ? size[axis] : 0.0;
         u[axis] = upper ? (u[axis] - lower) / (1.0 - lower) : u[axis] / lower;
-        // Rounding must not lead into the next half.
+        // Rounding must not lead beyond this half.
         u[axis] = below1(u[axis]);
         node = nodes_.data() + (node->code & ~(kInner | kSecondAxis)) + (upper ? 1 : 0);
     }

@@ -1,4 +1,4 @@
-// A density on the unit square that is constant in each leaf of a tree of halves.
+// A density on the unit square that is constant in each leaf of a tree of halvings.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace lacuna {
 /// A point of the unit square.
 using SquarePoint = std::array<double, 2>;
 
-/// A node halves its part of the square along one axis and knows the probability of the lower half.
-/// By default one leaf: uniform.
+/// A binary tree over the unit square. A node halves its part of the square along one axis and
+/// stores the probability of the lower half. The default is one leaf: the uniform density.
 class SquareDensity {
   public:
     struct Node {
@@ -21,18 +21,18 @@ class SquareDensity {
         friend bool operator==(const Node&, const Node&) = default;
     };
     static constexpr std::uint32_t kInner = 0x80000000u, kSecondAxis = 0x40000000u;
-    /// Levels of a tree: what a product of two 24-bit numbers can tell apart.
+    /// Most levels of a tree: as many as two 24-bit coordinates can tell apart.
     static constexpr int kMostLevels = 24;
 
     SquareDensity() : SquareDensity(std::vector<Node>{Node{}}) {}
-    /// The root first; the two children of a node stand side by side, behind it. Leaves are numbered
-    /// 0, 1, .. in any order. Throws std::invalid_argument for anything else.
+    /// The root comes first. The two children of a node are adjacent and come after it. Leaves are
+    /// numbered 0, 1, .. in any order. Throws std::invalid_argument for anything else.
     explicit SquareDensity(std::vector<Node> nodes);
 
     std::span<const Node> nodes() const { return nodes_; }
     std::uint32_t leafCount() const { return leafCount_; }
 
-    /// Where a point lies.
+    /// The leaf that contains a point, and the density there.
     struct Place {
         std::uint32_t leaf;
         double pdf;  ///< density per area of the square
@@ -51,7 +51,7 @@ class SquareDensity {
         }
         return {node->code, pdf};
     }
-    /// The point that a point of the square, drawn evenly, is moved to: with the density of `at`.
+    /// Maps a uniform point of the square to a point with the density of `at`.
     SquarePoint warp(SquarePoint u) const;
 
   private:

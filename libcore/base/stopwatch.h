@@ -1,4 +1,4 @@
-// Adds the time of its life to a number.
+// Adds the seconds between its construction and destruction to a number.
 #pragma once
 
 #include <chrono>

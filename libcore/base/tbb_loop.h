@@ -1,4 +1,4 @@
-// A parallel loop in the caller's arena of oneTBB, as ThreadSanitizer can follow it.
+// A parallel loop in the caller's oneTBB arena that ThreadSanitizer can follow.
 #pragma once
 
 #include <oneapi/tbb/parallel_for.h>
@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-/// Tells ThreadSanitizer that whatever was done before give() is seen after take(). oneTBB sees to that, but its
+/// Tells ThreadSanitizer that everything done before give() is visible after take(). oneTBB ensures that, but its
 /// library is not compiled with the sanitizer.
 class HandOver {
   public:
@@ -28,7 +28,8 @@ class HandOver {
 #endif
 };
 
-/// Calls body(i) for i in [0, n), by tbb::parallel_for with what else it takes: a partitioner, a context.
+/// Calls body(i) for i in [0, n) with tbb::parallel_for. `how`: its further arguments, such as a partitioner or a
+/// context.
 template <class Index, class Body, class... How>
 void tbbLoop(Index n, const Body& body, How&&... how) {
     HandOver begun, done;

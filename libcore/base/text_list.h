@@ -1,4 +1,4 @@
-// Lists inside texts: names in messages, parts of an option's value.
+// Lists in text: names in messages, parts of an option's value.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-/// The texts of a range, or of its elements' `projection`, one after the other.
+/// The texts of a range, or its elements' projections, with `between` between them.
 template <class Range, class Projection = std::identity>
 std::string joined(const Range& range, std::string_view between, Projection projection = {}) {
     std::string text;

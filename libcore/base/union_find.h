@@ -1,4 +1,4 @@
-// Which of n things hang together.
+// Union-find: which of n elements are connected.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@ class UnionFind {
     explicit UnionFind(std::size_t n) : parent_(n), sets_(n) {
         std::iota(parent_.begin(), parent_.end(), std::uint32_t(0));
     }
-    /// The first one of its set.
+    /// The smallest element of the set of i.
     std::uint32_t find(std::uint32_t i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// False if they were in one set already.
+    /// Unites the sets of a and b. False if they were one set already.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);

@@ -112,8 +112,8 @@ struct Rgb {
     friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// Mean of the channels, which steers every selection: positive wherever any channel is, and
-/// linear, so that sums may be carried along a path.
+/// Mean of the channels, which every selection uses as its weight. It is positive wherever any
+/// channel is. It is linear, so that sums may be carried along a path.
 constexpr float mean(const Rgb& c) {
     return (c.r + c.g + c.b) * (1.0f / 3.0f);
 }
@@ -137,9 +137,9 @@ struct Affine {
     constexpr Vec3d vector(const Vec3d& v) const { return m[0] * v.x + m[1] * v.y + m[2] * v.z; }
     constexpr Vec3d point(const Vec3d& p) const { return vector(p) + m[3]; }
     constexpr double determinant() const { return dot(m[0], cross(m[1], m[2])); }
-    /// Normal transform up to scale: the cofactor matrix, which keeps the side under negative scale
-    /// (a normal that belongs to the winding stays on the winding's side after the sign is
-    /// applied).
+    /// Transform of normals up to scale: the cofactor matrix. Under negative scale it keeps the
+    /// side: a normal that belongs to the winding stays on the winding's side after the sign is
+    /// applied.
     constexpr Vec3d normal(const Vec3d& n) const {
         return cross(m[1], m[2]) * n.x + cross(m[2], m[0]) * n.y + cross(m[0], m[1]) * n.z;
     }

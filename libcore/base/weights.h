@@ -1,12 +1,12 @@
-// What tables of weights ask of them before anything else.
+// The check of weights that every table of weights begins with.
 #pragma once
 
 #include <span>
 
 namespace lacuna {
 
-/// The largest weight, zero for none. Throws std::invalid_argument naming the first that is
-/// negative or not finite; `table` begins the message.
+/// The largest weight, or zero if there are none. Throws std::invalid_argument naming the first
+/// weight that is negative or not finite; the message begins with `table`.
 double largestWeight(std::span<const double> weights, const char* table);
 
 }  // namespace lacuna

@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-/// Hashes say nothing to people.
+/// Whether the value is a hash, which messages do not show.
 bool isHash(const std::string& value) {
     constexpr std::size_t kDigits = 32;
     return value.size() >= kDigits && value.find_first_not_of("0123456789abcdef") >= kDigits;
@@ -25,7 +25,7 @@ std::string CacheStamp::text() const {
     std::string text;
     for (const auto& [name, value] : inputs) {
         std::string line = value;
-        std::replace(line.begin(), line.end(), '\n', ' ');  // a camera may be called anything
+        std::replace(line.begin(), line.end(), '\n', ' ');  // a camera's name may contain a newline
         text += name + "=" + line + "\n";
     }
     return text;

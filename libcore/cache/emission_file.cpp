@@ -21,17 +21,18 @@ struct Arrays {
     SquareForest points, rays;
 };
 
-/// Calls visit(name, array) for every section in the order of the file: the schema, for both ways.
+/// Calls visit(name, array) for every section in the order of the file: the schema for writing and
+/// reading.
 template <class Visitor, class ArraysOf>
 void forEachSection(Visitor& visit, ArraysOf& a) {
     visit("inputs", a.inputs);             // text: CacheStamp::text()
     visit("content_hash", a.contentHash);  // text
-    visit("light_pmf", a.pmf);             // double, by light; none: nothing was learned
-    visit("point_tree", a.pointTree);      // uint32, by light: its tree of points
-    visit("ray_tree", a.rayTree);          // uint32, by leaf of those: its tree of rays
-    visit("point_sizes", a.points.sizes);  // uint32, by tree of points: nodes
+    visit("light_pmf", a.pmf);             // double, by light; empty: nothing was learned
+    visit("point_tree", a.pointTree);      // uint32, by light: index of its tree of points
+    visit("ray_tree", a.rayTree);          // uint32, by leaf of those: index of its tree of rays
+    visit("point_sizes", a.points.sizes);  // uint32, by tree of points: number of nodes
     visit("point_nodes", a.points.nodes);  // float lower; uint32 code
-    visit("ray_sizes", a.rays.sizes);      // likewise of rays
+    visit("ray_sizes", a.rays.sizes);      // likewise for trees of rays
     visit("ray_nodes", a.rays.nodes);
 }
 

@@ -1,5 +1,5 @@
-// KEY.emission: where light subpaths begin and set out. A section file (section_file.h; files.md,
-// "Emission").
+// KEY.emission: the learned distribution of emission, from which light subpaths begin. A section
+// file (section_file.h; files.md, "Emission").
 #pragma once
 
 #include <memory>
@@ -10,17 +10,17 @@
 namespace lacuna {
 
 struct EmissionFile {
-    std::shared_ptr<const EmissionGuide> guide;  ///< null: nothing is better than plain emission
+    std::shared_ptr<const EmissionGuide> guide;  ///< null: nothing beats plain emission
     CacheStamp stamp;
     std::string contentHash;
 };
 
-/// Atomically. Throws RunError.
+/// Writes the file atomically. Throws RunError.
 void writeEmissionFile(const std::string& path, const EmissionFile& file);
 
 /// Throws InputError if the file is missing, damaged, of another version, or made of other inputs
-/// than `expected` names; `remedy` says what to do. Whether the guide fits a scene's lights is
-/// still to be asked (EmissionGuide::check).
+/// than `expected` names; `remedy` tells the user what to do. The caller still has to check whether
+/// the guide fits the scene's lights (EmissionGuide::check).
 EmissionFile readEmissionFile(const std::string& path, const CacheStamp& expected,
                               const std::string& remedy);
 

@@ -34,9 +34,9 @@ bool readAll(const std::string& path, std::string& bytes) {
     return !file.bad();
 }
 
-/// Holds the folder's lock while a pair is written or read, or there would be the file of one process
-/// beside the checksum of another. Where folders have no locks (some network file systems) such a
-/// pair is refused and made again.
+/// Holds the folder's lock while a file and its checksum are written or read. Without it, the file of one process could
+/// lie beside the checksum of another. Where folders have no locks (some network file systems), such a pair is refused
+/// and made again.
 class PairLock {
   public:
     /// `how`: LOCK_EX to write, LOCK_SH to read.

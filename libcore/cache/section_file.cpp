@@ -31,7 +31,7 @@ std::size_t padded(std::size_t bytes) {
     return (bytes + 7) / 8 * 8;
 }
 
-/// Of everything but the hash itself.
+/// Hash of everything but the hash itself.
 std::array<std::uint64_t, 2> hashOf(Header header, const std::string& bytes) {
     header.hash[0] = header.hash[1] = 0;
     ContentHash hash;

@@ -1,11 +1,11 @@
-// Binary files of named arrays, which caches are written as:
+// Binary files of named arrays, the format of caches:
 //
-//   64 bytes   magic, version, number of sections, bytes in all, XXH3-128 of everything else
+//   64 bytes magic, version, number of sections, total bytes, XXH3-128 of everything else
 //   sections   name (16 bytes), bytes per element, number of elements, elements, zeros up to a
 //              multiple of 8
 //
-// Little-endian, as it lies in memory. Length, checksum and version are compared before anything
-// else is read; then every size is.
+// Little-endian, as in memory. Length, checksum and version are compared before anything else is
+// read; then every size is.
 #pragma once
 
 #include <cstdint>
@@ -24,29 +24,30 @@ struct SectionFormat {
     const char* writer;  ///< "lacuna-train"
 };
 
-/// Sections in the order of the file: the schema visits the same ones when it reads them.
+/// Takes sections in the order of the file. The schema visits the same sections when it reads.
 class SectionWriter {
   public:
     template <class Array>
     void operator()(const char* name, const Array& values) {
         add(name, sizeof(values[0]), values.size(), values.data());
     }
-    /// Atomically. Throws RunError.
+    /// Writes the file atomically. Throws RunError.
     void write(const std::string& path, const SectionFormat& format);
 
   private:
     void add(const char* name, std::size_t elementBytes, std::size_t count, const void* data);
 
-    std::string bytes_ = std::string(64, '\0');  // the header, to come
+    std::string bytes_ = std::string(64, '\0');  // begins with room for the header
 };
 
 class SectionReader {
   public:
-    /// Throws InputError if the file is missing, damaged or of another format; `remedy` says what to
-    /// do.
+    /// Throws InputError if the file is missing, damaged or of another format; `remedy` tells the
+    /// user what to do.
     SectionReader(const std::string& path, const SectionFormat& format, const std::string& remedy);
 
-    /// Throws std::invalid_argument where the next section is not this one.
+    /// Reads the next section. Throws std::invalid_argument if it has another name or size of
+    /// elements.
     template <class Array>
     void operator()(const char* name, Array& values) {
         const std::span<const char> bytes = next(name, sizeof(values[0]));

@@ -13,9 +13,10 @@ namespace {
 
 const char* const kSkeletonKind = "skeleton";
 const char* const kNodes = "lacuna.nodes";  // x y z radius, doubles, the file's coordinates
-const char* const kEdges = "lacuna.edges";  // two indices and six coordinates each
+const char* const kEdges = "lacuna.edges";  // two indices and six coordinates per edge, doubles
 
-/// Nodes' indices in the file: at least 0; solid voxels' entries are -2 - index, -1 is no node.
+/// An entry's value in the file: index >= 0 of the node, -2 - index for solid voxels, -1 for no
+/// node.
 std::int32_t toFile(std::uint16_t entry) {
     const std::int32_t node = entry & ~NodeMap::kSolid;
     if (node == NodeMap::kNone) return -1;
@@ -34,7 +35,7 @@ std::vector<double> doublesOf(const openvdb::MetaMap& meta, const char* name, st
         vdb::refuse(path, name, "something else", remedy);
     }
     std::vector<double> values(text->value().size() / sizeof(double));
-    // A graph without edges has no bytes to copy, and no address to copy them to.
+    // For a graph without edges, data() may be null, which memcpy must not get.
     if (!values.empty()) {
         std::memcpy(values.data(), text->value().data(), text->value().size());
     }

@@ -1,4 +1,4 @@
-// Densities on the square, one behind the other, as section files hold them.
+// Densities on the unit square in the form of section files: one after the other.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 namespace lacuna {
 
 struct SquareForest {
-    std::vector<std::uint32_t> sizes;        ///< nodes, by tree
-    std::vector<SquareDensity::Node> nodes;  ///< of all trees
+    std::vector<std::uint32_t> sizes;        ///< number of nodes, by tree
+    std::vector<SquareDensity::Node> nodes;  ///< nodes of all trees
     static_assert(sizeof(SquareDensity::Node) == 8);
 
     void add(const SquareDensity& tree) {
         sizes.push_back(std::uint32_t(tree.nodes().size()));
         nodes.insert(nodes.end(), tree.nodes().begin(), tree.nodes().end());
     }
-    /// Throws std::invalid_argument.
+    /// Throws std::invalid_argument where sizes or nodes are not those of trees.
     std::vector<SquareDensity> trees() const {
         std::vector<SquareDensity> trees;
         std::span<const SquareDensity::Node> rest(nodes);

@@ -24,19 +24,20 @@ struct Arrays {
     std::vector<float> gamma;
 };
 
-/// Calls visit(name, array) for every section in the order of the file: the schema, for both ways.
+/// Calls visit(name, array) for every section in the order of the file: the schema for writing and
+/// reading.
 template <class Visitor, class ArraysOf>
 void forEachSection(Visitor& visit, ArraysOf& a) {
     visit("inputs", a.inputs);             // text: CacheStamp::text()
     visit("content_hash", a.contentHash);  // text
-    visit("subspaces", a.counts);          // uint32: of light, of eye
+    visit("subspaces", a.counts);          // uint32: number of light subspaces, of eye subspaces
     visit("light_paths", a.lightPaths);    // uint64: M'
     visit("light_cells", a.blocks);        // uint32 first; uint16 rows, columns: by light
     visit("light_tree", a.lightNodes);     // float threshold; uint32 code
     visit("eye_tree", a.eyeNodes);         // likewise
     visit("q", a.q);                       // double, by light subspace
     visit("population", a.population);     // double, by light subspace
-    visit("gamma", a.gamma);               // float, eye subspace by eye subspace
+    visit("gamma", a.gamma);               // float, one eye subspace after the other
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// KEY.subspaces: what lacuna-train writes and lacuna-render reads. One section file (section_file.h;
-// files.md, "Subspaces"), its sections in the order and with the element sizes of the table in the
-// .cpp. Every size, index and number is compared before it is used.
+// KEY.subspaces, which lacuna-train writes and lacuna-render reads. A section file (section_file.h;
+// files.md, "Subspaces"); the table in the .cpp gives the order of its sections and their element
+// types. Every size, index and number is checked before it is used.
 #pragma once
 
 #include "libcore/cache/cache_name.h"
@@ -14,11 +14,11 @@ struct SubspaceFile {
     std::string contentHash;
 };
 
-/// Atomically. Throws RunError.
+/// Writes the file atomically. Throws RunError.
 void writeSubspaceFile(const std::string& path, const SubspaceFile& file);
 
 /// Throws InputError if the file is missing, damaged, of another version, or made of other inputs
-/// than `expected` names; `remedy` says what to do.
+/// than `expected` names; `remedy` tells the user what to do.
 SubspaceFile readSubspaceFile(const std::string& path, const CacheStamp& expected,
                               const std::string& remedy);
 

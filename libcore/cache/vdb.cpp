@@ -15,11 +15,11 @@ const char* const kKind = "lacuna.kind";
 const char* const kFormat = "lacuna.version";
 const char* const kInputs = "lacuna.inputs";  // CacheStamp::text()
 const char* const kContent = "lacuna.content_hash";
-const char* const kOrigin = "lacuna.origin";  // the file's coordinates
+const char* const kOrigin = "lacuna.origin";  // in the scene file's coordinates
 const char* const kVoxel = "lacuna.voxel_size";
 const char* const kSize = "lacuna.size";
 constexpr int kLargestSide = 4096;
-constexpr double kMostVoxels = double(1 << 30);  // dense arrays of them are made
+constexpr double kMostVoxels = double(1 << 30);  // readers make dense arrays of them
 
 openvdb::Vec3d toVdb(const Vec3d& v) {
     return {v.x, v.y, v.z};

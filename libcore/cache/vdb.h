@@ -1,4 +1,4 @@
-// Grids to and from the bytes of a .vdb file. For the files of this folder that include OpenVDB.
+// Reads and writes grids in .vdb files. For those files of this folder that include OpenVDB.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -8,8 +8,8 @@
 #include "libcore/cache/cache_name.h"
 #include "libcore/voxel/grid.h"
 
-// The grids of our files, as the library of Debian 12 exports them: their classes, compiled anew, take ten
-// seconds per grid and file. (Where GCC optimises, it needs no more of them than what is exported.)
+// Debian 12's library exports the grid classes used here. To compile them anew would take ten seconds per grid and
+// file. (Where GCC optimises, it needs no more of them than what is exported.)
 #ifdef LACUNA_GRIDS_OF_OPENVDB
 namespace openvdb {
 OPENVDB_USE_VERSION_NAMESPACE
@@ -37,7 +37,7 @@ void putHeader(openvdb::MetaMap& meta, const std::string& kind, const CacheStamp
 /// Index space -> the scene file's coordinates; OpenVDB's voxels are centred at their index.
 openvdb::math::Transform::Ptr transformOf(const VoxelShape& shape, const Vec3d& centre);
 
-/// Guarded (guarded_file.h). Throws RunError.
+/// Writes the file and its sidecar (guarded_file.h). Throws RunError.
 void write(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& meta);
 
 struct Content {
@@ -47,16 +47,17 @@ struct Content {
     CacheStamp stamp;
     std::string contentHash;
 };
-/// Throws InputError naming what does not fit: kind, version, inputs; `remedy` says what to do.
+/// Throws InputError naming what does not fit: kind, version, size or inputs. `remedy` tells the
+/// user what to do.
 Content read(const std::string& path, const std::string& kind, const CacheStamp& expected,
              const Vec3d& centre, const std::string& remedy);
 
-/// The grid of that name and type. Throws InputError.
+/// The grid of that name and type. Throws InputError if there is none.
 template <class GridType>
 typename GridType::Ptr gridOf(const Content& content, const std::string& name,
                               const std::string& path, const std::string& remedy);
 
-/// Throws InputError: `path`: expected ..., found ...; remedy.
+/// Throws InputError "`path`: expected .., found ..; `remedy`".
 [[noreturn]] void refuse(const std::string& path, const std::string& expected,
                          const std::string& found, const std::string& remedy);
 

@@ -35,7 +35,7 @@ void writeVoxelFile(const std::string& path, const VoxelFile& file, const Vec3d&
 
     auto distance = openvdb::FloatGrid::create(0.0f);
     distance->setName("distance");
-    // OpenVDB's view of foreign memory wants it writable and does not write.
+    // OpenVDB's view of foreign memory demands writable memory but does not write.
     DenseView<float> dense(boxOf(shape), const_cast<float*>(space.distance.data()));
     openvdb::tools::copyFromDense(dense, *distance, 0.0f);
 

@@ -24,16 +24,18 @@ struct Arrays {
     SquareForest directions;
 };
 
-/// Calls visit(name, array) for every section in the order of the file: the schema, for both ways.
+/// Calls visit(name, array) for every section in the order of the file: the schema for writing and
+/// reading.
 template <class Visitor, class ArraysOf>
 void forEachSection(Visitor& visit, ArraysOf& a) {
     visit("inputs", a.inputs);                // text: CacheStamp::text()
     visit("content_hash", a.contentHash);     // text
-    visit("place_nodes", a.nodes);            // float threshold; uint32 code; none: nothing learned
-    visit("axes", a.axes);                    // float, three by region
+    visit("place_nodes", a.nodes);            // float threshold; uint32 code; empty: nothing
+                                              // learned
+    visit("axes", a.axes);                    // float, three per region
     visit("both_sides", a.bothSides);         // uint32, by region
-    visit("shares", a.shares);                // float, by region: of light walks, of eye walks
-    visit("tree_sizes", a.directions.sizes);  // uint32, likewise: nodes
+    visit("shares", a.shares);                // float, by region: for light walks, for eye walks
+    visit("tree_sizes", a.directions.sizes);  // uint32, likewise: number of nodes
     visit("tree_nodes", a.directions.nodes);  // float lower; uint32 code
 }
 

@@ -1,4 +1,5 @@
-// KEY.walks: where walks go on to. A section file (section_file.h; files.md, "Walks").
+// KEY.walks: the learned distributions of directions of walks. A section file (section_file.h;
+// files.md, "Walks").
 #pragma once
 
 #include <memory>
@@ -9,16 +10,16 @@
 namespace lacuna {
 
 struct WalkFile {
-    std::shared_ptr<const WalkGuide> guide;  ///< null: nothing is better than BSDFs
+    std::shared_ptr<const WalkGuide> guide;  ///< null: nothing beats sampling the BSDFs
     CacheStamp stamp;
     std::string contentHash;
 };
 
-/// Atomically. Throws RunError.
+/// Writes the file atomically. Throws RunError.
 void writeWalkFile(const std::string& path, const WalkFile& file);
 
 /// Throws InputError if the file is missing, damaged, of another version, or made of other inputs
-/// than `expected` names; `remedy` says what to do.
+/// than `expected` names; `remedy` tells the user what to do.
 WalkFile readWalkFile(const std::string& path, const CacheStamp& expected,
                       const std::string& remedy);
 

@@ -11,7 +11,7 @@ namespace lacuna {
 
 namespace {
 
-/// Of one state: what it accepts, and where each letter leads to.
+/// One state: which lights it accepts, and the state that each letter leads to.
 struct Row {
     std::vector<std::uint8_t> accepts;
     std::vector<std::size_t> next;
@@ -20,8 +20,8 @@ struct Row {
 };
 using Table = std::vector<Row>;
 
-/// The sets of states that `nfa` can be in, as states [Rabin59]; the first one behind the camera.
-/// Empty where there are more than `most`.
+/// The subset construction [Rabin59]: each set of states that `nfa` can be in becomes one state.
+/// The first one follows the camera. Empty if more than `most` states are needed.
 std::optional<Table> subsetsOf(const Nfa& nfa, const Alphabet& alphabet, std::size_t most) {
     std::map<Nfa::States, std::size_t> indices;
     std::vector<Nfa::States> sets;
@@ -47,8 +47,8 @@ std::optional<Table> subsetsOf(const Nfa& nfa, const Alphabet& alphabet, std::si
     return table;
 }
 
-/// States that nothing tells apart as one: classes by what they accept are split by where they lead
-/// to, until none is [Moore56].
+/// Merges equivalent states [Moore56]: classes of states are split by what their states accept and
+/// by the classes that they lead to, until no class splits.
 Table minimal(const Table& table) {
     std::vector<std::size_t> classOf(table.size(), 0);
     for (std::size_t classes = 0;;) {

@@ -1,5 +1,5 @@
-// An expression as an automaton that goes along paths: one state at a time, from the camera to the
-// light, and as few states as there can be.
+// An expression as a minimal deterministic automaton that reads a path from the camera to the
+// light.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// Whatever can happen in a scene, at the vertices between camera and light and at the light. Letters
-/// are indices into these.
+/// All events that are possible in a scene: at the vertices between camera and light, and at the light. Letters are
+/// indices into these.
 struct Alphabet {
     std::vector<VertexEvent> scattering, lights;
 };
@@ -22,22 +22,22 @@ class Automaton {
     using Letter = std::uint16_t;
     static constexpr std::size_t kMostStates = 1000;
 
-    /// Throws UsageError, which begins with `what`, where more than kMostStates would be needed, and
-    /// where no path from the camera to a light matches.
+    /// Throws UsageError, whose message begins with `what`, if more than kMostStates are needed, or
+    /// if no path from the camera to a light matches.
     Automaton(const Expression& expression, const Alphabet& alphabet, const std::string& what);
 
     std::size_t states() const { return settled_.size(); }
-    /// Of the alphabet.
+    /// Number of scattering events in the alphabet.
     std::size_t letters() const { return letters_; }
     std::size_t lights() const { return lights_; }
-    /// Behind the camera.
+    /// The state after the camera.
     State start() const { return 0; }
     State next(State state, Letter scattering) const {
         return next_[state * letters_ + scattering];
     }
-    /// Whether a path that has come to `state` and now to this light matches.
+    /// Whether a path that has reached `state` and ends on this light matches.
     bool accepts(State state, Letter light) const { return accepts_[state * lights_ + light]; }
-    /// Whether no event but that of the light can change anything any more.
+    /// Whether no event but that of the light can change the outcome any more.
     bool settled(State state) const { return settled_[state]; }
 
   private:

@@ -1,4 +1,4 @@
-// What happens at the vertices of a path, as light path expressions see it: the letters of their
+// Events at the vertices of a path, in terms of light path expressions: the letters of their
 // alphabet, and patterns of letters.
 #pragma once
 
@@ -12,19 +12,19 @@ namespace lacuna {
 /// A path begins at the camera, is reflected or transmitted any number of times, and ends on a light:
 /// a lamp without a surface, a mesh that emits, or the environment.
 enum class EventType : std::uint8_t { Camera, Reflection, Transmission, Lamp, Mesh, Environment };
-/// How it was scattered there. Cameras and lights scatter nothing.
+/// How light is scattered at a vertex. Cameras and lights scatter nothing.
 enum class Scattering : std::uint8_t { None, Diffuse, Glossy, Singular };
 
-/// What happened at one vertex.
+/// The event at one vertex.
 struct VertexEvent {
     EventType type = EventType::Camera;
     Scattering scattering = Scattering::None;
-    std::vector<std::string> names = {};  ///< that the object or the light bears
+    std::vector<std::string> names = {};  ///< the names of the object or the light
 
     bool operator==(const VertexEvent&) const = default;
 };
 
-/// Some values of an enumeration, a bit each.
+/// A set of values of an enumeration, one bit per value.
 using Bits = unsigned;
 inline constexpr Bits kEveryBit = ~0u;
 template <class Enum>

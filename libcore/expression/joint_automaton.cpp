@@ -7,7 +7,7 @@ namespace lacuna {
 
 namespace {
 
-/// A state of each automaton.
+/// One state of each automaton.
 using Tuple = std::vector<Automaton::State>;
 
 struct Product {
@@ -15,8 +15,8 @@ struct Product {
     std::vector<std::uint16_t> next;  ///< by state and letter
 };
 
-/// The states that all of them can be in together, the start first. Empty where there are more than
-/// `most`.
+/// The product of the automata: the tuples of states that they can be in together, the start first.
+/// Empty if there are more than `most`.
 std::optional<Product> productOf(std::span<const Automaton> automata, std::size_t most) {
     std::map<Tuple, std::size_t> indices;
     Product product;

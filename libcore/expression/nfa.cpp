@@ -9,7 +9,7 @@ std::optional<Nfa> Nfa::of(const Expression& root, std::size_t most) {
     return nfa;
 }
 
-/// A state; once there are too many, the first one in its place.
+/// Adds a state and returns its index. If there are too many, it adds none and returns 0.
 Nfa::Index Nfa::add(const EventSet* events) {
     overflows_ = overflows_ || states_.size() == most_;
     if (overflows_) return 0;
@@ -17,13 +17,13 @@ Nfa::Index Nfa::add(const EventSet* events) {
     return Index(states_.size() - 1);
 }
 
-/// Returns the state behind the expression when it begins in `from`.
+/// Appends the expression to the state `from`. Returns the state after it.
 Nfa::Index Nfa::append(const Expression& expression, Index from) {
     switch (expression.kind) {
         case Expression::Kind::Events: {
             const Index before = add(&expression.events);
             states_[from].free.push_back(before);
-            return add();  // the one that follows: where the events lead to
+            return add();  // the next index: the events lead to this state
         }
         case Expression::Kind::Sequence:
             for (const Expression& part : expression.parts) from = append(part, from);
@@ -45,7 +45,8 @@ Nfa::Index Nfa::appendRepeat(const Expression& expression, Index from) {
     const Expression& part = expression.parts.front();
     for (int i = 0; i < expression.least && !overflows_; ++i) from = append(part, from);
     if (!expression.most) {
-        // A loop of its own: what stands before it must not be come back to.
+        // The loop has a beginning of its own, so that it does not lead back to what stands before
+        // it.
         const Index begin = add();
         states_[from].free.push_back(begin);
         const Index end = append(part, begin);

@@ -1,4 +1,4 @@
-// An expression as the automaton that has it in several states at once [Thompson68].
+// An expression as a nondeterministic automaton, which is in several states at once [Thompson68].
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@ namespace lacuna {
 
 class Nfa {
   public:
-    /// States in which it is at once, ascending; only those that an event leads on from, or the last.
+    /// The set of its current states, ascending; only states with a transition on an event, or the last.
     using States = std::vector<std::uint32_t>;
 
-    /// Empty where `most` states are not enough. The expression must outlive the automaton.
+    /// Empty if `most` states are not enough. The expression must outlive the automaton.
     static std::optional<Nfa> of(const Expression& root, std::size_t most);
 
     States start() const;
     States after(const States& states, const VertexEvent& event) const;
-    /// Whether what has been read is a whole path of the expression.
+    /// Whether the events read so far match the whole expression.
     bool accepts(const States& states) const;
 
   private:
     using Index = std::uint32_t;
     struct State {
-        const EventSet* events = nullptr;  ///< that lead on to the next state
-        std::vector<Index> free = {};      ///< states that it is in as well
+        const EventSet* events = nullptr;  ///< that lead to the state of the next index
+        std::vector<Index> free = {};      ///< states reached without an event
     };
 
     explicit Nfa(std::size_t most) : most_(most) {}

@@ -10,7 +10,7 @@ namespace lacuna {
 
 namespace {
 
-/// A letter of the notation and the values that it stands for.
+/// A letter of the notation and the set of values that it denotes.
 struct Letter {
     char character;
     Bits bits;
@@ -21,7 +21,7 @@ constexpr std::array kTypes = {
     Letter{'C', bitOf(EventType::Camera)},       Letter{'R', bitOf(EventType::Reflection)},
     Letter{'T', bitOf(EventType::Transmission)}, Letter{'L', kLights},
     Letter{'O', bitOf(EventType::Mesh)},         Letter{'B', bitOf(EventType::Environment)}};
-// s, straight on: what alpha lets pass has no vertex here, so that there is no such event.
+// s, straight: a ray that alpha lets through has no vertex here, so that this event never occurs.
 constexpr std::array kScatterings = {
     Letter{'D', bitOf(Scattering::Diffuse)}, Letter{'G', bitOf(Scattering::Glossy)},
     Letter{'S', bitOf(Scattering::Singular)}, Letter{'s', Bits(0)}};
@@ -58,7 +58,7 @@ class Parser {
         if (!taken(c)) fail(std::string(1, c));
     }
 
-    /// Of the character that begins here.
+    /// Number of the character that begins here; the first is 1.
     std::size_t position() const {
         std::size_t before = 0;
         for (const char c : text_.substr(0, at_)) before += continuesCharacter(c) ? 0 : 1;
@@ -182,7 +182,7 @@ class Parser {
         return result;
     }
 
-    /// Takes one of the letters, or none.
+    /// Consumes one of the letters if it comes next; otherwise returns null.
     template <std::size_t n>
     const Letter* letterOf(const std::array<Letter, n>& table) {
         for (const Letter& letter : table) {

@@ -6,7 +6,7 @@
 //     events     = pattern | '[' [ '^' ] { pattern }+ ']'
 //     pattern    = '.' | type | scattering | name | '<' types [ scatterings [ names ] ] '>'
 //     type       = C | R | T | L | O | B          scattering = D | G | S | s
-//     name       = a quote, what something in the scene is called, a quote
+//     name = a quote, the name of something in the scene, a quote
 //
 // types, scatterings, names: '.', one of them, or several in brackets: [RT], [^D], ['lamp''sun'].
 #pragma once
@@ -24,13 +24,13 @@ namespace lacuna {
 struct Expression {
     enum class Kind : std::uint8_t { Events, Sequence, Either, Repeat };
     Kind kind = Kind::Sequence;
-    EventSet events = {};                ///< of Events
-    std::vector<Expression> parts = {};  ///< of the others; Repeat has one
-    int least = 0;                       ///< of Repeat
-    std::optional<int> most = {};        ///< likewise; nothing: any number
+    EventSet events = {};                ///< for Events
+    std::vector<Expression> parts = {};  ///< for the other kinds; Repeat has one
+    int least = 0;                       ///< for Repeat: number of repetitions
+    std::optional<int> most = {};        ///< likewise; empty: any number
 };
 
-/// A name in an expression, and where it stands in it: a character, the first one is 1.
+/// A name in an expression, and the number of the character at which it stands; the first is 1.
 struct NameMention {
     std::string name;
     std::size_t position = 0;
@@ -41,11 +41,11 @@ struct ParsedExpression {
     std::vector<NameMention> names;  ///< in the order of the text
 };
 
-/// Longest text and largest number of repetitions that are read.
+/// The longest text and the largest number of repetitions that are accepted.
 inline constexpr std::size_t kMostCharacters = 1000;
 inline constexpr int kMostRepetitions = 1000;
 
-/// Throws UsageError, which begins with `what` and points at the character.
+/// Throws UsageError, whose message begins with `what` and names the character.
 ParsedExpression parseExpression(const std::string& text, const std::string& what);
 
 }  // namespace lacuna

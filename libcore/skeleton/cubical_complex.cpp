@@ -4,7 +4,7 @@ namespace lacuna {
 
 CubicalComplex::CubicalComplex(const VoxelSpace& space) {
     const VoxelIndex& size = space.shape.size;
-    // Corners are one more than voxels; a border of one on either side.
+    // Along each axis there is one corner more than voxels, and a border of one on either side.
     const std::size_t row = (std::size_t(size[0] + 3) + 63) / 64 * 64;
     step_ = {1, row, row * std::size_t(size[1] + 3)};
     cells_.resize(step_[2] * std::size_t(size[2] + 3) / 64 + 1);
@@ -18,7 +18,8 @@ CubicalComplex::CubicalComplex(const VoxelSpace& space) {
             }
         }
     }
-    // A cell is there if a cube about it is. Only border comes before the first corner's word.
+    // A cell is present if one of the cubes around it is. Only the border precedes the first
+    // corner's word.
     for (std::size_t w = corner({0, 0, 0}) / 64; w < words(); ++w) {
         for (CellAxes axes = 0; axes < 7; ++axes) {
             Word any = 0;

@@ -80,7 +80,8 @@ FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph) {
     const std::size_t n = graph.nodes.size();
     const std::vector<std::vector<Way>> ways = waysOf(graph);
     FilteredGraph filtered;
-    // By raw node, as indices into filtered.nodes: who swallowed it, whose ball came there last.
+    // By raw node, as indices into filtered.nodes: the node that swallowed it, and the last node
+    // whose ball reached it.
     std::vector<std::uint32_t> keeper(n, kNobody), reached(n, kNobody);
     std::vector<bool> leftOut(graph.edges.size(), false);
     std::vector<std::uint32_t> stack;
@@ -101,7 +102,7 @@ FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph) {
                 }
                 reached[way.to] = number;
                 stack.push_back(way.to);
-                if (keeper[way.to] != kNobody) continue;  // an earlier one's
+                if (keeper[way.to] != kNobody) continue;  // an earlier ball swallowed it
                 keeper[way.to] = number;
                 leftOut[way.edge] = true;
             }

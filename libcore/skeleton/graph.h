@@ -1,4 +1,4 @@
-// The skeleton as a graph, and its reduction to few nodes with large balls.
+// The skeleton as a graph, and its reduction to a few nodes with large balls.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@ namespace lacuna {
 
 struct SkeletonNode {
     Vec3d position;     ///< recentred coordinates
-    double radius = 0;  ///< of the largest ball about it that no surface enters
+    double radius = 0;  ///< of the largest ball around it that no surface enters
 };
 
-/// Everything that thinning left: a node per point, an edge per edge.
+/// Everything that thinning left: one node per point, one edge per edge of the complex.
 struct SkeletonGraph {
     std::vector<SkeletonNode> nodes;
     std::vector<std::array<std::uint32_t, 2>> edges;
@@ -32,9 +32,9 @@ SkeletonGraph extractGraph(const CubicalComplex& complex, const VoxelShape& shap
                            const std::function<double(const Vec3d&)>& radiusAt,
                            const ThreadPool& pool);
 
-/// An edge of the filtered graph: from the first node straight to `leave`, along an edge of the raw
-/// graph to `enter`, straight to the second. Both straight pieces lie in their node's ball, so all
-/// of it lies in empty space.
+/// An edge of the filtered graph. It goes straight from the first node to `leave`, along an edge of
+/// the raw graph to `enter`, and straight to the second node. Both straight pieces lie in their
+/// node's ball, so that the whole edge lies in empty space.
 struct FilteredEdge {
     std::array<std::uint32_t, 2> nodes;
     Vec3d leave, enter;
@@ -50,15 +50,16 @@ struct FilteredGraph {
     }
 };
 
-/// The maximal-ball filter [Noel15 4.4]: by falling radius (ties: lower index first) a node that is
-/// still there is kept and swallows the nodes inside its ball that are connected to it there, also
-/// through nodes that an earlier one has swallowed. Unlike in the paper, connected is asked for:
-/// two branches that meet in a ball but are joined outside of it would become a loop.
+/// The maximal-ball filter [Noel15 4.4]. It visits nodes by decreasing radius (ties: lower index
+/// first). A node that no other has swallowed is kept. It swallows those nodes inside its ball that
+/// are connected to it there, also through nodes that an earlier one has swallowed. Unlike in the
+/// paper, they must be connected: otherwise two branches that enter one ball but are joined outside
+/// of it would become a loop.
 ///
-/// A swallowed node is reached by one edge, from a node that the same ball or an earlier one has
-/// swallowed. These edges make a forest of one tree per kept node. They are left out, and every
-/// other edge joins the nodes that swallowed its ends: b0 and b1 are those of `graph`. And as an
-/// edge that is left out lies in the ball that reached along it, the loops are the same ones.
+/// One edge reaches each swallowed node, from a node that the same ball or an earlier one has
+/// swallowed. These edges form a forest with one tree per kept node, and are left out. Every other
+/// edge joins the nodes that swallowed its ends. Hence b0 and b1 are those of `graph`. An edge that
+/// is left out lies in the ball that reached along it, so that the loops are the same as well.
 FilteredGraph filterByMaximalBalls(const SkeletonGraph& graph);
 
 }  // namespace lacuna

@@ -20,12 +20,13 @@ constexpr std::uint64_t kUnit = kMove[1];
 constexpr std::uint64_t kFar = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t kPerTask = 4096;
 
-/// Distance and node in one number, so that the smaller one is the nearer, then the lower.
+/// Distance and node in one number: the smaller number has the smaller distance or, in a tie, the
+/// lower node.
 constexpr std::uint64_t keyOf(std::uint64_t distance, std::uint64_t node) {
     return distance << 16 | node;
 }
 
-/// The 26 moves from a voxel.
+/// The 26 moves from a voxel to its neighbours.
 class Moves {
   public:
     explicit Moves(const VoxelShape& shape) : shape_(shape) {
@@ -38,7 +39,7 @@ class Moves {
         }
     }
 
-    /// body(voxel, key of the move) for the neighbours inside the grid.
+    /// Calls body(voxel, key of the move) for the neighbours inside the grid.
     template <class Body>
     void from(std::size_t voxel, const Body& body) const {
         const VoxelIndex v = shape_.indexOf(voxel);
@@ -63,8 +64,8 @@ class Moves {
     std::size_t count_ = 0;
 };
 
-/// Spreads in waves as wide as the shortest move: a wave never changes itself, so that its voxels
-/// can be visited in any order and at once.
+/// Spreads distances in waves as wide as the shortest move. A wave never changes its own voxels, so
+/// that these can be visited in any order and in parallel.
 class Waves {
   public:
     Waves(const VoxelSpace& space, const ThreadPool& pool)
@@ -161,7 +162,7 @@ std::uint16_t NodeMap::around(const Vec3d& place, const Vec3d& side) const {
         high[a] = std::min(side[a] == -steepest ? own : own + 1, last);
     }
     std::uint16_t best = kNone;
-    double ahead = 0.0, distance2 = 1.0;  // of the best; their ratio is 1 / the ball's diameter
+    double ahead = 0.0, distance2 = 1.0;  // of the best; their ratio: 1 / the ball's diameter
     for (int z = low[2]; z <= high[2]; ++z) {
         for (int y = low[1]; y <= high[1]; ++y) {
             const std::uint16_t* row = &entries_[shape_.at({0, y, z})];

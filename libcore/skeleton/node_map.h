@@ -1,4 +1,4 @@
-// Which skeleton node a point belongs to.
+// Map from points to skeleton nodes.
 #pragma once
 
 #include <initializer_list>
@@ -9,7 +9,8 @@
 
 namespace lacuna {
 
-/// By voxel a node's index; voxels that were extended into the solid say so.
+/// A node's index for each voxel. Entries of solid voxels, to which the map was extended, carry a
+/// flag.
 class NodeMap {
   public:
     static constexpr std::uint16_t kSolid = 0x8000;  ///< flag of an entry
@@ -26,19 +27,19 @@ class NodeMap {
     /// surfaces lie in solid voxels, and a wall one voxel thick has a node on either side. The
     /// first of these that is an Empty voxel with a node:
     ///   1. the point's own, and those half a voxel and one voxel along `side`;
-    ///   2. of the 18 about it that are not behind it along the steepest axis of `side`, among
+    ///   2. of the 18 around it that are not behind it along the steepest axis of `side`, among
     ///      those whose centre is in front of the surface, the one whose centre a ball that touches
     ///      the surface at the point meets first as it grows;
-    ///   3. 1.5 to 3 voxels along `side`: past what is too crowded for an Empty voxel;
+    ///   3. 1.5 to 3 voxels along `side`: beyond a place too crowded for an Empty voxel;
     /// else the entry that was extended into the point's own voxel. kNone where there is none, and
-    /// outside of the grid. Where the 27 voxels about the point hold one flat wall and nothing
-    /// else, 1 and 2 find a node, and never one of the other side. Two walls in the point's own
-    /// voxel are not told apart: that would take the triangles, and where it was tried (by rays to
-    /// the voxels around) pictures were no better.
+    /// outside of the grid. If the 27 voxels around the point hold one flat wall and nothing else,
+    /// 1 and 2 find a node, and never one on the other side. Two walls in the point's own voxel are
+    /// not told apart. That would need the triangles; an experiment (with rays to the voxels
+    /// around) gave no better pictures.
     std::uint16_t at(const Vec3d& point, const Vec3d& side) const;
 
   private:
-    // Places are points in voxels from the grid's low corner.
+    // Places are points relative to the grid's low corner, in voxels.
     std::uint16_t entry(const Vec3d& place) const;
     std::uint16_t firstAlong(const Vec3d& place, const Vec3d& side,
                              std::initializer_list<double> steps) const;
@@ -48,21 +49,22 @@ class NodeMap {
     std::vector<std::uint16_t> entries_;
 };
 
-/// The nearest node by geodesic distance through Empty voxels [Noel15 3], in moves to the 26
-/// neighbours of length 1, sqrt 2, sqrt 3 (as multiples of 2^-18, so that sums are exact and ties
-/// real ones), from the voxels around each node's lattice corner, ties to the lower index. Solid
-/// voxels take over the nearest node of their Empty neighbours likewise. Throws RunError for more
-/// nodes than an entry can tell apart, Error 130 once `cancel` is set.
+/// The nearest node of each voxel by geodesic distance through Empty voxels [Noel15 3]. The
+/// distance is a sum of moves to the 26 neighbours, of length 1, sqrt 2 or sqrt 3. (They are
+/// multiples of 2^-18, so that sums are exact and ties are true ties.) It starts from the voxels
+/// around each node's lattice corner; ties go to the lower index. Solid voxels take the nearest
+/// node of their Empty neighbours by the same distance. Throws RunError for more nodes than an
+/// entry can tell apart, Error 130 once `cancel` is set.
 NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
                  const ThreadPool& pool, const std::atomic<bool>& cancel);
 
-/// What the renderer needs of a skeleton: where the nodes are, and which points belong to them.
+/// The skeleton as the renderer needs it: the nodes, and the map from points to them.
 struct Skeleton {
     std::vector<SkeletonNode> nodes;
     std::vector<FilteredEdge> edges;
     NodeMap map;
 
-    /// Hex XXH3-128 of all of it.
+    /// XXH3-128 of all of it, in hexadecimal digits.
     std::string contentHash() const;
 };
 

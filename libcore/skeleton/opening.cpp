@@ -8,13 +8,13 @@ namespace lacuna {
 
 namespace {
 
-/// Chebyshev distance to the nearest voxel that is not Empty, the outside included: forward and
-/// backward over all voxels with one half of the 26 neighbours each. What the four neighbouring
-/// rows of a half say is put together first, for a row at a time.
+/// Chebyshev distance to the nearest voxel that is not Empty; the outside counts as such. One
+/// forward and one backward pass over all voxels use one half of the 26 neighbours each. For each
+/// row, the minimum over the four neighbouring rows of that half is computed first.
 std::vector<std::uint16_t> chebyshevDistance(const VoxelSpace& space) {
     const VoxelShape& shape = space.shape;
     const auto width = std::size_t(shape.size[0]);
-    // Rows with a zero at either end, and rows of zeros all round.
+    // Each row has a zero at either end, and rows of zeros surround the grid.
     const std::size_t row = width + 2, layer = row * std::size_t(shape.size[1] + 2);
     std::vector<std::uint16_t> d(layer * std::size_t(shape.size[2] + 2), 0), rows(row);
     const std::size_t lines = std::size_t(shape.size[1]) * std::size_t(shape.size[2]);
@@ -53,7 +53,7 @@ std::vector<std::uint16_t> chebyshevDistance(const VoxelSpace& space) {
     return result;
 }
 
-/// Dilation along lines: each entry becomes the largest value[u] with |i - u| < value[u].
+/// Dilation along lines: entry i becomes the largest value[u] with |i - u| < value[u].
 class LineDilation {
   public:
     void operator()(std::span<std::uint16_t> line) {
@@ -68,11 +68,11 @@ class LineDilation {
   private:
     struct Candidate {
         std::uint16_t value;
-        std::size_t end;  // of what it covers
+        std::size_t end;  // end of the entries that it covers
     };
 
-    /// Candidates wait in a queue whose values fall: a later and larger one covers all that an
-    /// earlier and smaller one does.
+    /// Candidates wait in a queue of decreasing values: a later and larger one covers every further
+    /// entry that an earlier and smaller one does.
     template <class At>
     void pass(std::size_t n, const At& at, std::span<std::uint16_t> line) {
         queue_.resize(n);
@@ -97,14 +97,14 @@ std::vector<std::uint16_t> openingMap(const VoxelSpace& space, const ThreadPool&
     std::vector<std::uint16_t> map = chebyshevDistance(space);
     const auto x = std::size_t(shape.size[0]), y = std::size_t(shape.size[1]);
     const auto z = std::size_t(shape.size[2]);
-    // Dilating by cubes of the voxels' own sizes axis by axis: where values meet, the larger one
-    // also reaches farther, so nothing is lost by keeping it alone. A cube of Empty voxels covers
-    // Empty voxels alone.
+    // Each voxel's value is dilated by a cube of that size, axis by axis. Where two values meet,
+    // the larger one also reaches farther, so that it suffices to keep it alone. A cube of Empty
+    // voxels covers Empty voxels alone.
     pool.forEach(z, [&](std::size_t k) {
         LineDilation dilate;
         for (std::size_t j = 0; j < y; ++j) dilate(std::span(map).subspan((k * y + j) * x, x));
     });
-    // Lines along y and z by kLines side by side, which share cache lines.
+    // Lines along y and z are treated in groups of kLines neighbours, which share cache lines.
     const auto dilateAcross = [&](std::size_t begin, std::size_t length, std::size_t step) {
         constexpr std::size_t kLines = 32;
         std::vector<std::uint16_t> lines(kLines * length);

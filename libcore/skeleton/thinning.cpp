@@ -19,13 +19,13 @@ using Shift = CubicalComplex::Shift;
 constexpr std::size_t kPerTask = 512;
 constexpr std::size_t kAhead = 8;  // words
 
-/// Some of the corners of a word.
+/// A subset of the corners of one word.
 struct Some {
     std::size_t word;
     Word corners;
 };
 
-/// body(corner) for each of them.
+/// Calls body(corner) for each of them.
 template <class Body>
 void forEachCorner(Some some, const Body& body) {
     for (Word left = some.corners; left != 0; left &= left - 1) {
@@ -33,14 +33,14 @@ void forEachCorner(Some some, const Body& body) {
     }
 }
 
-/// What a step finds in some words.
+/// What one task of a step finds in its words.
 struct Found {
     struct Pairs {
         Some some;
         CellAxes axes;  // of the larger cell
     };
-    std::vector<Pairs> pairs;                             // that go
-    std::vector<std::pair<std::size_t, Corner>> waiting;  // for that round
+    std::vector<Pairs> pairs;                             // to be removed
+    std::vector<std::pair<std::size_t, Corner>> waiting;  // corners, by the round they wait for
 };
 
 class Thinning {
@@ -69,13 +69,13 @@ class Thinning {
             std::vector<std::size_t>& opens = opens_[layer_[c]];
             if (opens.empty() || opens.back() != c / 64) opens.push_back(c / 64);
         }
-        allow(0);  // where no cube is, none is in the way
+        allow(0);  // where there is no cube, none forbids a removal
         activateBorder();
     }
 
     Thinned run() {
         collapse();
-        // A puncture opens one sheet; what lay inside it may be one again.
+        // A puncture opens one sheet; there may be another one inside it.
         while (puncture() > 0) collapse();
         result_.squares = complex().count(2);
         return std::move(result_);
@@ -85,7 +85,8 @@ class Thinning {
     CubicalComplex& complex() { return result_.complex; }
     const CubicalComplex& complex() const { return result_.complex; }
 
-    /// Free pairs lie at or next to corners that some cube is missing at.
+    /// Activates the corners at which a cube is missing, and their neighbours: all free pairs lie
+    /// there.
     void activateBorder() {
         std::vector<Some> border;
         for (std::size_t w = 0; w < complex().words(); ++w) {
@@ -100,7 +101,7 @@ class Thinning {
         activateAround(border);
     }
 
-    /// The displacement by minus one along each of the axes.
+    /// The displacement by -1 along each of the axes.
     Shift backwards(CellAxes axes) const {
         Shift shift;
         for (int a = 0; a < 3; ++a) {
@@ -109,7 +110,7 @@ class Thinning {
         return shift;
     }
 
-    /// Cubes of that layer may go from now on.
+    /// Allows the removal of the cubes of that layer from now on.
     void allow(std::size_t layer) {
         for (const std::size_t w : opens_[layer]) {
             for (std::size_t b = 0; b < 64; ++b) {
@@ -119,7 +120,7 @@ class Thinning {
         opens_[layer] = {};
     }
 
-    /// Rounds until nothing changes and all layers had their turn.
+    /// Runs rounds until nothing changes and all layers have had their turn.
     void collapse() {
         for (;;) {
             throwIfCancelled(cancel_);
@@ -151,7 +152,7 @@ class Thinning {
         }
     }
 
-    /// The corners join the next round's; a word that had none of them joins `words`.
+    /// Adds the corners to those of the next round. A word that had no active corner joins `words`.
     void activate(Some some, std::vector<std::size_t>& words) {
         if (some.corners == 0) return;
         const std::atomic_ref active(active_[some.word]);
@@ -160,8 +161,8 @@ class Thinning {
         }
     }
 
-    /// The corners and their 26 neighbours join the next round's, as far as there are cells at
-    /// them.
+    /// Adds the corners and their 26 neighbours to those of the next round, except for corners
+    /// without cells.
     void activateAround(const std::vector<Some>& centres) {
         std::vector<std::vector<std::size_t>> parts((centres.size() + kPerTask - 1) / kPerTask);
         pool_.forEach(parts.size(), [&](std::size_t task) {
@@ -183,8 +184,8 @@ class Thinning {
         for (const auto& p : parts) activeWords_.insert(activeWords_.end(), p.begin(), p.end());
     }
 
-    /// Removes all pairs that are free in this direction and dimension. Finding and removing are
-    /// two loops: what one removal frees waits for the next step.
+    /// Removes all pairs that are free in this direction and dimension. It finds them in one loop
+    /// and removes them in another: a pair that a removal makes free waits for the next step.
     void step(int axis, bool high, int dimension) {
         std::vector<CellAxes> kinds;
         for (CellAxes axes = 1; axes < 8; ++axes) {
@@ -197,7 +198,8 @@ class Thinning {
             found.waiting.clear();
             const std::size_t end = std::min(activeWords_.size(), (task + 1) * kPerTask);
             for (std::size_t i = task * kPerTask; i < end; ++i) {
-                // Words lie anywhere: most of the time would be spent waiting for their cells.
+                // Words are scattered in memory: without prefetching, most of the time would be
+                // spent waiting for it.
                 if (i + kAhead < end) complex().prefetch(activeWords_[i + kAhead]);
                 for (const CellAxes axes : kinds) {
                     const Word free = mayGo(activeWords_[i], axes, axis, high, found.waiting);
@@ -222,8 +224,9 @@ class Thinning {
         }
     }
 
-    /// Active corners of the word whose cell along `axes` makes a free pair with its face at the
-    /// low or high end of `axis`, and may go. What has to wait for its layer is recorded, once.
+    /// The active corners of the word whose cell along `axes` forms a free pair with its face at
+    /// the low or high end of `axis` and may be removed. A cell that must wait for its layer is
+    /// added to `waiting` once.
     Word mayGo(std::size_t w, CellAxes axes, int axis, bool high,
                std::vector<std::pair<std::size_t, Corner>>& waiting) {
         Word free = complex().word(w, axes) & active_[w];
@@ -259,7 +262,7 @@ class Thinning {
         return free;
     }
 
-    /// Whether an edge that no square is left at has lived long enough to be the end of a branch.
+    /// Whether an edge without squares has lived long enough to be the end of a branch.
     bool isEnd(Corner c, CellAxes axes) const {
         return result_.rounds - birth_.at(edgeKey(c, axes)) >
                complex().largestAround(c, axes, opening_);
@@ -286,8 +289,8 @@ class Thinning {
         }
     }
 
-    /// Takes one square out of every sheet about a cavity. The regions are those of the complement
-    /// of the complex: cubes that are not there, joined through squares that are not there.
+    /// Removes one square of every sheet around a cavity. Regions are the components of the
+    /// complex's complement: absent cubes, connected through absent squares.
     std::size_t puncture() {
         struct Square {
             std::size_t layer;
@@ -338,22 +341,23 @@ class Thinning {
     const ThreadPool& pool_;
     const std::atomic<bool>& cancel_;
     Thinned result_;
-    // By corner, of the cube there.
-    std::vector<std::uint16_t> layer_;  // round from which on it may go
+    // By corner: values of the cube there.
+    std::vector<std::uint16_t> layer_;  // round from which on it may be removed
     std::vector<std::uint16_t> opening_;
     std::size_t lastLayer_ = 0;
-    // By layer: words that have cubes of it, and corners of free pairs whose turn comes then.
+    // By layer: words that have cubes of it, and corners of free pairs that wait for its round.
     std::vector<std::vector<std::size_t>> opens_;
     std::vector<std::vector<Corner>> waiting_;
-    // By word, a bit per corner: may a cube there go; does the corner belong to this round; has its
-    // cell (by axes) been put on a waiting list; has its edge (by axis) an entry in birth_.
+    // By word, one bit per corner. allowed_: its cube may be removed. active_: it belongs to this
+    // round. recorded_ (by axes): its cell has been put on a waiting list. born_ (by axis): its
+    // edge has an entry in birth_.
     std::vector<Word> allowed_, active_;
     std::array<std::vector<Word>, 8> recorded_;
     std::array<std::vector<Word>, 3> born_;
-    std::vector<std::size_t> activeWords_;  // that have active corners
-    std::vector<Word> changed_;             // by those words: corners that lost a cell
-    std::vector<Found> found_;              // by task: scratch of step()
-    std::unordered_map<std::uint64_t, std::size_t> birth_;  // round in which an edge was left alone
+    std::vector<std::size_t> activeWords_;  // words with active corners
+    std::vector<Word> changed_;             // by entry of activeWords_: corners that lost a cell
+    std::vector<Found> found_;              // by task: scratch memory of step()
+    std::unordered_map<std::uint64_t, std::size_t> birth_;  // round that left the edge bare
 };
 
 }  // namespace

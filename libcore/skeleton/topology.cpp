@@ -13,7 +13,7 @@ Betti emptySpaceBetti(const VoxelSpace& space) {
                            Connectivity::Faces);
     Betti b;
     b.b0 = std::int64_t(empty.count());
-    b.b2 = std::int64_t(solid.count()) - 1;  // one of them is the outside
+    b.b2 = std::int64_t(solid.count()) - 1;  // one component of the solid is the outside
     b.b1 = b.b0 + b.b2 - CubicalComplex(space).euler();
     return b;
 }

@@ -1,4 +1,4 @@
-// What homotopy leaves alone: components, independent loops, enclosed cavities.
+// Topological invariants: numbers of components, independent loops and enclosed cavities.
 #pragma once
 
 #include "libcore/skeleton/cubical_complex.h"
@@ -13,8 +13,9 @@ struct Betti {
     friend bool operator==(const Betti&, const Betti&) = default;
 };
 
-/// Of the Empty voxels (26-connected; everything else is solid and 6-connected): components and
-/// cavities by counting both, loops by the Euler characteristic of the complex.
+/// Betti numbers of the Empty voxels (26-connected; everything else is solid and 6-connected).
+/// Components and cavities are counted; the number of loops follows from the Euler characteristic
+/// of the complex.
 Betti emptySpaceBetti(const VoxelSpace& space);
 
 }  // namespace lacuna
