@@ -16,7 +16,7 @@ std::string placeOf(int index) {
 
 template <class T>
 T loadAs(const std::uint8_t* bytes) {
-    T value;  // files do not promise alignment
+    T value;  // files do not guarantee alignment
     std::memcpy(&value, bytes, sizeof value);
     return value;
 }
@@ -41,7 +41,7 @@ void convert(const std::uint8_t* from, int components, bool normalized, float* t
 }
 
 /// Throws unless `count` elements of `elementSize` bytes, `stride` apart, fit `available` bytes
-/// from `offset` on. No product is formed before it is known not to overflow.
+/// from `offset` on. No product is computed before it is known not to overflow.
 void checkRange(const Document& document, const std::string& place, std::size_t offset,
                 std::size_t count, std::size_t stride, std::size_t elementSize,
                 std::size_t available) {
@@ -108,7 +108,7 @@ AccessorView viewAccessor(const Document& document, int index, int components) {
     view.components = tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type));
     const bool isMatrix =
         accessor.type >= TINYGLTF_TYPE_MAT2 && accessor.type <= TINYGLTF_TYPE_MAT4;
-    constexpr int kMatrix = 16;  // 4 x 4: smaller ones have gaps between columns
+    constexpr int kMatrix = 16;  // 4 x 4: smaller matrices have gaps between columns
     if (view.components != components || isMatrix != (components == kMatrix)) {
         const std::string type = components == 1         ? "SCALAR"
                                  : components == kMatrix ? "MAT4"

@@ -1,5 +1,5 @@
-// Own accessor reader: every component type, normalised or not, any stride, sparse with and without
-// a base. All arithmetic on the file's numbers is checked before it is used.
+// Reader of accessors: every component type, normalised or not, any stride, sparse with and without
+// a base. Every result of arithmetic on the file's numbers is checked before it is used.
 #pragma once
 
 #include <cstddef>
@@ -29,13 +29,14 @@ struct AccessorView {
     } sparse;
 };
 
-/// Checks accessor `index` (in range already) and says where its elements are; 16 components are a matrix. Throws InputError if
-/// it does not have `components` components, is empty, or any of its bytes lies outside its view.
-/// One without a view has no bytes: how much may be asked for then is the caller's to bound.
+/// Checks accessor `index` (which must be in range) and locates its elements; 16 components are a matrix. Throws
+/// InputError if it does not have `components` components, is empty, or any of its bytes lies outside its view. An
+/// accessor without a view has no bytes: the caller must bound its size.
 AccessorView viewAccessor(const Document& document, int index, int components);
 
-/// As floats, `components` per element; normalised integers become [0, 1] or [-1, 1], others their
-/// value. Elements 0..count-1, or only those `which` names (ascending, unique, below count).
+/// The elements as floats, `components` per element. Normalised integers are mapped to [0, 1] or
+/// [-1, 1], others keep their value. Returns all elements, or only those in `which` (ascending,
+/// unique, below count).
 std::vector<float> readFloats(const AccessorView& view);
 std::vector<float> readFloats(const AccessorView& view, std::span<const std::uint32_t> which);
 

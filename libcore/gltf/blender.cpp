@@ -16,9 +16,9 @@ using nlohmann::json;
 
 constexpr double kSphere = 4.0 * std::numbers::pi;
 
-/// Whether a double that went through a few products in double was a float at first.
+/// Whether a double is a float but for the rounding of a few multiplications in double.
 bool wasFloat(double value) {
-    constexpr double kRounding = 1e-14;  // floats lie 6e-8 apart at least
+    constexpr double kRounding = 1e-14;  // relative; floats differ by 6e-8 at least
     const double nearest = double(float(value));
     return std::isfinite(nearest) && nearest > 0.0 &&
            std::abs(value - nearest) <= kRounding * nearest;
@@ -29,7 +29,7 @@ std::string floatText(double value) {
     return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, float(value)).ptr);
 }
 
-/// Whether one might type this number: at most four digits, wherever its point is.
+/// Whether a user may have typed this number: at most four digits, wherever its point is.
 bool isRound(double value) {
     char buffer[32];
     const char* end =
@@ -40,7 +40,7 @@ bool isRound(double value) {
     return digits.size() <= std::string_view("1.234").size();
 }
 
-/// In the file's units: W of points and spots, W/m^2 of suns.
+/// Power in the file's units: W for points and spots, W/m^2 for suns.
 double power(const BlenderLamp& lamp) {
     return lamp.isSun ? lamp.intensity : lamp.intensity * kSphere;
 }
@@ -49,14 +49,14 @@ bool fitsUnitless(const BlenderLamp& lamp) {
     return wasFloat(power(lamp));
 }
 
-/// 683 times a float of few digits is a float again (2049 is 3 W/m^2). What decides then is that
+/// 683 times a float of few digits is a float again (2049 for 3 W/m^2). Then the digits decide:
 /// hardly anybody types a multiple of 683.
 bool fitsStandard(const BlenderLamp& lamp) {
     const double watts = power(lamp) / kLumensPerWatt;
     return wasFloat(watts) && (!fitsUnitless(lamp) || isRound(watts));
 }
 
-/// A sun is the same in both.
+/// Raw and Unitless write suns alike.
 bool fitsRaw(const BlenderLamp& lamp) {
     return wasFloat(lamp.intensity);
 }
@@ -65,7 +65,7 @@ const char* unitOf(const BlenderLamp& lamp) {
     return lamp.isSun ? " W/m^2" : " W";
 }
 
-/// 'a', 'b', 'c' and 4 more.
+/// The names as "'a', 'b', 'c' and 4 more".
 std::string listed(const std::vector<std::string>& names) {
     constexpr std::size_t kMost = 3;
     std::string text;
@@ -76,7 +76,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Without a word about what it reflects. Of a lamp nobody asks.
+/// Whether a material that does not emit says nothing about its reflection.
 bool isBare(const json& material) {
     const auto surface = material.find("pbrMetallicRoughness");
     const auto emission = material.find("emissiveFactor");

@@ -1,4 +1,4 @@
-// glTF's types of numbers in buffers, as types of C++.
+// glTF's component types as C++ types.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -8,8 +8,8 @@
 
 namespace lacuna::gltf {
 
-/// Calls body(T{}) with the C++ type of a glTF component type; false for one that glTF does not
-/// have (tinygltf lets INT and DOUBLE pass).
+/// Calls body(T{}) with the C++ type of a glTF component type. Returns false for a type that glTF
+/// does not have (tinygltf lets INT and DOUBLE pass).
 template <class Body>
 bool withComponentType(int componentType, Body&& body) {
     switch (componentType) {
@@ -37,7 +37,7 @@ inline std::size_t componentSize(int componentType) {
     return size;
 }
 
-/// Whether vertex indices can be of that type.
+/// Whether vertex indices may have that type.
 inline bool isIndexType(int componentType) {
     return componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
            componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||

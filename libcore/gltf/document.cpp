@@ -23,7 +23,7 @@ json parseJson(const std::string& file, std::string_view text) {
     }
 }
 
-/// Whether the buffer only stands in for what EXT_meshopt_compression decodes: it need not exist.
+/// Whether the buffer is only a fallback of EXT_meshopt_compression, which need not exist.
 bool isFallback(const json& buffer) {
     const auto extensions = buffer.find("extensions");
     if (extensions == buffer.end()) return false;
@@ -31,7 +31,7 @@ bool isFallback(const json& buffer) {
     return meshopt != extensions->end() && meshopt->value("fallback", false);
 }
 
-/// Buffer `index`: the BIN chunk, a data URI or an external file; no bytes for a fallback.
+/// The bytes of buffer `index`: the BIN chunk, a data URI or an external file; none for a fallback.
 std::span<const std::uint8_t> loadBuffer(Document& document, const json& buffer, std::size_t index,
                                          std::span<const std::uint8_t> binary) {
     const std::string place = "buffers[" + std::to_string(index) + "]";
@@ -70,12 +70,12 @@ void loadBuffers(Document& document, std::span<const std::uint8_t> binary) {
     }
 }
 
-/// tinygltf's messages have one line per fault: the first is enough.
+/// tinygltf's messages have one line per error; the first suffices.
 std::string firstLine(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// Fills document.model. Leaves in document.json only what is read from there later.
+/// Fills document.model. Leaves in document.json only what is read from it later.
 void parseModel(Document& document) {
     constexpr std::array kKept = {"buffers", "images", "animations", "skins"};
     constexpr std::array kDone = {"accessors", "bufferViews", "meshes", "nodes"};
@@ -111,7 +111,7 @@ void parseModel(Document& document) {
     } catch (const std::exception& exception) {
         error = exception.what();
     }
-    // It also goes on after dropping what it cannot parse, and then only leaves a message.
+    // tinygltf may also drop what it cannot parse and go on; then it only leaves a message.
     if (!parsed || !error.empty()) {
         refuse(document.file, "", "valid glTF 2.0",
                error.empty() ? "what tinygltf cannot parse" : firstLine(error));

@@ -1,5 +1,4 @@
-// A glTF file taken apart and checked: its structure as tinygltf's structs, its payload as byte
-// ranges.
+// A parsed and checked glTF file: its structure as tinygltf's structs, its payload as byte ranges.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -19,36 +18,36 @@
 
 namespace lacuna::gltf {
 
-/// How many bytes decoders may still allocate: a stream of a few bytes can claim any number of
-/// vertices. What was taken is not given back.
+/// The number of bytes that decoders may still allocate: a stream of a few bytes can claim any
+/// number of vertices. Bytes that were taken are never given back.
 class Allowance {
   public:
-    /// Adds what a file of `bytes` bytes may ask for (file_bytes.h).
+    /// Adds the allowance of a file of `bytes` bytes (file_bytes.h).
     void addFile(std::uint64_t bytes);
-    /// Whether `bytes` are left, which are then taken. From any thread.
+    /// Takes `bytes` if as many are left; otherwise returns false. Thread-safe.
     bool take(std::uint64_t bytes);
 
   private:
     std::atomic<std::uint64_t> left_ = kUnpackedFree;
 };
 
-/// What loadDocument leaves to the rest of the reader: every index in `model` and `json` that
-/// guard.h's rules name is in range, every buffer view lies within its buffer.
+/// The result of loadDocument. Every index in `model` and `json` that the rules of guard.h name is
+/// in range, and every buffer view lies within its buffer.
 ///
-/// tinygltf gets the JSON without `buffers`, `images`, `animations` and `skins`: all its known
-/// faults (unchecked views handed to the image decoder, `..` URIs that are read, two copies of the
-/// payload) are in code that then has nothing to do. What belongs to those keys is kept in `json`,
-/// together with `materials`, `textures` and `scenes`, whose extensions and extras are read from there.
+/// tinygltf gets the JSON without `buffers`, `images`, `animations` and `skins`. All its known faults (unchecked views
+/// handed to the image decoder, `..` URIs that are read, two copies of the payload) are in code that then has nothing
+/// to do. `json` keeps the content of these keys, together with `materials`, `textures` and `scenes`, whose extensions
+/// and extras are read from it.
 ///
-/// Compressed meshes are unpacked before tinygltf sees them: behind the file's own buffers, views and
-/// accessors come those that were decoded, and nothing refers to a compressed one.
+/// Compressed meshes are unpacked before tinygltf sees them. The decoded buffers, views and accessors follow the file's
+/// own, and nothing refers to a compressed one.
 struct Document {
     std::string file;
     Bytes bytes;
     std::vector<Bytes> external;
     std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
     nlohmann::json json;
-    std::map<std::size_t, nlohmann::json> nodeExtras;  ///< by node, of those that have some
+    std::map<std::size_t, nlohmann::json> nodeExtras;  ///< by node; only nodes with extras
     tinygltf::Model model;
     ContentHash hash;  ///< of everything that was read, in order
     std::uint64_t bytesRead = 0;
@@ -61,20 +60,19 @@ struct Document {
     Bytes readExternal(const std::filesystem::path& path, const std::string& place);
 };
 
-/// Throws InputError that names `place`: a range of the file that does not lie within the `size` bytes of its
-/// buffer.
+/// Throws InputError for the range at `place`, which does not lie within the `size` bytes of its buffer.
 [[noreturn]] void refuseRange(const std::string& file, const std::string& place,
                               std::uint64_t length, std::uint64_t offset, std::size_t size);
 
-/// The bytes that `range` (a buffer view, or what has the same members) names in the buffers loaded so
-/// far. Throws InputError, naming `place`, if it has no buffer or length or leaves the buffer.
+/// The bytes of `range` (a buffer view, or an object with the same members) in the buffers loaded so far. Throws
+/// InputError, naming `place`, if it has no buffer or length or leaves the buffer.
 std::span<const std::uint8_t> rangeOf(const Document& document, const nlohmann::json& range,
                                       const std::string& place);
 
-/// Adds a buffer of decoded bytes; its index.
+/// Adds a buffer of decoded bytes and returns its index.
 std::size_t addBuffer(Document& document, Bytes bytes);
 
-/// Throws InputError: more was asked for than Document::allowance has.
+/// Throws InputError: the file needs more memory than Document::allowance has left.
 [[noreturn]] void refuseUnpacking(const Document& document, const std::string& place,
                                   const char* advice = "export again without compression");
 

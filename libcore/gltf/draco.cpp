@@ -13,9 +13,9 @@
 #include "libcore/gltf/component_type.h"
 #include "libcore/gltf/in_parallel.h"
 
-// Draco 1.5.5 believes how many flags help to predict texture coordinates: a stream of a few bytes may
-// ask for 2^31, which take seconds and 256 MB for each attribute. Here is its own code with a bound: one
-// flag for each value. These definitions come before the archive's, which are weak.
+// Draco 1.5.5 trusts the stream's number of flags that help to predict texture coordinates. A stream of a few bytes may
+// ask for 2^31 of them, which take seconds and 256 MB for each attribute. The code here is Draco's own with a bound:
+// one flag for each value. These definitions take precedence over those of the library, which are weak.
 namespace draco {
 namespace {
 
@@ -65,37 +65,37 @@ using nlohmann::json;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kWithoutDraco = "export again without Draco compression";
 
-/// An accessor of a packed primitive, and where its values come to lie.
+/// An accessor of a packed primitive, and the place of its decoded values.
 struct Target {
-    std::string name;  ///< of the attribute
+    std::string name;  ///< name of the attribute
     std::uint32_t id = 0;
     json accessor;
     int componentType = 0;
     std::size_t components = 1;
-    std::size_t offset = 0;  ///< in the primitive's buffer
+    std::size_t offset = 0;  ///< bytes from the start of the primitive's buffer
 };
 
-/// A packed primitive on its way.
+/// A packed primitive while it is being decoded.
 struct PackedPrimitive {
     std::size_t mesh = 0, primitive = 0;
     std::string place;
     std::span<const std::uint8_t> coded;
     std::vector<Target> attributes;
     Target indices;
-    std::uint64_t mostPoints = 0, mostFaces = 0;  ///< what the accessors have room for
+    std::uint64_t mostPoints = 0, mostFaces = 0;  ///< limits that the accessors give
     std::size_t points = 0, faces = 0;            ///< what the stream has
     Bytes plain;
 };
 
-/// Draco's decoder, stopped before it allocates what the stream claims but the accessors do not say, or
-/// more than is left to take. The counts of bytes are rounded up from what version 1.5.5 allocates.
+/// Draco's decoder with limits. It stops before it allocates more than the accessors state or more than the allowance
+/// has left. The sizes in bytes are rounded up from what version 1.5.5 allocates.
 template <class Decoder>
 class BoundedDecoder final : public Decoder {
   public:
     BoundedDecoder(const PackedPrimitive& packed, Allowance& allowance)
         : packed_(packed), allowance_(allowance) {}
 
-    /// What was found that is too much; empty if nothing was.
+    /// The number that exceeds its limit, as text; empty if none does.
     const std::string& excess() const { return excess_; }
     bool ranOut() const { return ranOut_; }
 
@@ -150,8 +150,8 @@ class BoundedDecoder final : public Decoder {
     bool ranOut_ = false;
 };
 
-/// Whether the bytes behind the header could hold the metadata that they claim. Draco keeps a place for
-/// each part that is still to come, and would believe each part anew.
+/// Whether the bytes after the header can hold the metadata that they claim. Draco allocates a place for each part that
+/// is still to come, and trusts the claims of each part.
 bool holdsMetadata(draco::DecoderBuffer ahead) {
     const auto skip = [&](std::uint64_t size) {
         if (size > std::uint64_t(ahead.remaining_size())) return false;
@@ -220,7 +220,7 @@ void decodeStream(Document& document, const PackedPrimitive& packed, draco::Mesh
         refuse(document.file, packed.place, "a mesh packed by Draco", "something else",
                kWithoutDraco);
     }
-    // Older ones have other headers; the extension asks for this one.
+    // Older versions have other headers; the extension demands this one.
     if (header.version_major != 2 || header.version_minor != 2) {
         refuse(document.file, packed.place, "a Draco stream of version 2.2",
                "version " + std::to_string(header.version_major) + "." +
@@ -260,7 +260,7 @@ void writeAttribute(const Document& document, PackedPrimitive& packed, const dra
                std::to_string(target.components) + " components, as its accessor says",
                std::to_string(attribute->num_components()), kWithoutDraco);
     }
-    // Whose bytes may be neither true nor false, which Draco does not ask.
+    // The bytes of a boolean may be neither true nor false; Draco does not check that.
     if (attribute->data_type() == draco::DT_BOOL) {
         refuse(document.file, place, "values that are numbers", "values that are booleans",
                kWithoutDraco);
@@ -296,7 +296,8 @@ void writeIndices(const Document& document, PackedPrimitive& packed, const draco
     });
 }
 
-/// Indices, then one attribute behind the other, each at a multiple of four.
+/// Decodes the primitive into `plain`: indices, then one attribute after the other, each at a
+/// multiple of four bytes.
 void unpack(Document& document, PackedPrimitive& packed) {
     draco::Mesh mesh;
     decodeStream(document, packed, mesh);
@@ -338,7 +339,7 @@ std::uint64_t countOf(const Target& target) {
     return target.accessor.value("count", std::uint64_t(0));
 }
 
-/// Triangles without an accessor are what the stream has.
+/// Without an accessor of indices, the number of triangles is that of the stream.
 void readIndexTarget(const Document& document, const json& primitive, PackedPrimitive& packed) {
     const auto indices = primitive.find("indices");
     if (indices == primitive.end()) {
@@ -400,7 +401,7 @@ PackedPrimitive readPackedPrimitive(const Document& document, std::size_t mesh, 
     return packed;
 }
 
-/// Makes `primitive` one that needs no extension.
+/// Replaces the packed primitive by one that needs no extension.
 void makePlain(Document& document, PackedPrimitive& packed, Warnings& warnings) {
     json& root = document.json;
     const std::size_t view = root["bufferViews"].size();

@@ -21,7 +21,7 @@ void require(const Document& document, const std::string& place, double value, d
 void readCone(const Document& document, const std::string& place, const tinygltf::SpotLight& spot,
               PunctualLight& light) {
     constexpr double kRightAngle = std::numbers::pi / 2;
-    constexpr double kRounding = 1e-6;  // of pi/2 written as float
+    constexpr double kRounding = 1e-6;  // for pi/2 written as float
     require(document, place + ".outerConeAngle", spot.outerConeAngle,
             std::numeric_limits<double>::min(), kRightAngle + kRounding,
             "an angle above 0 and at most pi/2");
@@ -87,8 +87,7 @@ void addLight(const Document& document, std::size_t node, const Affine& toWorld,
                '"' + source->type + '"');
     }
 
-    constexpr double kMost =
-        1e30;  // sums and squares of it must stay finite in double, itself in float
+    constexpr double kMost = 1e30;  // it must be finite in float, its sums and squares in double
     require(document, place + ".intensity", source->intensity, 0.0, kMost,
             "a number from 0 to 1e30");
     Rgb color(1.0f);

@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr const char* kCorrect = "correct scene.extras";
 constexpr const char* kCorrectOwn = "correct its extras";
 
-/// A member of an extras object, by name, with its place for messages.
+/// Access to the members of an extras object by name; errors name the object's place.
 class Members {
   public:
     Members(const Document& document, const json& object, std::string place)
@@ -60,7 +60,7 @@ class Members {
     std::string place_;
 };
 
-/// What `text` says as JSON. Custom properties that are typed into Blender arrive as texts.
+/// Parses `text` as JSON. Custom properties that are typed into Blender arrive as strings.
 json parseText(const Document& document, const std::string& place, const std::string& text,
                const std::string& expected, const char* remedy = kCorrect) {
     checkJsonDepth(document.file, text);
@@ -95,7 +95,7 @@ void readPicture(const Document& document, const json& extras, SceneDescription&
     members.warnAboutOthers({"width", "height", "max_depth", "aperture", "focus"}, warnings);
 }
 
-/// Whether a text is not a file's name but an object.
+/// Whether a string holds an object and not a file's name.
 bool looksLikeObject(const json& value) {
     if (!value.is_string()) return false;
     const auto& text = value.get_ref<const std::string&>();

@@ -14,8 +14,8 @@ namespace lacuna::gltf {
 namespace fs = std::filesystem;
 namespace {
 
-/// Size of the regular file `path`; refuses anything else, so that nothing waits on a pipe or reads
-/// from a device.
+/// Size of the regular file `path`. Refuses anything else, so that the reader never waits on a pipe
+/// or reads from a device.
 std::uint64_t regularFileSize(const fs::path& path, const std::string& by) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -54,7 +54,7 @@ int hexDigit(char c) {
     return -1;
 }
 
-/// RFC 3986 scheme before the first colon. A Windows drive letter counts as one.
+/// Whether an RFC 3986 scheme precedes the first colon. A Windows drive letter counts as one.
 bool hasScheme(std::string_view uri) {
     const std::size_t colon = uri.find(':');
     if (colon == std::string_view::npos || colon == 0) return false;
@@ -153,7 +153,7 @@ fs::path resolveUri(const std::string& file, const std::string& place, std::stri
         const int high = i + 2 < uri.size() ? hexDigit(uri[i + 1]) : -1;
         const int low = i + 2 < uri.size() ? hexDigit(uri[i + 2]) : -1;
         if (high < 0 || low < 0) {
-            name += '%';  // exporters that do not encode: a per cent sign of the name's own
+            name += '%';  // a literal per cent sign, from exporters that do not encode
         } else {
             name += char(high * 16 + low);
             i += 2;

@@ -1,4 +1,4 @@
-// Bytes from files and data URIs, and the rules for what a scene file may refer to.
+// Bytes from files and data URIs, and the rules for files to which a scene file may refer.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace lacuna::gltf {
 
-/// Owned bytes, not initialised before they are read into (a scene can be gigabytes).
+/// Owned bytes, uninitialised until they are read into (a scene can be gigabytes).
 struct Bytes {
     std::unique_ptr<std::uint8_t[]> data;
     std::size_t size = 0;
@@ -26,7 +26,7 @@ struct Bytes {
 Bytes readFile(const std::filesystem::path& path, std::uint64_t mostBytes,
                const std::string& askedBy = "");
 
-/// Adds the bytes of `path` to `hash` without keeping them; throws as readFile does.
+/// Adds the bytes of `path` to `hash` without keeping them. Throws like readFile.
 void hashFile(const std::filesystem::path& path, ContentHash& hash, const std::string& askedBy);
 
 bool isDataUri(std::string_view uri);
@@ -35,12 +35,12 @@ bool isDataUri(std::string_view uri);
 /// if it is not that.
 Bytes decodeDataUri(const std::string& file, const std::string& place, std::string_view uri);
 
-/// Path below the scene's folder that a relative URI (percent-encoded) names. Throws InputError for
-/// absolute ones, those with a scheme and those that leave the folder by `..`.
+/// The path below the scene's folder that a relative, percent-encoded URI names. Throws InputError
+/// for absolute URIs, for those with a scheme and for those that leave the folder by `..`.
 std::filesystem::path resolveUri(const std::string& file, const std::string& place,
                                  std::string_view uri);
 
-/// The same for a plain file name, in which `%` means itself.
+/// The same for a plain file name, in which `%` is an ordinary character.
 std::filesystem::path resolveFileName(const std::string& file, const std::string& place,
                                       std::string_view name);
 

@@ -41,7 +41,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// A mesh that a skin bends lies where its joints do, not where its node is.
+/// Adds a mesh that a skin deforms. Its joints place it, not its node.
 void addBent(SkinnedMesh bent, Instance instance, SceneDescription& scene) {
     if (bent.mesh.triangles.empty()) return;
     instance.mesh = std::uint32_t(scene.meshes.size());
@@ -50,9 +50,9 @@ void addBent(SkinnedMesh bent, Instance instance, SceneDescription& scene) {
     scene.instances.push_back(instance);
 }
 
-/// One instance per placed primitive and copy. Negative determinants stay in toWorld; without one
-/// there is no surface to hit.
-/// `groupName`: of the node's light group, or nothing.
+/// Adds one instance per placed primitive and copy. Negative determinants stay in toWorld; with a
+/// determinant of zero there is no surface to hit. `groupName`: name of the node's light group, or
+/// empty.
 void addInstances(Document& document, const Placement& placement, const MeshTable& table,
                   const SkinTable& skins, const std::string& groupName, SceneDescription& scene,
                   Warnings& warnings) {
@@ -100,7 +100,8 @@ void addInstances(Document& document, const Placement& placement, const MeshTabl
     }
 }
 
-/// Primitives without a material got the index behind the file's own: glTF's default goes there.
+/// Adds glTF's default material after the file's own if a primitive uses it: primitives without a
+/// material have this index.
 void addDefaultMaterial(SceneDescription& scene) {
     bool needed = scene.materials.empty();
     for (const Mesh& mesh : scene.meshes) needed |= mesh.material == scene.materials.size();
@@ -109,7 +110,7 @@ void addDefaultMaterial(SceneDescription& scene) {
     scene.materials.back().name = "default";
 }
 
-/// How smooth textures let materials be anywhere.
+/// Finds the smallest roughness in each material's textures.
 void findLeastTexels(SceneDescription& scene) {
     constexpr std::pair<TextureUse Material::*, float Material::*> kOfRoughness[] = {
         {&Material::metallicRoughnessTexture, &Material::leastRoughnessTexel},
@@ -138,7 +139,7 @@ Bytes copyOf(std::span<const std::uint8_t> bytes) {
     return copy;
 }
 
-/// `bytes`: asked for once, for the file itself.
+/// Reads the scene. `bytes` returns the file's content and is called once.
 void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDescription& scene,
           Warnings& warnings) {
     Stopwatch watch;

@@ -30,23 +30,23 @@ constexpr std::array<std::string_view, 17> kSupported = {
     "EXT_meshopt_compression",
     "EXT_texture_webp",
 };
-/// Known extensions that are not read, and what is therefore lost; nothing where that is no part of a
-/// picture, or said elsewhere.
+/// Known extensions that are not read, and what is therefore lost. The loss is empty where the picture loses nothing or
+/// another warning tells it.
 struct Unread {
     std::string_view name, loss;
 };
 constexpr std::array kUnread = {
     Unread{"EXT_lights_image_based", "name its sky by --env"},
     Unread{"EXT_texture_avif", "the plain images beside it are read"},
-    Unread{"KHR_animation_pointer", ""},  // animations.. are ignored, says gltf.cpp
+    Unread{"KHR_animation_pointer", ""},  // gltf.cpp warns of animations
     Unread{"KHR_materials_dispersion", "glass does not part colours"},
     Unread{"KHR_materials_iridescence", "thin films have no colours"},
     Unread{"KHR_materials_pbrSpecularGlossiness",
            "materials are what stands beside it, or white metal"},
     Unread{"KHR_materials_unlit", "its surfaces are lit as all others"},
-    Unread{"KHR_materials_variants", ""},  // those of the file's own choice are rendered
+    Unread{"KHR_materials_variants", ""},  // the file's default variant is rendered
     Unread{"KHR_meshopt_compression", "the plain data beside it is read"},
-    Unread{"KHR_texture_basisu", ""},  // image.cpp tells
+    Unread{"KHR_texture_basisu", ""},  // image.cpp warns
     Unread{"KHR_xmp_json_ld", ""},
     Unread{"MSFT_texture_dds", "the plain images beside it are read"},
 };
@@ -82,7 +82,7 @@ Chunks splitGlb(const std::string& file, std::span<const std::uint8_t> bytes) {
     std::size_t offset = kHeader;
     for (int index = 0; offset < glb.size(); ++index) {
         const std::size_t left = glb.size() - offset;
-        if (left < kChunkHeader && index > 0) break;  // padding behind the last chunk
+        if (left < kChunkHeader && index > 0) break;  // padding after the last chunk
         if (left < kChunkHeader) refuse(file, "", "a GLB chunk header", "the end", again);
         const std::uint32_t size = littleEndian(glb, offset), type = littleEndian(glb, offset + 4);
         if (size > left - kChunkHeader) {

@@ -1,5 +1,5 @@
-// What is checked before any library sees the file: container, nesting, and the type of every value
-// and the range of every index that the reader will use.
+// The checks before any library sees the file: container, nesting, and the type of every value and
+// the range of every index that the reader uses.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct Chunks {
     std::span<const std::uint8_t> binary;
 };
 
-/// Splits a .glb into its chunks (recognised by its first bytes, not by its name); anything else
-/// that starts like a JSON object is taken as a .gltf. Throws InputError for neither, and for
-/// chunks that do not fit the file.
+/// Splits a .glb into its chunks; its first bytes tell that it is one, not its name. Anything else
+/// that starts like a JSON object is taken as a .gltf. Throws InputError for all other files, and
+/// for chunks that do not fit the file.
 Chunks splitContainer(const std::string& file, std::span<const std::uint8_t> bytes);
 
 /// Throws InputError if brackets nest deeper than Limits::kJsonDepth: the parsers recurse.
@@ -31,8 +31,9 @@ void checkJsonDepth(const std::string& file, std::string_view text);
 /// large numbers of the latter to 32 bits.
 void checkRules(const std::string& file, const nlohmann::json& root);
 
-/// Throws InputError for a version that is not 2.x and for required extensions that we lack; warns
-/// of others in extensionsUsed: what is lost of each that is known, the names of those that are not.
+/// Throws InputError for a version other than 2.x and for required extensions that are not
+/// supported. Warns of other unsupported names in extensionsUsed: for known extensions what is
+/// lost, for unknown ones the name.
 void checkVersionAndExtensions(const std::string& file, const nlohmann::json& root,
                                Warnings& warnings);
 

@@ -24,7 +24,7 @@ struct Picture {
     std::span<const std::uint8_t> coded;
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
-    int uses = 0;  ///< textures still to be made of it
+    int uses = 0;  ///< textures still to be made from it
 
     std::uint64_t texels() const { return std::uint64_t(width) * std::uint64_t(height); }
 };
@@ -60,20 +60,20 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::span<const std::uint8_
 }
 
 bool isWebp(std::span<const std::uint8_t> bytes) {
-    constexpr std::size_t kForm = 8;  // behind RIFF and a length
+    constexpr std::size_t kForm = 8;  // after RIFF and a length
     constexpr std::uint8_t kRiff[] = {'R', 'I', 'F', 'F'}, kWebp[] = {'W', 'E', 'B', 'P'};
     return startsWith(bytes, kRiff) && bytes.size() > kForm &&
            startsWith(bytes.subspan(kForm), kWebp);
 }
 
-/// The fewest bytes that hold so many texels; a JPEG has a bit for each block of 64 at least, and a flat WebP
-/// any number in 30 bytes. A header that claims more would have them all allocated.
+/// The fewest bytes that can hold this number of texels: decoders would allocate whatever the header claims. A JPEG has
+/// at least one bit per block of 64 texels. A WebP of one colour holds any number in 30 bytes.
 std::uint64_t fewestBytes(std::span<const std::uint8_t> coded, std::uint64_t texels) {
     if (isWebp(coded)) return 0;
     return startsWith(coded, kPng) ? fewestBytesOfPng(coded, texels) : texels / (64 * 8);
 }
 
-/// Width and height as a header says; false for one that is damaged or of a moving picture.
+/// Reads width and height from the header. False if it is damaged or that of an animation.
 bool readHeader(Picture& picture) {
     const auto coded = picture.coded;
     if (isWebp(coded)) {
@@ -90,14 +90,15 @@ bool readHeader(Picture& picture) {
                                  &channels);
 }
 
-/// A flat picture takes a few bytes, whatever its size.
+/// Takes memory from the allowance: a picture of one colour has a few bytes, whatever its size.
 void takeMemory(Document& document, const Picture& picture, std::uint64_t bytes) {
     if (!document.allowance.take(bytes)) {
         refuseUnpacking(document, picture.place, "scale the image down");
     }
 }
 
-/// Size of the picture, from its header: nothing of that size is allocated before it is accepted.
+/// Reads the picture's size from its header. Nothing of that size is allocated before it is
+/// accepted.
 void readSize(Document& document, Picture& picture) {
     const auto coded = picture.coded;
     if (!startsWith(coded, kPng) && !startsWith(coded, kJpeg) && !isWebp(coded)) {
@@ -123,7 +124,8 @@ void readSize(Document& document, Picture& picture) {
                    " texels",
                std::to_string(coded.size()), "save the image again");
     }
-    // libwebp holds the texels twice; stb_image with 16 bits a sample, and as deflate left them.
+    // libwebp holds the texels twice. stb_image holds them with 16 bits per sample, and once more
+    // as deflate decoded them.
     takeMemory(document, picture, texels * (isWebp(coded) ? 4 : 12));
 }
 
@@ -146,7 +148,7 @@ void decodePicture(const Document& document, Picture& picture) {
         stbi_load_from_memory(picture.coded.data(), int(picture.coded.size()), &width, &height,
                               &channels, STBI_rgb_alpha));
     if (!texels || width != picture.width || height != picture.height) {
-        const char* reason = texels ? nullptr : stbi_failure_reason();  // which may be nothing
+        const char* reason = texels ? nullptr : stbi_failure_reason();  // may be null
         refuse(document.file, picture.place, kKinds,
                reason && *reason ? std::string("a damaged one (") + reason + ")" : "a damaged one",
                "save the image again");
@@ -172,7 +174,8 @@ Texture::Wrap TextureTable::wrap(int sampler, int mode, const char* name) const 
     }
 }
 
-/// The image of glTF texture `texture` (in range), or -1: an extension's before the plain one.
+/// The image of glTF texture `texture` (in range), or -1. An extension's image has priority over
+/// the plain one.
 int TextureTable::imageOf(int texture, Warnings& warnings) const {
     const std::string place = "textures[" + std::to_string(texture) + "]";
     const nlohmann::json& json = document_.json["textures"][std::size_t(texture)];
@@ -197,7 +200,7 @@ TextureUse TextureTable::request(int texture, bool srgb, Warnings& warnings) {
         const tinygltf::Sampler& sampler = document_.model.samplers[std::size_t(entry.sampler)];
         key.wrapU = wrap(entry.sampler, sampler.wrapS, "wrapS");
         key.wrapV = wrap(entry.sampler, sampler.wrapT, "wrapT");
-        // minFilter is for mip maps, and there are none.
+        // minFilter concerns mip maps, which are not used.
         key.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
     }
     const auto [at, isNew] = known_.try_emplace(key, std::int32_t(keys_.size()));

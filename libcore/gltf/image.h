@@ -1,4 +1,4 @@
-// From glTF's texture = image + sampler to the description's decoded textures.
+// Turns glTF's textures (image + sampler) into the description's decoded textures.
 #pragma once
 
 #include <compare>
@@ -12,18 +12,19 @@
 
 namespace lacuna::gltf {
 
-/// Collects which textures the materials need: one per image, wrap modes, filter and coding, however many
-/// materials and glTF textures share it. An image used as colour and as data becomes two.
+/// Collects the textures that the materials need: one per combination of image, wrap modes, filter and coding, however
+/// many materials and glTF textures share it. An image that is used both as colour and as data becomes two textures.
 class TextureTable {
   public:
     explicit TextureTable(const Document& document) : document_(document) {}
 
-    /// Index of glTF texture `texture` (in range) read as sRGB or linear; none, with a warning,
-    /// where it has no image that we can read (only one of an extension).
+    /// Requests glTF texture `texture` (in range), read as sRGB or linear. Returns none, with a
+    /// warning, where it has no readable image (only one of an unsupported extension).
     TextureUse request(int texture, bool srgb, Warnings& warnings);
 
-    /// Reads and decodes all that was requested: images in parallel, external files in order of
-    /// image number. Throws InputError for what is no PNG, JPEG or WebP, is damaged or is too large.
+    /// Reads and decodes all requested textures: images in parallel, external files in order of
+    /// image number. Throws InputError for an image that is no PNG, JPEG or WebP, is damaged or is
+    /// too large.
     std::vector<Texture> decode(Document& document) const;
 
   private:

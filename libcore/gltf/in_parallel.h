@@ -1,4 +1,4 @@
-// Work on many parts of a file at once.
+// Parallel work on many parts of a file.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace lacuna::gltf {
 
-/// Calls work(item) for each of `items`, in the caller's arena of oneTBB. Then throws the
-/// error of the first item that has one: which thread met one first must not decide which the user sees.
+/// Calls work(item) for each of `items`, in the caller's arena of oneTBB. Then throws the error of the first item that
+/// has one: the order of threads must not decide which error the user sees.
 template <class Item, class Work>
 void inParallel(std::vector<Item>& items, const Work& work) {
     std::vector<std::exception_ptr> errors(items.size());

@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads one material. Core properties come from tinygltf's struct, extensions from the JSON, which
-/// keeps their numbers as they are (tinygltf cuts integers to 32 bits there).
+/// Reads one material. Core properties come from tinygltf's struct. Extensions come from the JSON,
+/// which keeps their numbers as they are (tinygltf truncates integers there to 32 bits).
 class Reader {
   public:
     Reader(const Document& document, std::size_t index, TextureTable& textures, Warnings& warnings)
@@ -63,7 +63,7 @@ class Reader {
     }
 
     void readSpecular(const json& specular) {
-        constexpr double kMost = 1e6;  // what exceeds a reflectance of 1 is cut there anyway
+        constexpr double kMost = 1e6;  // reflectances are clamped to 1 anyway
         material_.specular =
             clamped(number(specular, "specularFactor", 1.0), 0, 1, "specularFactor");
         if (!(material_.specular > 0.0f)) return;
@@ -172,7 +172,7 @@ class Reader {
         }
     }
 
-    /// The white that enters has attenuationColor left after attenuationDistance.
+    /// Absorption such that white light has the colour attenuationColor after attenuationDistance.
     void readAbsorption(const json& volume) {
         constexpr double kNever = std::numeric_limits<double>::infinity();
         const auto color = numbers<3>(volume, "attenuationColor", {1, 1, 1});
@@ -183,7 +183,7 @@ class Reader {
         if (!(distance > 0.0) || distance == kNever) return;
         const auto coefficient = [&](double c) {
             const auto left = double(clamped(c, 0, 1, "attenuationColor"));
-            // Black absorbs without limit: as much as a float can say.
+            // Black would absorb without limit; the coefficient must stay finite.
             return float(std::min(-std::log(left) / distance, kMostAbsorption));
         };
         material_.absorption = {coefficient(color[0]), coefficient(color[1]),
@@ -269,15 +269,15 @@ class Reader {
         return float(legal);
     }
 
-    /// Three factors from 0 to `most`, of four or three numbers.
+    /// Three factors clamped to [0, `most`]; a fourth number is ignored.
     template <class Numbers>
     Rgb clampedRgb(const Numbers& factors, const char* name, double most = 1.0) {
         return {clamped(factors[0], 0, most, name), clamped(factors[1], 0, most, name),
                 clamped(factors[2], 0, most, name)};
     }
 
-    /// The texture that `name` of `object` (may be null) asks for. Index and set were range-checked
-    /// (rules.cpp).
+    /// The texture in the member `name` of `object` (may be null). rules.cpp has checked the range
+    /// of index and set.
     TextureUse texture(const json* object, const char* name, bool srgb) {
         const json* info = object ? member(*object, name) : nullptr;
         if (!info) return {};
@@ -305,8 +305,8 @@ class Reader {
         return use;
     }
 
-    /// KHR_texture_transform: scaled, turned about the origin, moved. Positive angles turn the
-    /// coordinates against the clock as the image is seen; v points down.
+    /// KHR_texture_transform: coordinates are scaled, rotated about the origin and translated.
+    /// Positive angles rotate them counterclockwise as the image is seen; v points down.
     void place(const json& transform, TextureUse& use) {
         constexpr double kMost = 1e6;
         const auto scale = numbers<2>(transform, "scale", {1, 1});
@@ -329,7 +329,7 @@ class Reader {
     TextureTable& textures_;
     Warnings& warnings_;
     const json* json_ = nullptr;
-    const json* extensions_ = nullptr;  // the material's own
+    const json* extensions_ = nullptr;  // of the material
     Material material_;
 };
 

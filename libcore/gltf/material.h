@@ -1,4 +1,4 @@
-// glTF materials and the extensions that are rendered as the description's materials.
+// Turns glTF materials, with the extensions that are rendered, into the description's materials.
 #pragma once
 
 #include <vector>

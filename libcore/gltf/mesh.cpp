@@ -15,7 +15,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// One primitive on its way: what was read, and what the user is to be told about it.
+/// One primitive: the data read, and the counts that the user is warned of.
 struct Task {
     std::size_t mesh = 0, primitive = 0;
     Mesh result;
@@ -83,9 +83,9 @@ std::vector<V> readVertices(const Document& document, const Task& task, const ch
     return result;
 }
 
-/// Vertex index lists may share one large vertex buffer of which each uses a part: reading all of
-/// it for every primitive would be quadratic. Returns the vertices used, ascending, and renumbers
-/// `indices`; returns nothing where (nearly) all are used.
+/// Many primitives may share one large vertex buffer of which each uses a part: to read all of it
+/// for every primitive would take quadratic time. Returns the vertices used, ascending, and
+/// renumbers `indices`. Returns an empty list where (nearly) all are used.
 std::vector<std::uint32_t> keepUsed(std::vector<std::uint32_t>& indices, std::size_t vertexCount) {
     if (indices.size() >= vertexCount) return {};
     std::vector<std::uint32_t> which = indices;
@@ -97,15 +97,15 @@ std::vector<std::uint32_t> keepUsed(std::vector<std::uint32_t>& indices, std::si
     return which;
 }
 
-/// Twice the area along the winding's normal. In double, where differences of floats and their
-/// products are all but exact: collinear corners give exactly or nearly zero.
+/// Twice the area along the winding's normal. In double, differences of floats and their products
+/// are nearly exact, so that collinear corners give exactly or nearly zero.
 Vec3d areaNormal(const Mesh& mesh, const Triangle& t) {
     const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
     return cross(b - a, c - a);
 }
 
-/// Replaces normals of no length by those of the faces around them, and scales those whose squares
-/// float cannot hold.
+/// Replaces zero normals by the sum of the normals of the faces around them, and rescales normals
+/// whose squares a float cannot hold.
 void repairNormals(Task& task) {
     constexpr double kLeast = 1e-12, kShort = 1e-6, kLong = 1e6;
     Mesh& mesh = task.result;
@@ -127,12 +127,13 @@ void repairNormals(Task& task) {
         for (const std::uint32_t v : t) {
             if (!isZero[v]) continue;
             const Vec3 sum = mesh.normals[v] + face;
-            if (length(sum) > 1e-3f) mesh.normals[v] = sum;  // else: faces back to back, keep one
+            if (length(sum) > 1e-3f) mesh.normals[v] = sum;  // else back to back: keep one
         }
     }
 }
 
-/// TANGENT where it has a use: with normals, and with what turns a BSDF (glTF 2.0, 3.7.2.1).
+/// Reads TANGENT where it is used: with normals, and with a normal map, anisotropy or a clearcoat
+/// (glTF 2.0, 3.7.2.1).
 void readTangents(const Document& document, Task& task, std::size_t count,
                   const std::vector<std::uint32_t>& which) {
     const tinygltf::Primitive& primitive = primitiveOf(document, task);
@@ -147,7 +148,7 @@ void readTangents(const Document& document, Task& task, std::size_t count,
         readVertices<std::array<float, 4>, 4>(document, task, "TANGENT", tangents, count, which);
 }
 
-/// COLOR_0 has three components or four; values outside [0, 1] are cut off.
+/// COLOR_0 has three or four components; values are clamped to [0, 1].
 void readColors(const Document& document, Task& task, int accessor, std::size_t count,
                 const std::vector<std::uint32_t>& which) {
     using Color = std::array<float, 4>;
@@ -166,7 +167,7 @@ void readColors(const Document& document, Task& task, int accessor, std::size_t 
     }
 }
 
-/// JOINTS_0 and WEIGHTS_0, if the mesh has both.
+/// Reads JOINTS_0 and WEIGHTS_0, if the mesh has both.
 void readInfluences(const Document& document, Task& task, std::size_t count,
                     const std::vector<std::uint32_t>& which) {
     using Four = std::array<float, 4>;
@@ -180,7 +181,8 @@ void readInfluences(const Document& document, Task& task, std::size_t count,
         readVertices<Four, 4>(document, task, "WEIGHTS_0", weights, count, which);
 }
 
-/// Moves positions or normals (`name`) as the morph targets say, by the mesh's own weights.
+/// Adds the morph targets' displacements to positions or normals (`name`), by the mesh's own
+/// weights.
 void addMorphs(const Document& document, Task& task, const char* name, std::size_t count,
                const std::vector<std::uint32_t>& which, std::vector<Vec3>& values) {
     const std::vector<double>& weights = document.model.meshes[task.mesh].weights;
@@ -250,8 +252,8 @@ void readPrimitive(const Document& document, Task& task) {
     repairNormals(task);
 }
 
-/// Elements that a primitive has read although no bytes of the file stand behind them. Indices
-/// without a buffer view do not come this far: tinygltf refuses them.
+/// Number of elements that a primitive reads without bytes of the file. Indices without a buffer
+/// view do not occur here: tinygltf refuses them.
 std::size_t zeroElements(const Document& document, const Task& task) {
     const tinygltf::Primitive& primitive = primitiveOf(document, task);
     const std::vector<double>& weights = document.model.meshes[task.mesh].weights;
@@ -259,7 +261,7 @@ std::size_t zeroElements(const Document& document, const Task& task) {
     const auto add = [&](const std::map<std::string, int>& attributes) {
         for (const auto& [name, index] : attributes) {
             const tinygltf::Accessor& accessor = document.model.accessors[std::size_t(index)];
-            // Far above the limit is enough: sums must not overflow.
+            // Clamped to just above the limit: sums must not overflow.
             if (accessor.bufferView < 0) sum += std::min(accessor.count, Limits::kZeroElements + 1);
         }
     };
@@ -270,7 +272,8 @@ std::size_t zeroElements(const Document& document, const Task& task) {
     return sum;
 }
 
-/// One task per primitive of the used meshes that has triangles; refuses too many in all.
+/// One task per primitive of the used meshes that has triangles. Refuses a file with too many in
+/// total.
 std::vector<Task> planTasks(const Document& document, const std::vector<bool>& used) {
     std::vector<Task> tasks;
     std::size_t triangles = 0, zeros = 0;

@@ -63,7 +63,7 @@ constexpr std::array kFilters = {
            [](std::uint64_t stride) { return stride % 4 == 0; }, "a byteStride that 4 divides"},
 };
 
-/// A packed view: what its extension says, checked, and then its bytes.
+/// A packed view: the checked members of its extension, and later its bytes.
 struct PackedView {
     std::size_t view = 0;
     std::string place;
@@ -74,7 +74,7 @@ struct PackedView {
     Bytes plain;
 };
 
-/// The entry of `table` that `name` is the `member` of.
+/// The entry of `table` whose `member` is `name`. Throws InputError if there is none.
 template <class Entry, std::size_t N>
 const Entry& lookUp(const Document& document, const PackedView& packed,
                     const std::array<Entry, N>& table, const char* Entry::*member,
@@ -88,7 +88,7 @@ const Entry& lookUp(const Document& document, const PackedView& packed,
            "export again without meshopt compression");
 }
 
-/// The packed view that `extension` describes. Takes what it will need.
+/// The packed view that `extension` describes. Takes its memory from the allowance.
 PackedView readPackedView(Document& document, std::size_t view, const json& extension) {
     PackedView packed;
     packed.view = view;
@@ -117,7 +117,7 @@ PackedView readPackedView(Document& document, std::size_t view, const json& exte
         refuse(document.file, packed.place,
                packed.filter->strides + std::string(" for filter ") + packed.filter->name, found());
     }
-    // 2^53 elements at most (rules.cpp) of 256 bytes.
+    // No overflow: at most 2^53 elements (rules.cpp) of 256 bytes.
     if (!document.allowance.take(count * stride)) refuseUnpacking(document, packed.place);
     packed.count = std::size_t(count);
     packed.stride = std::size_t(stride);

@@ -18,7 +18,7 @@ bool isFinite(const Affine& a) {
 }
 
 Affine fromMatrix(const Document& document, std::size_t node, const std::vector<double>& m) {
-    // The last row of a column-major matrix, which an affine map does not have.
+    // The last row of a column-major matrix must be that of an affine map.
     constexpr double kTolerance = 1e-6;
     const double off =
         std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
@@ -60,7 +60,7 @@ Affine localTransform(const Document& document, std::size_t index) {
                                : fromMatrix(document, index, node.matrix);
 }
 
-/// Which nodes are some node's child. Refuses two parents and cycles, in any scene of the file.
+/// Flags of the nodes that are children. Refuses two parents and cycles, in any scene of the file.
 std::vector<bool> checkForest(const Document& document) {
     const auto& nodes = document.model.nodes;
     std::vector<bool> isChild(nodes.size());
@@ -73,7 +73,8 @@ std::vector<bool> checkForest(const Document& document) {
             isChild[std::size_t(child)] = true;
         }
     }
-    // With at most one parent each, whatever no root leads to is on or below a cycle.
+    // Each node has at most one parent, so that a node that no root leads to is on or below a
+    // cycle.
     std::vector<bool> reached(nodes.size());
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -116,14 +117,15 @@ std::vector<std::size_t> sceneRoots(const Document& document, std::vector<bool> 
     return roots;
 }
 
-/// One attribute of EXT_mesh_gpu_instancing, as `components` floats per copy; empty if it is not
-/// there. `count`: copies so far known, 0 at first.
+/// One attribute of EXT_mesh_gpu_instancing, as `components` floats per copy; empty if it is
+/// absent. `count`: the number of copies, 0 while it is unknown.
 std::vector<float> readCopies(const Document& document, const tinygltf::Value& attributes,
                               const char* name, int components, const std::string& place,
                               std::size_t& count) {
     if (!attributes.Has(name)) return {};
     const int accessor = attributes.Get(name).GetNumberAsInt();
-    // Copies in one place are no use, and no bytes of the file would bound how many there are.
+    // Copies at one place are useless, and without bytes in the file nothing would bound their
+    // number.
     if (document.model.accessors[std::size_t(accessor)].bufferView < 0) {
         refuse(document.file, place + "." + name, "an accessor with a buffer view", "none");
     }
@@ -137,7 +139,7 @@ std::vector<float> readCopies(const Document& document, const tinygltf::Value& a
     return readFloats(view);
 }
 
-/// Whether the node itself is not hidden.
+/// Whether the node itself is visible, whatever its ancestors are.
 bool isVisible(const Document& document, std::size_t node) {
     const auto& extensions = document.model.nodes[node].extensions;
     const auto visibility = extensions.find("KHR_node_visibility");
@@ -185,7 +187,7 @@ std::vector<Placement> flattenScene(const Document& document, Warnings& warnings
     const auto& nodes = document.model.nodes;
     std::vector<std::size_t> roots = sceneRoots(document, checkForest(document), warnings);
 
-    // A stack of our own: chains of nodes may be as long as the file.
+    // An explicit stack instead of recursion: chains of nodes may be as long as the file.
     std::vector<Placement> result, open;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         open.push_back({*root, {}, true});

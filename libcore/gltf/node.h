@@ -11,7 +11,7 @@ namespace lacuna::gltf {
 struct Placement {
     std::size_t node = 0;
     Affine toWorld;
-    /// KHR_node_visibility of the node and of all above it: else its mesh and its light are not there.
+    /// KHR_node_visibility of the node and all its ancestors. If false, its mesh and light are left out.
     bool visible = true;
 };
 
@@ -21,9 +21,9 @@ struct Placement {
 /// not affine.
 std::vector<Placement> flattenScene(const Document& document, Warnings& warnings);
 
-/// Where EXT_mesh_gpu_instancing draws the mesh of `node`, in the node's own coordinates; the
-/// identity alone where the node does not have it. Throws InputError for attributes of different
-/// lengths and transforms that are not finite.
+/// The transforms at which EXT_mesh_gpu_instancing places the mesh of `node`, in the node's own
+/// coordinates; only the identity for a node without the extension. Throws InputError for
+/// attributes of different lengths and transforms that are not finite.
 std::vector<Affine> meshCopies(const Document& document, std::size_t node);
 
 }  // namespace lacuna::gltf

@@ -1,4 +1,4 @@
-// What the reader says to the user: one way to refuse a file, one place that collects warnings.
+// The reader's messages to the user: errors and warnings.
 #pragma once
 
 #include <cstddef>

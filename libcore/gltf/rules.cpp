@@ -1,4 +1,4 @@
-// A table of every value that the reader uses, and a walk that holds the file against it.
+// A table of every value that the reader uses, and the check of a file against it.
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -259,7 +259,7 @@ constexpr Rule kRules[] = {
     {"skins/*/inverseBindMatrices", Shape::Index, 0, "accessors"},
 };
 
-/// Where a walk stands, from the value up to the root: text only when it is needed.
+/// The path from a value up to the root. It becomes text only when a message needs it.
 struct Trail {
     const Trail* up;
     std::string_view key;  ///< empty: `index`
@@ -303,8 +303,8 @@ class Walk {
     Walk(const std::string& file, const json& root, const Rule& rule)
         : file_(file), rule_(rule), targetLength_(rule.target ? lengthOf(root, rule.target) : 0) {}
 
-    /// Checks every value below `node` that the rest of the rule's path leads to. A container of
-    /// the wrong type on the way is the business of the container's own rule.
+    /// Checks every value below `node` that the rest of the rule's path leads to. If a container on
+    /// the way has the wrong type, the container's own rule reports it.
     void visit(const json& node, std::string_view path, const Trail* trail) const {
         if (path.empty()) return check(node, *trail);
         const std::size_t slash = std::min(path.find('/'), path.size());

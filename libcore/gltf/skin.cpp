@@ -8,7 +8,7 @@
 namespace lacuna::gltf {
 namespace {
 
-/// Of an affine map whose determinant is not 0.
+/// Inverse of an affine map with a determinant other than 0.
 Affine inverseOf(const Affine& a) {
     const double scale = 1.0 / a.determinant();
     const Vec3d x = cross(a.m[1], a.m[2]) * scale, y = cross(a.m[2], a.m[0]) * scale,
@@ -23,7 +23,7 @@ bool isFiniteMap(const Affine& a) {
            std::isfinite(a.determinant());
 }
 
-/// The mean of `transforms` by a vertex's weights, which need not add up to 1.
+/// The weighted mean of `transforms`. A vertex's weights need not add up to 1.
 Affine blend(const std::vector<Affine>& transforms, const std::array<float, 4>& joints,
              const std::array<float, 4>& weights) {
     const double sum = double(weights[0]) + weights[1] + weights[2] + weights[3];
@@ -99,7 +99,7 @@ SkinnedMesh SkinTable::bend(Document& document, std::size_t node, const Mesh& me
     for (std::size_t i = 0; i < influences.joints.size(); ++i) {
         for (std::size_t k = 0; k < 4; ++k) {
             const float joint = influences.joints[i][k];
-            if (k > 0 && influences.weights[i][k] == 0.0f) continue;  // may be anything
+            if (k > 0 && influences.weights[i][k] == 0.0f) continue;  // its joint is unused
             if (joint >= 0.0f && joint < float(transforms.size())) continue;
             refuse(document.file, place, "joints below " + std::to_string(transforms.size()),
                    std::to_string(std::lround(joint)) + " at vertex " + std::to_string(i));
@@ -107,7 +107,8 @@ SkinnedMesh SkinTable::bend(Document& document, std::size_t node, const Mesh& me
     }
 
     SkinnedMesh result{mesh, {}};
-    // Where one joint leads all, the mesh stays as it is: no rounding, and its winding if mirrored.
+    // Where one joint moves all vertices, the mesh stays as it is: no rounding, and the winding is
+    // kept under mirroring.
     const Affine& first = transforms[std::size_t(influences.joints[0][0])];
     if (first.determinant() != 0.0 && isFiniteMap(inverseOf(first))) result.toWorld = first;
     const Affine back = inverseOf(result.toWorld);

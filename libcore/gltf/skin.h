@@ -1,4 +1,4 @@
-// Skins at rest: vertices that follow several nodes.
+// Skins in the file's pose (without animation): vertices that follow several nodes.
 #pragma once
 
 #include "libcore/gltf/mesh.h"
@@ -6,21 +6,20 @@
 
 namespace lacuna::gltf {
 
-/// A mesh as its skin bends it, and where that lies.
+/// A mesh deformed by its skin, and its placement.
 struct SkinnedMesh {
     Mesh mesh;
     Affine toWorld;
 };
 
-/// The skins of a document, for one file's nodes where flattenScene put them.
+/// The skins of a document, for the placements of nodes that flattenScene returned.
 class SkinTable {
   public:
     SkinTable(const Document& document, const std::vector<Placement>& placements);
 
-    /// `mesh`, whose vertices are led by `influences`, as the skin of `node` (which has one) bends it.
-    /// Triangles that are left without area are gone. Takes the memory from the document's allowance.
-    /// Throws InputError for joints that do not exist or are not in the scene, for matrices that are
-    /// not finite, and where the memory is used up.
+    /// `mesh`, whose vertices follow `influences`, as deformed by the skin of `node` (which must have one). Triangles
+    /// that lose their area are dropped. The memory comes from the document's allowance. Throws InputError for joints
+    /// that do not exist or are not in the scene, for matrices that are not finite, and where the allowance is used up.
     SkinnedMesh bend(Document& document, std::size_t node, const Mesh& mesh,
                      const Influences& influences) const;
 

@@ -54,7 +54,7 @@ class NodeMap {
 /// multiples of 2^-18, so that sums are exact and ties are true ties.) It starts from the voxels
 /// around each node's lattice corner; ties go to the lower index. Solid voxels take the nearest
 /// node of their Empty neighbours by the same distance. Throws RunError for more nodes than an
-/// entry can tell apart, Error 130 once `cancel` is set.
+/// entry can tell apart, InterruptedError once `cancel` is set.
 NodeMap mapNodes(const VoxelSpace& space, std::span<const SkeletonNode> nodes,
                  const ThreadPool& pool, const std::atomic<bool>& cancel);
 

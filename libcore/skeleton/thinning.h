@@ -37,7 +37,7 @@ struct Thinned {
     std::size_t squares = 0;
 };
 
-/// Throws Error 130 once `cancel` is set.
+/// Throws InterruptedError once `cancel` is set.
 Thinned thin(const VoxelSpace& space, const ThreadPool& pool, const std::atomic<bool>& cancel);
 
 /// Per voxel: half width, in voxels, of the largest cube of Empty voxels that contains it (1: the

@@ -53,13 +53,13 @@ std::uint32_t Components::find(std::uint32_t run) const {
     return run;
 }
 
-/// Runs of two rows touch where they overlap, or come within `reach` of it.
+/// Joins the runs of two rows that overlap, or that would overlap if moved by `reach`.
 void Components::join(std::size_t rowA, std::size_t rowB, int reach) {
     std::uint32_t a = row_[rowA], b = row_[rowB];
     while (a < row_[rowA + 1] && b < row_[rowB + 1]) {
         if (runs_[a].begin < runs_[b].end + reach && runs_[b].begin < runs_[a].end + reach) {
             std::uint32_t rootA = find(a), rootB = find(b);
-            // The smallest run stays the root: components are numbered by their first voxels.
+            // The first run stays the root: components are numbered by their first voxels.
             if (rootA > rootB) std::swap(rootA, rootB);
             runs_[rootB].parent = rootA;
             runs_[a].parent = runs_[b].parent = rootA;

@@ -1,4 +1,4 @@
-// Connected components of voxels, by runs along x: a union-find over runs visits a voxel once.
+// Connected components of voxels: union-find over runs along x, which visits each voxel once.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace lacuna {
 
-/// Which voxels connect: by faces, or by corners and edges too.
+/// Whether voxels are neighbours that share a face, or also an edge or corner.
 enum class Connectivity { Faces, Corners };
 
 class Components {
   public:
-    /// Of the voxels whose state is Solid (or the others: `solid` false). With `outside` the space
-    /// around the grid counts as such voxels as well. Unreached counts as Solid where
-    /// `unreachedIsSolid`.
+    /// Selects the voxels: those whose state is Solid, or the others if `solid` is false. With
+    /// `outside`, the space around the grid is selected as well. With `unreachedIsSolid`, Unreached
+    /// counts as Solid.
     struct Which {
         bool solid = false;
         bool unreachedIsSolid = false;
@@ -25,8 +25,8 @@ class Components {
                Connectivity connectivity);
 
     std::size_t count() const { return count_; }
-    /// Component of a voxel inside the grid, in [0, count()), by the order of their first voxels;
-    /// -1 where the voxel is not of the kind.
+    /// Component of a voxel inside the grid, in [0, count()), numbered in the order of their first
+    /// voxels; -1 if the voxel is not selected.
     std::int64_t at(const VoxelIndex& v) const;
 
   private:
@@ -40,8 +40,8 @@ class Components {
     int pad_;
     VoxelIndex size_;  // padded
     std::vector<Run> runs_;
-    std::vector<std::uint32_t> row_;     // first run of each row, and the end
-    std::vector<std::uint32_t> number_;  // by run: of its component
+    std::vector<std::uint32_t> row_;     // first run of each row, and one past the last
+    std::vector<std::uint32_t> number_;  // by run: number of its component
     std::size_t count_ = 0;
 };
 

@@ -9,8 +9,9 @@ namespace {
 
 enum class Answer { Apart, Together, Doubtful };
 
-/// Separating axes [Akenine-Moeller 2001]: the box's normals, the triangle's, their edges' cross
-/// products. The gap along an axis is compared with what rounding may have added to it.
+/// Test of separating axes [Akenine-Moeller 2001]: the box's normals, the triangle's normal, and
+/// the cross products of their edges. The gap along each axis is compared with a bound on its
+/// rounding error.
 Answer bySeparatingAxes(const TriangleD& t, const Vec3d& low, const Vec3d& high) {
     for (std::size_t a = 0; a < 3; ++a) {  // comparisons of given numbers: exact
         if (std::max({t[0][a], t[1][a], t[2][a]}) < low[a]) return Answer::Apart;
@@ -18,7 +19,7 @@ Answer bySeparatingAxes(const TriangleD& t, const Vec3d& low, const Vec3d& high)
     }
     const Vec3d centre = (low + high) * 0.5, half = (high - low) * 0.5;
     const Vec3d v[3] = {t[0] - centre, t[1] - centre, t[2] - centre};
-    double size = 0.0;  // of every number that enters
+    double size = 0.0;  // largest magnitude of the coordinates
     for (std::size_t a = 0; a < 3; ++a) {
         size = std::max({size, std::fabs(low[a]), std::fabs(high[a])});
         for (const Vec3d& p : t) size = std::max(size, std::fabs(p[a]));
@@ -43,7 +44,7 @@ Answer bySeparatingAxes(const TriangleD& t, const Vec3d& low, const Vec3d& high)
             if (apart(cross(edge, unit), 1e-15 * size)) return Answer::Apart;
         }
     }
-    // The normal's own rounding is the product of two lengths, each as large as the numbers.
+    // The normal is a product of two lengths, each up to `size`, and rounds accordingly.
     if (apart(cross(edges[0], edges[1]), 1e-15 * size * size)) return Answer::Apart;
     return doubtful ? Answer::Doubtful : Answer::Together;
 }

@@ -1,4 +1,4 @@
-// Whether a triangle and a closed box have a point in common, decided exactly.
+// Exact test whether a triangle and a closed box have a point in common.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@ namespace lacuna {
 
 using TriangleD = std::array<Vec3d, 3>;
 
-/// Exact for any finite doubles. Touching counts. A separating-axis test in double answers unless
-/// rounding could have turned it over; then CGAL's exact predicate does. On boxes about a closed
-/// scene that is one test in some thousands, so the exact answer costs nothing measurable
-/// (preprocess/README.md).
+/// Whether the triangle and the closed box have a point in common; touching counts. Exact for any
+/// finite doubles. A separating-axis test in double decides unless rounding could change its
+/// result; then CGAL's exact predicate decides. In voxelization this is one test in some thousands,
+/// so that exactness costs nothing measurable (preprocess/README.md).
 bool overlaps(const TriangleD& triangle, const Vec3d& low, const Vec3d& high);
 
 /// CGAL's exact predicate alone: the oracle of the tests.

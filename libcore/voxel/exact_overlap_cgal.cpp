@@ -1,4 +1,5 @@
-// The only file that includes CGAL: its predicates need -frounding-math, its headers seconds.
+// The only file that includes CGAL: its predicates need -frounding-math, and its headers take
+// seconds to compile.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 

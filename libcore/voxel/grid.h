@@ -1,8 +1,9 @@
-// A box of cubic voxels, and what is known about each of them.
+// A grid of cubic voxels, and the state of each.
 //
-// Everything is in the recentred scene's coordinates (Scene::centre()); only files hold those of
-// the scene's file. Arrays are dense, x runs fastest: thinning, distances and the node map visit
-// nearly every voxel, and a dense byte is smaller than a sparse tree's share of its topology there.
+// Everything is in the recentred scene's coordinates (Scene::centre()); only files use the
+// coordinates of the scene's file. Arrays are dense, and x runs fastest: thinning, distances and
+// the node map visit nearly every voxel, and a dense byte is smaller than a voxel's share of a
+// sparse tree's topology.
 #pragma once
 
 #include <array>
@@ -21,8 +22,8 @@ struct VoxelBox {
     Vec3d low, high;
 };
 
-/// Where the voxels lie: voxel (i, j, k) is the closed cube from corner(i, j, k) to corner(i + 1,
-/// j + 1, k + 1).
+/// The lattice: voxel (i, j, k) is the closed cube from corner(i, j, k) to corner(i + 1, j + 1, k +
+/// 1).
 struct VoxelShape {
     VoxelIndex size{0, 0, 0};
     Vec3d origin;        ///< low corner of voxel (0, 0, 0)
@@ -51,10 +52,11 @@ struct VoxelShape {
         return {origin.x + (v[0] + 0.5) * voxel, origin.y + (v[1] + 0.5) * voxel,
                 origin.z + (v[2] + 0.5) * voxel};
     }
-    /// By floor: a truncation would fold the voxels on both sides of zero into one.
+    /// The voxel that contains p, computed with floor: truncation would merge the voxels on both
+    /// sides of zero.
     VoxelIndex voxelOf(const Vec3d& p) const {
         const auto cell = [&](double x, double low) {
-            // Far away points stay outside instead of overflowing.
+            // Clamped, so that distant points do not overflow; they stay outside.
             return int(std::clamp(std::floor((x - low) / voxel), -1e9, 1e9));
         };
         return {cell(p.x, origin.x), cell(p.y, origin.y), cell(p.z, origin.z)};
@@ -72,14 +74,15 @@ enum class VoxelState : std::uint8_t {
 struct VoxelSpace {
     VoxelShape shape;
     std::vector<VoxelState> state;  ///< one per voxel
-    /// From the voxel's centre to the nearest surface, scene units, exact up to float; 0 where the
-    /// state is not Empty.
+    /// Distance from the voxel's centre to the nearest surface, in scene units, exact but for
+    /// rounding to float; 0 where the state is not Empty.
     std::vector<float> distance;
 
     bool empty(const VoxelIndex& v) const {
         return shape.contains(v) && state[shape.at(v)] == VoxelState::Empty;
     }
-    /// Hex XXH3-128 of shape, states and distances: the same for any number of threads.
+    /// XXH3-128 of shape, states and distances, in hexadecimal digits. It does not depend on the
+    /// number of threads.
     std::string contentHash() const;
 };
 

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kPathsPerTask = 256, kTasks = 48;
 constexpr int kFilmSide = 128;
-constexpr int kProbes = 8;          // pieces of a segment between which voxels are looked at
-constexpr double kTrimmed = 0.002;  // of the vertices, at each end of each axis
-constexpr double kMargin = 0.05;    // of the box's side, at each end
+constexpr int kProbes = 8;          // pieces of a segment; voxels are looked up between them
+constexpr double kTrimmed = 0.002;  // share of the vertices, at each end of each axis
+constexpr double kMargin = 0.05;    // share of the box's side, at each end
 
 void addSegments(const std::vector<PathVertex>& path, std::vector<Reach::Segment>& out) {
     for (std::size_t i = 1; i < path.size(); ++i) {
@@ -24,7 +24,7 @@ void addSegments(const std::vector<PathVertex>& path, std::vector<Reach::Segment
     }
 }
 
-/// Tasks in parallel, their segments in the order of tasks.
+/// Runs the tasks in parallel and returns their segments in the order of tasks.
 template <class Trace>
 std::vector<Reach::Segment> trace(const ThreadPool& pool, const Trace& trace) {
     std::vector<std::vector<Reach::Segment>> parts(kTasks);

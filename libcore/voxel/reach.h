@@ -1,5 +1,5 @@
-// What camera and light subpaths reach: it says how large the domain must be, and which parts of
-// the empty space matter.
+// The space that camera and light subpaths reach. It determines the size of the domain and which
+// parts of the empty space matter.
 #pragma once
 
 #include "libcore/scene/scene.h"
@@ -15,22 +15,23 @@ struct Reach {
     std::vector<Segment> lamps;   ///< from lights within the scene; empty where there are none
 };
 
-/// Some ten thousand subpaths of up to 12 edges from either end, with random numbers of their own
-/// (a cache must not depend on --seed). Lights at infinity are left out: what they reach first is
-/// the outside of the building.
+/// Traces some ten thousand subpaths of up to 12 edges from every camera and from the lights, with
+/// a fixed seed (a cache must not depend on --seed). Lights at infinity are left out: their
+/// subpaths first reach the outside of the building.
 Reach traceReach(const Scene& scene, const ThreadPool& pool);
 
-/// Box of the triangles; low > high where there are none.
+/// Bounding box of the triangles; low > high if there are none.
 VoxelBox boundsOf(std::span<const Triangle> triangles);
 
-/// The default domain: the box of where camera subpaths end, without the outermost 0.2 % of the
-/// vertices along each axis (a few paths that leave through a window must not make the voxels
-/// coarse), plus 10 %, but no more than the scene's own box. Without a camera: the scene's box.
+/// The default domain: the bounding box of the camera subpaths' vertices on surfaces, enlarged by
+/// 10 % and clipped to the scene's own box. It ignores the outermost 0.2 % of the vertices along
+/// each axis: a few paths that leave through a window must not make the voxels coarse. Without a
+/// camera, it is the scene's box.
 VoxelBox defaultDomain(const Reach& reach, const VoxelBox& scene);
 
-/// Turns the empty voxels of parts (26-connected) that no segment passes through from Empty into
-/// Unreached. Without any segment all parts count as reached. Returns how many parts there are and
-/// how many are reached.
+/// Changes empty voxels from Empty to Unreached in all (26-connected) parts that no segment passes
+/// through. Without any segment all parts count as reached. Returns the number of parts and of
+/// reached parts.
 struct PartCounts {
     std::size_t total = 0, reached = 0;
 };

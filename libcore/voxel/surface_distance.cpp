@@ -13,8 +13,8 @@ namespace lacuna {
 
 namespace {
 
-/// Squared distance from the origin to a triangle, by the region of its plane that the foot of the
-/// perpendicular falls into [Ericson 2005, 5.1.5].
+/// Squared distance from the origin to a triangle, by the region of its plane that contains the
+/// foot of the perpendicular [Ericson 2005, 5.1.5].
 double squaredDistanceToOrigin(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d ab = b - a, ac = c - a;
     const double d1 = -dot(ab, a), d2 = -dot(ac, a);
@@ -49,7 +49,8 @@ bool visitTriangle(RTCPointQueryFunctionArguments* args) {
                                               Vec3d(t[2]) - query.point);
     if (d2 >= query.best) return false;
     query.best = d2;
-    // The traversal runs in float: a little more than the truth must not be cut off.
+    // The traversal runs in float: the radius is a little larger, so that no nearer triangle is
+    // culled.
     args->query->radius = float(std::sqrt(d2) * (1.0 + 1e-6));
     return true;
 }
@@ -61,7 +62,7 @@ struct SurfaceDistance::Impl {
     std::vector<std::array<std::uint32_t, 3>> indices;
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    double magnitude = 0.0;  // of the largest coordinate: what a float point may be off by
+    double magnitude = 0.0;  // largest coordinate, for the rounding of p to float
 
     ~Impl() {
         if (scene) rtcReleaseScene(scene);
@@ -84,7 +85,7 @@ SurfaceDistance::SurfaceDistance(std::span<const Triangle> triangles, const Thre
             }
         }
     }
-    a.positions.push_back({});  // Embree loads 16 bytes at a time
+    a.positions.push_back({});  // padding: Embree loads 16 bytes at a time
     a.device = rtcNewDevice(nullptr);
     if (!a.device) throw RunError("distances: Embree failed: no device; is there memory left?");
     a.scene = rtcNewScene(a.device);
@@ -127,7 +128,8 @@ std::vector<float> surfaceDistances(const SurfaceDistance& surface, const VoxelS
     const auto row = std::size_t(shape.size[0]);
     pool.forEach(std::size_t(shape.size[1]) * std::size_t(shape.size[2]), [&](std::size_t r) {
         if (cancel) return;
-        // One step changes the distance by one voxel at most: a tight bound along the row.
+        // From voxel to voxel the distance changes by at most one voxel, which gives a tight bound
+        // along the row.
         double bound = std::numeric_limits<double>::infinity();
         for (std::size_t i = r * row; i < (r + 1) * row; ++i) {
             if (state[i] != VoxelState::Empty) {

@@ -8,8 +8,9 @@
 
 namespace lacuna {
 
-/// Embree's point query over the triangles, the distance itself in double: 3e-15 from CGAL's
-/// AABB tree at a third of its time. OpenVDB's mesh to distance field is not exact.
+/// Embree's point query over the triangles, with distances computed in double. It differs by 3e-15
+/// from CGAL's AABB tree and takes a third of its time. OpenVDB's mesh to distance field is not
+/// exact.
 class SurfaceDistance {
   public:
     /// Throws RunError if Embree cannot build.
@@ -18,8 +19,8 @@ class SurfaceDistance {
     SurfaceDistance(const SurfaceDistance&) = delete;
     SurfaceDistance& operator=(const SurfaceDistance&) = delete;
 
-    /// Distance from `p`. `bound`: no more than this is known to be true (infinity: nothing is);
-    /// a tight bound makes it faster. Returns `bound` without triangles.
+    /// Distance from `p` to the nearest triangle. `bound`: a known upper bound of the distance, or
+    /// infinity; a tight bound makes the query faster. Returns `bound` if there are no triangles.
     double operator()(const Vec3d& p, double bound) const;
 
   private:
@@ -27,7 +28,8 @@ class SurfaceDistance {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Distances at the centres of all Empty voxels, 0 elsewhere.
+/// Distances at the centres of all Empty voxels; 0 elsewhere. Throws InterruptedError if `cancel`
+/// is set.
 std::vector<float> surfaceDistances(const SurfaceDistance& surface, const VoxelShape& shape,
                                     std::span<const VoxelState> state, const ThreadPool& pool,
                                     const std::atomic<bool>& cancel);

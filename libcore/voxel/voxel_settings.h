@@ -1,5 +1,5 @@
-// How finely a scene's empty space is looked at: one table that the tools, lacuna-render's methods
-// and the caches' keys share.
+// Settings of the voxelization: one table that the tools, lacuna-render's methods and the caches'
+// keys share.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct VoxelSettings {
 
     int resolution = 128;
     std::string
-        domain;  ///< "x0,y0,z0,x1,y1,z1" in the file's coordinates; empty: by the default rule
+        domain;  ///< "x0,y0,z0,x1,y1,z1" in the file's coordinates; empty: the default domain
 };
 
 inline OptionTable<VoxelSettings> voxelOptions() {

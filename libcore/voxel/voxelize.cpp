@@ -39,8 +39,9 @@ VoxelShape latticeExactlyOver(const VoxelBox& domain, int resolution) {
 
 namespace {
 
-/// Halves the range of voxels along its longest side until one is left: a wall across the whole
-/// grid costs as many tests as it has voxels, not as its bounding box has.
+/// Halves the range of voxels along its longest side until one is left. The number of tests for a
+/// wall across the whole grid is thus proportional to its own voxels, not to those of its bounding
+/// box.
 class Rasterizer {
   public:
     Rasterizer(const TriangleD& triangle, const VoxelShape& shape, std::span<VoxelState> state)
@@ -86,7 +87,8 @@ void voxelize(std::span<const Triangle> triangles, const VoxelShape& shape,
             VoxelIndex high = shape.voxelOf(max(t[0], max(t[1], t[2])));
             bool outside = false;
             for (std::size_t a = 0; a < 3; ++a) {
-                // One more on each side: the box of a corner on a lattice plane is two voxels wide.
+                // One more on each side: a corner on a lattice plane touches the voxels on both
+                // sides.
                 low[a] = std::max(low[a] - 1, 0);
                 high[a] = std::min(high[a] + 2, shape.size[a]);
                 outside |= low[a] >= high[a];

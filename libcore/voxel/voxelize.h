@@ -1,4 +1,4 @@
-// Conservative voxelization: every voxel that a triangle touches, touching in a point included.
+// Conservative voxelization: every voxel that a triangle touches, even in one point.
 #pragma once
 
 #include <atomic>
@@ -12,19 +12,19 @@ class ThreadPool;
 
 using Triangle = std::array<Vec3, 3>;
 
-/// Throws Error with exit code 130 once `cancel` is set: nothing that is half done is of use.
+/// Throws InterruptedError if `cancel` is set: a half-finished result is of no use.
 void throwIfCancelled(const std::atomic<bool>& cancel);
 
-/// A lattice over `domain` with `resolution` voxels along its longest side; the voxels' size is
-/// such that the domain's walls run through the middle of the outer voxels. (A wall on a lattice
+/// A lattice over `domain` with `resolution` voxels along its longest side. The size of the voxels
+/// is such that the domain's walls run through the middle of the outer voxels. (A wall on a lattice
 /// plane touches the voxels on both sides and would be two voxels thick.)
 VoxelShape latticeOver(const VoxelBox& domain, int resolution);
-/// A lattice whose low corner is exactly the domain's: for domains that a user gave.
+/// A lattice whose low corner is exactly the domain's, for domains given by the user.
 VoxelShape latticeExactlyOver(const VoxelBox& domain, int resolution);
 
-/// Sets the voxels that a triangle touches to Solid and leaves the others. Closed boxes and an
-/// exact test: two empty voxels that share as much as a corner have no triangle between them, so
-/// the empty space is the 26-connected one and nothing leaks through a wall, however thin.
+/// Sets the voxels that a triangle touches to Solid and leaves the others. Boxes are closed and the
+/// test is exact: no triangle passes between two empty voxels that share even a corner. The empty
+/// space is therefore 26-connected, and nothing leaks through a wall, however thin.
 void voxelize(std::span<const Triangle> triangles, const VoxelShape& shape,
               std::span<VoxelState> state, const ThreadPool& pool, const std::atomic<bool>& cancel);
 

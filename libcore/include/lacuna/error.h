@@ -1,4 +1,4 @@
-// What is thrown where something cannot be done: each carries the exit code of its kind.
+// Exceptions. Each carries the exit code of its kind.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,8 @@
 
 namespace lacuna {
 
-/// Base: one line for stderr, `place: what was expected, what was found, what to do`.
+/// Base class. The message is one line for stderr: `place: what was expected, what was found, what
+/// to do`.
 class Error : public std::runtime_error {
   public:
     Error(int exitCode, const std::string& message)
@@ -35,10 +36,10 @@ class InputError : public Error {
     explicit InputError(const std::string& message) : Error(3, message) {}
 };
 
-/// Exit code of an interrupted tool: 128 + SIGINT, as shells have it.
+/// Exit code of an interrupted tool: 128 + SIGINT, the shells' convention.
 inline constexpr int kInterruptedExit = 130;
 
-/// It was asked to end, and has nothing to show for what it did until then: exit code 130.
+/// The work was asked to stop before it had any result: exit code 130.
 class InterruptedError : public Error {
   public:
     explicit InterruptedError(const std::string& message) : Error(kInterruptedExit, message) {}

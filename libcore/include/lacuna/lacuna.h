@@ -8,8 +8,8 @@
 //     picture.save("door.exr");
 //
 // Errors are exceptions (error.h). Nothing is printed and no signal is handled. Renders share
-// nothing: any number of them may run in one process, one after the other or at once. A method of
-// one's own: method.h.
+// nothing: any number of them may run in one process, one after the other or at once. To add your
+// own method, see method.h.
 #pragma once
 
 #include "lacuna/error.h"

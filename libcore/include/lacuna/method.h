@@ -1,6 +1,6 @@
-// A method of one's own: a class derived from Method and a MethodRow that makes it, given to
-// Render::add. Link with Lacuna::methods, which has the inner headers. These change from version to
-// version; libcore/README.md is their guide.
+// To add your own method, derive a class from Method and give Render::add a MethodRow that makes
+// it. Link with Lacuna::methods, which has the internal headers. These change from version to
+// version; libcore/README.md is the guide to them.
 #pragma once
 
 #include "libcore/methods/registry.h"
