@@ -1,5 +1,5 @@
 // Paths of the picture for training, by bidirectional path tracing: deterministic, whatever the
-// threads. Included by what collects its own kind of record of them.
+// threads. Included by what collects its own kind of record of them. (theory.md, "Subspaces")
 #pragma once
 
 #include <algorithm>

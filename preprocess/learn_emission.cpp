@@ -1,3 +1,4 @@
+// (theory.md, "Learned emission")
 #include "preprocess/learn_emission.h"
 
 #include "preprocess/rounds_inl.h"

@@ -1,3 +1,4 @@
+// (theory.md, "Guided walks")
 #include "preprocess/learn_walks.h"
 
 #include <array>

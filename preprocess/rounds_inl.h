@@ -1,5 +1,5 @@
 // What guides are learned from: paths in rounds, the later ones by ways that the earlier have found.
-// Included by what collects its own kind of record of them.
+// Included by what collects its own kind of record of them. (theory.md, "Learned emission")
 #pragma once
 
 #include <algorithm>

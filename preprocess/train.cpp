@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "preprocess/train.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "The error without a reference")
 #include "render/accuracy.h"
 
 #include <cmath>

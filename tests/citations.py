@@ -3,7 +3,9 @@
 
   python3 tests/citations.py           looks at all sources, scripts and Markdown, and tests itself
 
-A citation of a section is a document's name and its title in quotes, a paper's a key of REFERENCES.md in brackets.
+A citation of a section is a document's name and its title in quotes, or several; a paper's a key of REFERENCES.md in
+brackets. What theory.md links to as the code of a section cites that section, and the rows of its table of constants
+name what is in the code.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ import os
 import re
 import tempfile
 import unittest
+from functools import cache
 from pathlib import Path
 from typing import Iterator, NamedTuple
 
@@ -23,12 +26,15 @@ ENDINGS = {".h", ".cpp", ".py", ".sh", ".md", ".txt", ".html", ".css", ".js", ".
 
 MENTION = re.compile(r"(?<![\w./-])((?:[\w.-]+/)*[\w-]+\.md)\b(?!\w)")
 GAP = r"[ \t]*(?:\n[ \t]*(?:///?|#|\*)?[ \t]*)?"  # a space, or the end of a comment's line
-SECTION = re.compile(r'([\w./-]+\.md),' + GAP + r'"([^"]{1,120})"')
+SECTIONS = re.compile(r'([\w./-]+\.md)((?:,' + GAP + r'"[^"]{1,120}")+)')
+TITLE = re.compile(r'"([^"]+)"')
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\[\]]*\])*\]\(([^()\s]+)\)")
 BRACKETS = re.compile(r"(?<![\w\])])\[([A-Z][^\[\]]{2,120})\](?!\()")
 PAPER = re.compile(r"[A-Z][A-Za-z-]*\d{2}[a-z]?(?=$|[\s,;])|[A-Z][\w-]+(?: et al\.| and [A-Z][\w-]+)? (?:19|20)\d\d(?=$|[\s,;])")
 SOURCE = re.compile(r"(?<![\w./<*-])((?:[\w.-]+/)*[\w-]+\.(?:h|cpp|py|sh))\b(?!\w)")
 TEST = re.compile(r"`([A-Z][a-z]\w*\.\w{6,})`")
+CODE = re.compile(r"\]\(((?:\.\./)+[\w/]+\.(?:h|cpp))\)")  # of a section
+NUMBER = re.compile(r"(?<![\w.])(?:0x[\da-fA-F.]+(?:p-?\d+)?|(?:\d[\d']*\.?\d*|\.\d+)(?:e-?\d+)?)")
 DEFINED_TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
 
 
@@ -55,10 +61,12 @@ def prose(markdown: str) -> str:
     return re.sub(r"`[^`\n]*`", blank, text)
 
 
+@cache
 def headings(markdown: str) -> list[str]:
     return re.findall(r"^#{1,6} +(.*?) *#*$", re.sub(r"^```.*?^```", "", markdown, flags=re.S | re.M), re.M)
 
 
+@cache
 def anchors(markdown: str) -> set[str]:
     """As GitHub names headings; a title that is there twice gets a number."""
     found: set[str] = set()
@@ -70,6 +78,33 @@ def anchors(markdown: str) -> set[str]:
             n += 1
         found.add(name if n == 0 else f"{name}-{n}")
     return found
+
+
+class Section(NamedTuple):
+    title: str
+    above: str  # the title of the section that it is a part of, or its own
+    begin: int
+    text: str
+
+
+def sections_of(markdown: str) -> list[Section]:
+    """From one heading of the second level or below to the next."""
+    found: list[Section] = []
+    above = ""
+    starts = [m.start() for m in re.finditer(r"^##+ ", markdown, re.M)] + [len(markdown)]
+    for begin, end in zip(starts, starts[1:]):
+        level, title = re.match(r"(#+) +(.*)", markdown[begin:end]).groups()
+        above = title if level == "##" else above
+        found.append(Section(title, above, begin, markdown[begin:end]))
+    return found
+
+
+def numbers(code: str) -> set[float]:
+    def value(number: str) -> float:
+        plain = number.replace("'", "")
+        return float.fromhex(plain) if plain.startswith("0x") else float(plain)
+
+    return {value(m.group()) for m in NUMBER.finditer(code)}
 
 
 class Project:
@@ -109,6 +144,8 @@ class Project:
             checks = [self.mentions, self.sections, self.cited_papers]
             if file.endswith(".md"):
                 checks += [self.links, self.sources, self.named_tests]
+            if Path(file).name == "theory.md":
+                checks += [self.citations_back, self.constants]
             for check in checks:
                 for at, what in check(file, text):
                     yield Finding(file, text.count("\n", 0, at) + 1, what)
@@ -129,10 +166,61 @@ class Project:
                 yield m.start(), f"{name}: no such document"
 
     def sections(self, file: str, text: str) -> Iterator[tuple[int, str]]:
-        for m in SECTION.finditer(text):
-            document, title = self.document(m.group(1), file), one_line(m.group(2))
-            if document and title not in (re.sub("`", "", t) for t in headings(self.files[document])):
-                yield m.start(), f'{document} has no section "{title}"'
+        for m in SECTIONS.finditer(text):
+            document = self.document(m.group(1), file)
+            for title in map(one_line, TITLE.findall(m.group(2))):
+                if document and title not in (re.sub("`", "", t) for t in headings(self.files[document])):
+                    yield m.start(), f'{document} has no section "{title}"'
+
+    def cited_titles(self, source: str, document: str) -> set[str]:
+        return {one_line(title) for m in SECTIONS.finditer(self.files[source])
+                if self.document(m.group(1), source) == document for title in TITLE.findall(m.group(2))}
+
+    def citations_back(self, file: str, text: str) -> Iterator[tuple[int, str]]:
+        """The code of a section cites it, or another one of those that it is the code of."""
+        places: dict[str, int] = {}
+        titles: dict[str, set[str]] = {}
+        for section in sections_of(text):
+            for m in CODE.finditer(section.text):
+                source = os.path.normpath((Path(file).parent / m.group(1)).as_posix())
+                if source in self.files:  # links() says so of others
+                    places.setdefault(source, section.begin + m.start())
+                    titles.setdefault(source, set()).update({section.title, section.above})
+        for source, expected in titles.items():
+            if not self.cited_titles(source, file) & expected:
+                yield places[source], f'{source} does not cite {" or ".join(sorted(expected))}'
+
+    def constants(self, file: str, text: str) -> Iterator[tuple[int, str]]:
+        """Rows `NAME` numbers, `NAME` numbers; numbers | file, file | ..: what is in the code that they name."""
+        table = next((s for s in sections_of(text) if s.title == "Constants"), None)
+        for m in re.finditer(r"^\| *(.*?) *\| *(.*?) *\|", table.text if table else "", re.M):
+            if m.group(1) == "constant" or not m.group(1).strip("-"):
+                continue
+            place = table.begin + m.start()
+            code = ""
+            for name in re.split(r",\s*", m.group(2)):
+                found = [f for f in self.files if ("/" + f).endswith("/" + name)]
+                if len(found) != 1:
+                    yield place, f"{name}: expected one source, found {len(found)}"
+                    continue
+                code += self.files[found[0]] + ";"
+                if not self.cited_titles(found[0], file):
+                    yield place, f"{found[0]} does not cite {file}"
+            yield from ((place, fault) for fault in self.constants_of(m.group(1), code))
+
+    @staticmethod
+    def constants_of(cell: str, code: str) -> Iterator[str]:
+        """What `code` lacks. The numbers behind a name, up to a semicolon, stand in a statement with it."""
+        absent = "not in the code that the row names"
+        for name, rest in re.findall(r"(?:`(\w+)`)?([^`]+|(?<=`)$)", cell):
+            with_name, _, alone = rest.partition(";") if name else ("", "", rest)
+            statements = re.findall(rf"\b{name}\b[^;]*", code) if name else []
+            if name and not statements:
+                yield f"`{name}`: {absent}"
+            for number in sorted(numbers(with_name) - numbers(" ".join(statements)) if statements else ()):
+                yield f"{number:g} of `{name}`: {absent}"
+            for number in sorted(numbers(alone) - numbers(code) if numbers(alone) else ()):
+                yield f"{number:g}: {absent}"
 
     def links(self, file: str, text: str) -> Iterator[tuple[int, str]]:
         for m in LINK.finditer(prose(text)):
@@ -197,8 +285,11 @@ class Planted(unittest.TestCase):
 
     GOOD = {
         "REFERENCES.md": "# References\n\n| key | |\n|---|---|\n| Su22 | Su. |\n| Duff et al. 2017 | Duff. |\n",
-        "doc/theory.md": "# Theory\n\n## Cache points\n\nSee [here](#cache-points), [there](../src/a.cpp), `Suite.testsThis`.\n",
-        "src/a.cpp": '// (theory.md,\n// "Cache points"), [Su22 eq 11, 12], [Duff et al. 2017]; README.md; x[Index12]\n',
+        "doc/theory.md": "# Theory\n\n## Cache points\n\nSee [here](#cache-points), [there](../src/a.cpp), `Suite.testsThis`.\n"
+                         "\n### Lens points\n\n## Constants\n\n| constant | where | why |\n|---|---|---|\n"
+                         "| `kLeast` 1e-3, `kMost` 1/16; 10000 | src/a.cpp | so |\n",
+        "src/a.cpp": '// (theory.md,\n// "Cache points"), [Su22 eq 11, 12], [Duff et al. 2017]; README.md; x[Index12]\n'
+                     "const double kLeast = 0.001f;\nconst double kMost = 1.0 / 16;\nint n = 10'000;\n",
         "src/README.md": "# Source\n\n[theory](../doc/theory.md#cache-points)\n",
         "tests/a.cpp": "TEST(Suite, testsThis) {}\n",
     }
@@ -237,6 +328,54 @@ class Planted(unittest.TestCase):
 
     def test_a_section_over_two_lines(self):
         self.only('no section "Cache dots"', '/// (theory.md,\n/// "Cache\n/// dots")\n')
+
+    def test_a_second_section(self):
+        self.only('no section "Cache dots"', '// (theory.md, "Cache points",\n// "Cache dots")\n')
+
+    def theory(self, old: str, new: str) -> str:
+        """The good one with a change."""
+        self.assertIn(old, self.GOOD["doc/theory.md"])
+        return self.GOOD["doc/theory.md"].replace(old, new)
+
+    def code_of_lens_points(self, text: str) -> list[str]:
+        return self.faults(**{
+            "doc__theory.md": self.theory("### Lens points\n", "### Lens points\n\n[b](../src/b.cpp)\n"), "src__b.cpp": text})
+
+    def test_code_that_cites_its_section_or_the_one_above(self):
+        for title in ("Lens points", "Cache points"):
+            self.assertEqual(self.code_of_lens_points(f'// (theory.md, "{title}")\n'), [])
+
+    def test_code_that_does_not_cite_its_section(self):
+        for text in ("int x;\n", '// (theory.md, "Constants")\n', '// (theory.md)\n'):
+            self.assertEqual(self.code_of_lens_points(text),
+                             ["doc/theory.md:9: src/b.cpp does not cite Cache points or Lens points"])
+
+    def constants(self, row: str, **changes: str) -> list[str]:
+        return self.faults(**{"doc__theory.md": self.theory("| so |\n", f"| so |\n{row}\n")}, **changes)
+
+    def test_a_constant(self):
+        self.assertEqual(self.constants("| `kFewest` 3 | src/a.cpp | |"),
+                         ["doc/theory.md:14: `kFewest`: not in the code that the row names"])
+
+    def test_the_number_of_a_constant(self):
+        self.assertEqual(self.constants("| `kLeast` 10000 | src/a.cpp | |"),
+                         ["doc/theory.md:14: 10000 of `kLeast`: not in the code that the row names"])
+
+    def test_a_number_without_a_name(self):
+        self.assertEqual(self.constants("| `kLeast`; 0.002 | src/a.cpp | |"),
+                         ["doc/theory.md:14: 0.002: not in the code that the row names"])
+
+    def test_the_source_of_a_constant(self):
+        self.assertEqual(self.constants("| 16 | src/a.cpp, gone | |"),
+                         ["doc/theory.md:14: gone: expected one source, found 0"])
+
+    def test_a_source_of_several(self):
+        self.assertEqual(self.constants("| 16 | src/a.cpp, a.cpp | |"),
+                         ["doc/theory.md:14: a.cpp: expected one source, found 2"])
+
+    def test_code_with_a_constant_that_does_not_cite_the_theory(self):
+        self.assertEqual(self.constants("| 16 | b.cpp | |", **{"src__b.cpp": "int x = 16;\n"}),
+                         ["doc/theory.md:14: src/b.cpp does not cite doc/theory.md"])
 
     def test_a_link(self):
         self.only("link to gone.png: no such file", "[x](gone.png)\n", "doc/b.md")

@@ -1,6 +1,7 @@
 // Each option is defined in one place: a record's field with its name, range, unit and help.
 // Command lines, study files, help texts, headers of pictures and the keys of caches all read the
 // same table. Code reads typed fields, never names.
+// (theory.md, "Picks")
 #pragma once
 
 #include <cstdint>

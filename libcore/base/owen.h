@@ -5,6 +5,7 @@
 // 2^-(m-a), each of the 2^m boxes of this shape holds one of them. Every single point is uniform.
 // Sequences of different seeds are independent, so that pairs of dimensions can be padded (put side
 // by side).
+// (theory.md, "Even numbers")
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // A density on the unit square that is constant in each leaf of a tree of halvings.
+// (theory.md, "Learned emission")
 #pragma once
 
 #include <array>

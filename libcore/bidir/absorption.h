@@ -5,7 +5,7 @@
 // Where both ends say so, the mean of the two holds (they are the same but where bodies overlap).
 // Where neither does, nothing is absorbed: between two opaque things, or lights, in the glass too.
 // This is symmetric in the ends, so whatever makes the edge (either walk, a connection, a splat)
-// carries the same; no density knows of it.
+// carries the same; no density knows of it. (theory.md, "Paths and measures")
 #pragma once
 
 #include <span>

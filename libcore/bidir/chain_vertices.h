@@ -1,4 +1,4 @@
-// A chain of mirrors and smooth glass as a light walk would have left it.
+// A chain of mirrors and smooth glass as a light walk would have left it. (theory.md, "Next event through glass")
 #pragma once
 
 #include <optional>

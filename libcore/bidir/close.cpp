@@ -1,3 +1,4 @@
+// (theory.md, "Paths and measures", "Merging", "Lights")
 #include "libcore/bidir/close.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 // In the order of what it costs to find out that a path carries nothing: cosines and the light's
 // own profile; visibility, because where light has to find its way most connections are blocked;
 // BSDFs, which are seldom zero; the FullPath only where there is something to weigh.
+// (theory.md, "Paths and measures")
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
 // What the weights believe about a selector: how many samples a connection stands for. A function
 // of the path and of frozen data alone; the picks themselves are the method's business (method.h).
+// (theory.md, "Beliefs")
 #pragma once
 
 #include <optional>

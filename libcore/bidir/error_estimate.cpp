@@ -1,3 +1,4 @@
+// (theory.md, "The error without a reference")
 #include "libcore/bidir/error_estimate.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Counts")
 #include "libcore/bidir/eye_pass.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Blocks")
 #include "libcore/bidir/film_sum.h"
 
 #include <algorithm>

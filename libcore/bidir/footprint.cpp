@@ -1,3 +1,4 @@
+// (theory.md, "Merging")
 #include "libcore/bidir/footprint.h"
 
 #include <algorithm>

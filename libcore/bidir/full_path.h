@@ -1,4 +1,5 @@
 // A full path x_0 (light) .. x_k (lens), with the densities of both walks: what weights read.
+// (theory.md, "Paths and measures")
 //
 // Delta events keep their generalised densities; strategies that would connect through one do not
 // exist.

@@ -1,3 +1,4 @@
+// (theory.md, "The error without a reference")
 #include "libcore/bidir/half_models.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "What is exact, and why", "Blocks")
 #include "libcore/bidir/integrator.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Next event along known ways")
 #include "libcore/bidir/known_ways.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Counts")
 #include "libcore/bidir/light_pass.h"
 
 #include <algorithm>

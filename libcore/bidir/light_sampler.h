@@ -1,4 +1,5 @@
 // Fresh light points: next event. Implemented by the walker, and by tests on finite spaces.
+// (theory.md, "Lamps that are seen")
 #pragma once
 
 #include "libcore/base/rng.h"

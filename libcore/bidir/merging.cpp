@@ -1,3 +1,4 @@
+// (theory.md, "Merging")
 #include "libcore/bidir/merging.h"
 
 #include <cmath>

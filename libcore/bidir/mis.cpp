@@ -1,3 +1,4 @@
+// (theory.md, "Weights", "Merging")
 #include "libcore/bidir/mis.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Vertices of eye and light subpaths, and how densities change measure between them.
 //
 // A full path x_0 .. x_k starts on a light and ends on the lens. A subpath is stored
-// from its own end: y_0 on the light, z_0 on the lens.
+// from its own end: y_0 on the light, z_0 on the lens. (theory.md, "Paths and measures")
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Photons by place: a hashed grid that finds those within a fixed distance of a point.
+// Photons by place: a hashed grid that finds those within a fixed distance of a point. (theory.md, "Merging")
 #pragma once
 
 #include <array>

@@ -1,3 +1,4 @@
+// (theory.md, "Next event through glass")
 #include "libcore/bidir/refracted_lamps.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Even numbers")
 #include "libcore/bidir/sampler.h"
 
 #include "libcore/base/owen.h"

@@ -1,3 +1,4 @@
+// (theory.md, "Specular chains")
 #include "libcore/bidir/specular_chains.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Weights")
 #include "libcore/bidir/verify.h"
 
 #include <algorithm>

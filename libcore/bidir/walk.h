@@ -1,4 +1,4 @@
-// Random walks from either end: the only place where subpaths are made.
+// Random walks from either end: the only place where subpaths are made. (theory.md, "Paths and measures")
 #pragma once
 
 #include <optional>

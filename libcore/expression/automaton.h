@@ -1,5 +1,6 @@
 // An expression as a minimal deterministic automaton that reads a path from the camera to the
 // light.
+// (theory.md, "Layers of paths")
 #pragma once
 
 #include <cstdint>

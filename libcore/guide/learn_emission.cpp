@@ -1,3 +1,4 @@
+// (theory.md, "Learned emission")
 #include "libcore/guide/learn_emission.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Guided walks")
 #include "libcore/guide/learn_walks.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // How many samples each kind of technique stands for in the method that a guide is for.
+// (theory.md, "Learned emission", "Guided walks")
 #pragma once
 
 #include "libcore/bidir/method.h"

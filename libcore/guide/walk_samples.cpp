@@ -1,3 +1,4 @@
+// (theory.md, "Guided walks")
 #include "libcore/guide/walk_samples.h"
 
 #include <algorithm>

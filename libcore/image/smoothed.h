@@ -1,4 +1,5 @@
 // Pictures whose pixels know of those around them: what is dark by chance is no dark place.
+// (theory.md, "auto", "Effort behind glass")
 #pragma once
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 //
 //     f = (1 - metallic) [ (1 - transmission) plastic + transmission glass ] + metallic metal
 //
-// under a clearcoat.
+// under a clearcoat. (theory.md, "BSDFs")
 #include "libcore/material/bsdf.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 //     f = f_coat + f_base min(u(toEye), u(toLight)),   u(d) = 1 - clearcoat E(d)
 //
 // E(d) about the normals that an eye in d sees the coat by. A walk first chooses between coat and base
-// by the direction that it knows (coatShare), then goes as that one alone would.
+// by the direction that it knows (coatShare), then goes as that one alone would. (theory.md, "BSDFs")
 #include <algorithm>
 #include <cmath>
 

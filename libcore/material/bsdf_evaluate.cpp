@@ -9,7 +9,7 @@
 //
 // R: reflectance or transmittance at h; pmf: probability of the lobe given `from`, times F or 1 - F
 // for glass; eta: 1 for reflections. Dropping K and the G's common limit leaves the delta events'
-// formulas.
+// formulas. (theory.md, "BSDFs")
 #include <algorithm>
 #include <cmath>
 

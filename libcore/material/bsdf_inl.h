@@ -1,4 +1,5 @@
 // Shared by the Bsdf's source files only: small pieces of every evaluation and of every sample.
+// (theory.md, "Panes", "BSDFs")
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // GGX with Smith's height-correlated masking and shadowing, written so that nothing
 // cancels: D from the unnormalised half vector H and H x n (never 1 - cos^2), G already divided by
-// the cosines.
+// the cosines. (theory.md, "BSDFs")
 #pragma once
 
 #include <algorithm>

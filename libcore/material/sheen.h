@@ -1,5 +1,5 @@
 // The sheen of cloth: microfibres that stand up [Estevez17], as KHR_materials_sheen has it. It is
-// brightest where light grazes.
+// brightest where light grazes. (theory.md, "BSDFs")
 #pragma once
 
 #include <algorithm>

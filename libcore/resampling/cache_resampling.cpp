@@ -1,3 +1,4 @@
+// (theory.md, "Cache points", "risbpt")
 #include "libcore/resampling/cache_resampling.h"
 
 #include <algorithm>

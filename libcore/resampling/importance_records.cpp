@@ -1,3 +1,4 @@
+// (theory.md, "Importance records")
 #include "libcore/resampling/importance_records.h"
 
 #include <algorithm>

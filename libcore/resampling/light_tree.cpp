@@ -1,3 +1,4 @@
+// (theory.md, "Light tree")
 #include "libcore/resampling/light_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Nodes")
 #include "libcore/resampling/node_pmfs.h"
 
 #include <algorithm>

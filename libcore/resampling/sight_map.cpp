@@ -1,3 +1,4 @@
+// (theory.md, "Nodes")
 #include "libcore/resampling/sight_map.h"
 
 #include <algorithm>

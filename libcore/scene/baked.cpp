@@ -1,3 +1,4 @@
+// (theory.md, "Panes")
 #include "libcore/scene/baked.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Balls")
 #include "libcore/scene/ball_lamp.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which emissive triangles make a ball (ball_lamp.h).
+// Which emissive triangles make a ball (ball_lamp.h). (theory.md, "Balls")
 #include <algorithm>
 #include <cmath>
 #include <map>

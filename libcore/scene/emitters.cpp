@@ -1,3 +1,4 @@
+// (theory.md, "Lights")
 #include "libcore/scene/emitters.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// (theory.md, "Lights", "Skies")
 #include "libcore/scene/environment.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Lamps that are seen")
 #include "libcore/scene/lamp_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Lamps that are seen")
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// (theory.md, "Lights", "Lamps that are seen")
 #include "libcore/scene/light.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Lamps that are seen")
 #include "libcore/scene/sky_sides.h"
 
 namespace lacuna {

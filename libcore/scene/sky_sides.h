@@ -1,4 +1,4 @@
-// How much of a sky a surface gets, by the side that it faces.
+// How much of a sky a surface gets, by the side that it faces. (theory.md, "Lamps that are seen")
 #pragma once
 
 #include <algorithm>

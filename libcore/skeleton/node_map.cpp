@@ -1,3 +1,4 @@
+// (theory.md, "Nodes")
 #include "libcore/skeleton/node_map.h"
 
 #include <algorithm>

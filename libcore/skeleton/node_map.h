@@ -1,4 +1,5 @@
 // Map from points to skeleton nodes.
+// (theory.md, "Nodes")
 #pragma once
 
 #include <initializer_list>

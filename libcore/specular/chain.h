@@ -1,6 +1,6 @@
 // A chain of mirrors and smooth glass that a ray runs through, and how all of it moves when the
 // ray's first direction does: ray differentials [Igehy99]. In double, since a search follows the
-// ray to where it meets the light.
+// ray to where it meets the light. (theory.md, "Specular chains")
 #pragma once
 
 #include <array>

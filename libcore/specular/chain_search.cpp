@@ -1,3 +1,4 @@
+// (theory.md, "Specular chains")
 #include "libcore/specular/chain_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Specular chains", "Next event along known ways")
 #include "libcore/specular/chain_seeds.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Specular chains", "Next event through glass")
 #include "libcore/specular/chain_solver.h"
 
 #include <cmath>

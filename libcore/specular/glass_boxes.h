@@ -1,4 +1,5 @@
 // Where there is smooth or nearly smooth glass, so that rays which could not meet any need not be traced.
+// (theory.md, "Next event through glass")
 #pragma once
 
 #include <span>

@@ -1,3 +1,4 @@
+// (theory.md, "Next event through glass")
 #include "libcore/specular/glass_shadows.h"
 
 #include <cmath>

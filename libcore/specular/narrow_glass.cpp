@@ -1,3 +1,4 @@
+// (theory.md, "Next event through glass")
 #include "libcore/specular/narrow_glass.h"
 
 #include <cmath>

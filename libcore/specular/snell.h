@@ -1,4 +1,4 @@
-// The way from one point to another through a plane between two media.
+// The way from one point to another through a plane between two media. (theory.md, "Next event through glass")
 #pragma once
 
 #include <optional>

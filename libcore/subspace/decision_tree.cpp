@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "libcore/subspace/decision_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "libcore/subspace/gamma.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// (theory.md, "spcbpt")
 #include "libcore/subspace/gamma_table.h"
 
 #include <algorithm>

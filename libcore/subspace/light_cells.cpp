@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "libcore/subspace/light_cells.h"
 
 #include <algorithm>

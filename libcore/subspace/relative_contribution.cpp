@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "libcore/subspace/relative_contribution.h"
 
 #include <algorithm>

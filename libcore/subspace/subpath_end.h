@@ -1,5 +1,5 @@
 // What a subpath is told from others by: its last vertex's position, normal and incident direction
-// [Su22 6.4], the three that f_yz depends on. (theory.md, "Subspaces")
+// [Su22 6.4], the three that f_yz depends on. (theory.md, "Subspaces", "Beliefs")
 //
 // A function of positions and normals of the path alone, computed in one way for both walks, so
 // that a vertex has the same subspace whichever strategy made the path: a direction that a walk

@@ -1,5 +1,5 @@
 // Which light and eye subspaces the vertices of paths lie in, looked up many at once. (theory.md,
-// "Subspaces")
+// "Subspaces", "spcbpt")
 #pragma once
 
 #include <memory>

@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "libcore/subspace/subspaces.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// (theory.md, "auto")
 #include "render/choose/judge.h"
 
 #include <algorithm>

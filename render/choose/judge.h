@@ -1,5 +1,6 @@
 // How far pictures of the same scene by different methods are from what they all aim at, when
 // nobody knows it: each has noise of its own, so that the distance of two says what both have.
+// (theory.md, "auto")
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // A candidate renders a small picture of the scene, whose samples are thrown away: what its noise
-// is and what it costs.
+// is and what it costs. (theory.md, "auto")
 #pragma once
 
 #include <atomic>
