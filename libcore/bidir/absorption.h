@@ -1,11 +1,12 @@
-// What coloured glass takes from light on its way through it (KHR_materials_volume).
+// Absorption of light inside coloured glass (KHR_materials_volume).
 //
-// Paths know surfaces, not bodies, so an edge's ends say whether it runs inside one: an end that
-// the edge leaves on the back of an absorbing solid says that it does, and by what coefficient.
-// Where both ends say so, the mean of the two holds (they are the same but where bodies overlap).
-// Where neither does, nothing is absorbed: between two opaque things, or lights, in the glass too.
-// This is symmetric in the ends, so whatever makes the edge (either walk, a connection, a splat)
-// carries the same; no density knows of it. (theory.md, "Paths and measures")
+// Paths know surfaces, not bodies. So the two ends of an edge tell whether it runs inside a body:
+// it does if it leaves one of them on the back of an absorbing solid, and that solid gives the
+// coefficient. If both ends say so, the mean of the two coefficients holds (they differ only where
+// bodies overlap). If neither end says so, nothing is absorbed. That includes edges inside the
+// glass between two opaque things or lights. The result is symmetric in the ends, so either walk, a
+// connection and a splat give an edge the same transmittance. No density depends on it.
+// (theory.md, "Paths and measures")
 #pragma once
 
 #include <span>
@@ -20,7 +21,7 @@ struct EdgeEnd {
     std::uint32_t material;
 };
 
-/// As transmittance, where something in the scene absorbs.
+/// transmittance() of an edge between finite vertices, for scenes in which some material absorbs.
 Rgb transmittanceInside(std::span<const Rgb> absorption, const EdgeEnd& a, Vec3 direction,
                         const EdgeEnd& b);
 

@@ -1,4 +1,4 @@
-// What was made of a scene beforehand and methods may use: a skeleton, subspaces, by type.
+// Data that were made of a scene beforehand for methods to use, by type: a skeleton, subspaces.
 #pragma once
 
 #include <map>

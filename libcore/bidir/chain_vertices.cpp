@@ -21,7 +21,7 @@ PathVertex vertexOf(const Walker& walker, const ChainVertex& from) {
 }
 
 float appendChain(const Walker& walker, const Chain& chain, std::vector<PathVertex>& light) {
-    float pdfW = 0.0f;  // of what leaves the vertex before
+    float pdfW = 0.0f;  // of the direction that leaves the vertex before
     for (std::size_t i = chain.size(); i-- > 0;) {
         const ChainVertex& from = chain[i];
         PathVertex& v = light.emplace_back(vertexOf(walker, from));
@@ -67,7 +67,8 @@ double densityOfNextEvent(const Walker& walker, const FoundChain& found, const P
                   double(walker.lights().opacity(y0.light, y0.lightUv));
     for (std::size_t i = 0; i < chain.size(); ++i) {
         const ChainVertex& v = chain[i];
-        // Guided walks go on by such an event more seldom, where there are others.
+        // Where the vertex has smooth lobes as well, guided walks choose its delta
+        // event less often.
         const BsdfEvaluation e =
             walker.scattering(vertexOf(walker, v), v.toEye, v.toLight, v.event.event);
         walk *= double(e.pdfWToLight) / v.measure;
@@ -92,7 +93,8 @@ std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& 
     Vec3 toChain(found.chain.firstDirection());
     PathVertex& last = light.back();
     if (!isDelta(last.event)) {
-        // A narrow lobe: by the edge as other strategies see it, between its ends in float.
+        // A narrow lobe is evaluated along the edge that other strategies see, between
+        // ends in float.
         toChain = edgeBetween(z, last).direction;
         const BsdfEvaluation e = walker.scattering(last, -toChain, last.toPrevious);
         last.scatter = e.f;
@@ -103,7 +105,7 @@ std::optional<NextEvent> closeNextEvent(const Walker& walker, const FoundChain& 
     const Rgb contribution = broughtBy(walker, found, light, z, atEye.f);
     if (isBlack(contribution) || !isOpen(walker, light, z, tally)) return std::nullopt;
     const Closed closed = closeRefraction(walker, light, pdfWToEye, eye, atEye, contribution, path);
-    // Along the lamp's own plane, where rounding alone tells its sides apart, no walk would arrive.
+    // Along the lamp's own plane rounding alone tells its sides apart, and no eye walk arrives.
     if (!(path.eyePdfA[0] > 0.0)) return std::nullopt;
     return NextEvent{closed, double(atEye.pdfWToLight)};
 }

@@ -9,7 +9,7 @@ namespace lacuna {
 
 namespace {
 
-/// x_i as its walk left it, but for the densities, which walks have the other way round.
+/// Sets x_i as its walk left it, but for the densities, whose roles depend on the walk.
 void fillVertex(FullPath& path, std::size_t i, const PathVertex& v) {
     path.vertex[i] = &v;
     path.survival[i] = v.survival;
@@ -19,7 +19,7 @@ void fillVertex(FullPath& path, std::size_t i, const PathVertex& v) {
     path.asEye[i] = v.asEye;
 }
 
-/// x_0 .. x_{s-1} from the light subpath.
+/// Sets x_0 .. x_{s-1} from the light subpath.
 void fillLightPart(FullPath& path, Subpath light) {
     for (std::size_t i = 0; i < light.size(); ++i) {
         fillVertex(path, i, light[i]);
@@ -28,7 +28,7 @@ void fillLightPart(FullPath& path, Subpath light) {
     }
 }
 
-/// x_k .. x_{k-t+1} from the eye subpath.
+/// Sets x_k .. x_{k-t+1} from the eye subpath.
 void fillEyePart(FullPath& path, Subpath eye) {
     for (std::size_t j = 0; j < eye.size(); ++j) {
         const std::size_t i = std::size_t(path.edges) - j;
@@ -38,9 +38,9 @@ void fillEyePart(FullPath& path, Subpath eye) {
     }
 }
 
-/// Whether `v` certainly scatters nothing towards `other`: what many connections fail at, found out
-/// before roots and divisions. Directions so grazing that rounding could turn this over scatter
-/// nothing either (kMinCosine).
+/// Whether `v` certainly scatters nothing towards `other`. Many connections fail this test, which
+/// needs no root and no division. Directions so grazing that rounding could change the answer
+/// scatter nothing either (kMinCosine).
 bool liesBehind(const PathVertex& v, const PathVertex& other) {
     return v.kind == VertexKind::Surface && !v.bsdf.transmits() &&
            leadsBehind(v, other.infinite() ? other.position : other.position - v.position);
@@ -51,7 +51,8 @@ bool isDark(const Lights& lights, const PathVertex& v, const Vec3& direction) {
     return v.index == 0 && !(lights.profile(v.light, v.ng, direction) > 0.0f);
 }
 
-/// The path's size and who made its edges, but for a connection's one.
+/// Sets the number of edges, and how many of them each walk made. No walk made the edge
+/// of a connection.
 void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices) {
     path.edges = int(lightVertices + eyeVertices) - 1;
     path.lightEdges = std::max(0, int(lightVertices) - 1);
@@ -59,7 +60,7 @@ void setEdges(FullPath& path, std::size_t lightVertices, std::size_t eyeVertices
     path.photon = nullptr;
 }
 
-/// Where the path begins; called last, once both walks' densities are there.
+/// Sets what depends on the light at x_0. Called last, when both walks' densities are set.
 void setSource(FullPath& path, const Scene& scene, const Rgb& beta, float opacity) {
     const LightKind kind = scene.lights().kind(path.vertex[0]->light);
     path.absorption = scene.absorption();
@@ -68,14 +69,15 @@ void setSource(FullPath& path, const Scene& scene, const Rgb& beta, float opacit
     path.splattable = path.hittable;
     path.survival[0] = 1.0f;
     path.delta[0] = false;
-    path.eyePdfA[0] *= opacity;  // the others pass a lamp that is not all there
+    path.eyePdfA[0] *= opacity;  // the other eye walks pass the lamp's point
 }
-/// From y_0, whose beta is known.
+/// Likewise from y_0, whose throughput is known.
 void setSource(FullPath& path, const Scene& scene, const PathVertex& y0) {
     setSource(path, scene, y0.throughput, scene.lights().opacity(y0.light, y0.lightUv));
 }
 
-/// Eye walks pass such a surface at their first step, and no other strategy may find it there.
+/// Whether camera rays pass the surface. Then no other strategy may find it at an eye
+/// walk's first step.
 bool isHiddenFromCamera(const Scene& scene, const PathVertex& y) {
     if (y.index == 0) return scene.lights().hiddenFromCamera(y.light);
     return scene.description().materials[y.material].hiddenFromCamera;
@@ -140,7 +142,7 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
     path.survival[k] = 1.0f;
     path.delta[k] = path.delta[k - 1] = false;
     path.scatter[k - 1] = end.f;
-    path.asEye[k - 1] = kNone;  // its walk knows it by another predecessor than the lens
+    path.asEye[k - 1] = kNone;  // its walk labelled it for another predecessor than the lens
     path.eyePdfA[k - 1] = projection.pdfW * edge.toSecond;
     if (k >= 2) path.eyePdfA[k - 2] = end.pdfWToPrevious * y.toPreviousFactor;
     setSource(path, walker.scene(), light[0]);
@@ -205,7 +207,7 @@ std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath ey
     fillEyePart(path, eye);
     path.delta[i] = false;
     path.scatter[i] = at.f;
-    path.asEye[i - 1] = kNone;  // both walks know their last vertex by another neighbour
+    path.asEye[i - 1] = kNone;  // both walks labelled their last vertex for another neighbour
     path.asLight[i] = kNone;
     path.lightPdfA[i] = photon.pdfA;
     path.eyePdfA[i - 1] = at.pdfWToLight * photon.toPreviousFactor;
@@ -235,7 +237,7 @@ Closed closeRefraction(const Walker& walker, Subpath light, float pdfWToEye, Sub
     const Edge edge = edgeBetween(light.back(), z);
     path.delta[s] = false;
     path.scatter[s] = atEye.f;
-    path.asLight[s] = kNone;  // its walk knows it by another predecessor
+    path.asLight[s] = kNone;  // its walk labelled it for another predecessor
     path.lightPdfA[s] = pdfWToEye * edge.toSecond;
     path.eyePdfA[s - 1] = atEye.pdfWToLight * edge.toFirst;
     if (int(s) + 1 < path.edges) path.lightPdfA[s + 1] = atEye.pdfWToEye * z.toPreviousFactor;

@@ -1,8 +1,10 @@
-// Full paths from subpaths: the four ways in which they close a path (hit, splat, connect, merge),
-// each giving the contribution without its weight, and the FullPath that the weight is made from.
-// In the order of what it costs to find out that a path carries nothing: cosines and the light's
-// own profile; visibility, because where light has to find its way most connections are blocked;
-// BSDFs, which are seldom zero; the FullPath only where there is something to weigh.
+// Full paths from subpaths. A hit, a splat, a connection, a merge, a specular chain or a refraction
+// closes a path. Each gives the contribution without its weight, and the FullPath that the weight
+// is computed from.
+//
+// The cheapest tests for paths that carry nothing come first: cosines and the light's own profile.
+// Visibility is next, because most connections are blocked where light has to find its way. BSDFs
+// follow, which are seldom zero. The FullPath is filled only where there is something to weigh.
 // (theory.md, "Paths and measures")
 #pragma once
 
@@ -24,13 +26,15 @@ struct Closed {
     Vec2 raster;  ///< splats: where the lens sees it
 };
 
-/// What leaves a connection's end towards the other: its BSDF, or the emission profile of y_0.
+/// One end of a connection as seen from the other end. f is the BSDF, or the emission
+/// profile of y_0.
 struct EndValue {
     Rgb f;
     float pdfWToOther = 0;  ///< density of the direction to the other end, by this end's own walk
     float pdfWToPrevious = 0;  ///< density of the way back, by the other walk
 };
-/// That of a light subpath's last vertex; `toEye` is unit, `other` the connection's other end.
+/// EndValue of a light subpath's last vertex. `toEye` is a unit vector, `other` the
+/// connection's other end.
 inline EndValue lightEnd(const Walker& walker, const PathVertex& y, const Vec3& toEye,
                          const PathVertex& other) {
     if (y.index == 0) {
@@ -45,16 +49,16 @@ inline EndValue lightEnd(const Walker& walker, const PathVertex& y, const Vec3& 
 /// `path`.
 std::optional<Closed> closeHit(const Walker& walker, Subpath eye, FullPath& path);
 
-/// t = 1: the edge from the lens vertex `z0` to a light subpath's last vertex, which must be
-/// connectable, and where on the film it is seen. Empty where a splat within `crop` carries
-/// nothing, whatever the BSDF.
+/// t = 1: the edge from the lens vertex z_0 to a light subpath's last vertex, and where on the film
+/// that vertex is seen.
 struct LensEdge {
     Edge edge;
     Camera::Projection projection;
 };
+/// `light` must be connectable. Empty where a splat within `crop` carries nothing, whatever the BSDF.
 std::optional<LensEdge> lensEdge(const Walker& walker, const PathVertex& light,
                                  const PathVertex& z0, const PixelRect& crop, RayTally& tally);
-/// Over that edge. Empty where the BSDF lets nothing through. Fills `path`.
+/// Closes a splat over that edge. Empty where the BSDF lets nothing through. Fills `path`.
 std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const PathVertex& z0,
                                  const LensEdge& open, FullPath& path);
 
@@ -62,22 +66,23 @@ std::optional<Closed> closeSplat(const Walker& walker, Subpath light, const Path
 /// both must be connectable. Empty where a connection carries nothing, whatever the BSDFs.
 std::optional<Edge> connectingEdge(const Walker& walker, const PathVertex& light,
                                    const PathVertex& eye, RayTally& tally);
-/// Over that edge. Empty where the BSDFs let nothing through. Fills `path`.
+/// Closes a connection over that edge. Empty where the BSDFs let nothing through. Fills `path`.
 std::optional<Closed> closeConnection(const Walker& walker, const OpenConnection& open,
                                       FullPath& path);
 
-/// The eye subpath's last vertex, which must be connectable, taken for the photon that the light
-/// subpath ends with: x_i is the eye's vertex, reached as the photon was (onSameSurface is not asked
-/// here). Empty where its BSDF lets nothing through. Fills `path`.
+/// Merges the light subpath's last vertex, a photon, with the eye subpath's last vertex, which must be connectable. x_i
+/// is the eye's vertex, and light arrives there as it arrived at the photon. The caller asks onSameSurface. Empty where
+/// the BSDF at x_i lets nothing through. Fills `path`.
 std::optional<Closed> closeMerge(const Walker& walker, Subpath light, Subpath eye, FullPath& path);
 
-/// A path through a specular chain, y_1 .. y_{s-1} with delta events all, to the eye subpath's last
-/// vertex, whose BSDF towards it is `atEye`. Fills `path`, but for densities: no weight asks.
+/// A path over a specular chain y_1 .. y_{s-1}, whose events are all deltas, to the eye subpath's
+/// last vertex. `atEye` is the value of that vertex's BSDF towards the chain. Fills `path` but for
+/// some densities, which no weight asks for.
 Closed closeChain(const Walker& walker, Subpath light, Subpath eye, const Rgb& atEye,
                   const Rgb& contribution, FullPath& path);
 
-/// A path through refractions, y_1 .. y_{s-1} (appendChain, and the density that it returns), to the eye
-/// subpath's last vertex. Fills `path`, but for FullPath::refracted.
+/// A path through refractions at y_1 .. y_{s-1} to the eye subpath's last vertex. `light` is filled by appendChain,
+/// which returns `pdfWToEye`. Fills all of `path` but FullPath::refracted.
 Closed closeRefraction(const Walker& walker, Subpath light, float pdfWToEye, Subpath eye,
                        const BsdfEvaluation& atEye, const Rgb& contribution, FullPath& path);
 

@@ -117,7 +117,7 @@ void Delivery::addSplats(std::span<TaskResult> results, const Iteration& iterati
     const std::uint64_t leftOut = lacuna::addSplats(splats, iteration.pixels, setup_.threads);
     IterationStatistics& statistics = iteration.statistics;
     statistics.invalidSamples += leftOut;
-    // Those to name are part of a sum that is too large: they do not fit on top of what there is.
+    // Name the splats whose sums are too large: they do not fit on top of the pixel's value.
     for (std::size_t r = 0; leftOut > 0 && r < results.size(); ++r) {
         for (std::size_t i = 0; i < splats[r].size(); ++i) {
             if (statistics.invalidReplays.size() == kReplaysKept) return;

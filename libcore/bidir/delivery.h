@@ -48,25 +48,25 @@ class Delivery {
     void setTechniqueFilm(TechniqueFilm* film) { techniqueFilm_ = film; }
     /// Layers of paths to fill as well, or null.
     void setLayerFilm(LayerFilm* film) { layerFilm_ = film; }
-    /// Returns the one before.
+    /// Returns the previous observer.
     PathObserver setObserver(PathObserver observer);
     /// Records every ray of the following tasks in the order in which a task traces them.
     void setRecording(bool on) { recording_ = on; }
     std::vector<RecordedRay> takeRecording() { return std::exchange(recorded_, {}); }
 
-    /// Adds an eye path's contribution to its pixel, which no other task adds to. Returns what it added.
-    /// Null: what it would add.
+    /// Adds an eye path's contribution to its pixel, which no other task adds to, and returns what it added. With a
+    /// null `pixel` it adds nothing and returns what it would have added.
     Rgb toOwnPixel(const Contribution& c, const TechniqueCounts& counts, Rgb* pixel,
                    TaskResult& result) const;
     /// Appends a light subpath's contribution to the task's splats.
     void toSplats(const Contribution& c, const TechniqueCounts& counts, TaskResult& result) const;
 
-    /// A task's result before the task begins.
+    /// Prepares a task's result before the task begins.
     void begin(TaskResult& result) const {
         if (recording_) result.tally.recording = &result.rays;
         if (techniqueFilm_) result.clock.switchOn();
     }
-    /// What the tasks counted and recorded.
+    /// Collects what the tasks counted and recorded.
     void collect(std::span<TaskResult> results, IterationStatistics& statistics);
     /// Adds the tasks' splats to the iteration's picture.
     void addSplats(std::span<TaskResult> results, const Iteration& iteration) const;
@@ -83,13 +83,14 @@ class Delivery {
     };
     Weighed weigh(const Contribution& c, const TechniqueCounts& counts, RayTally& tally) const;
     void observe(const Contribution& c, const TechniqueCounts& counts, const Weighed& w) const;
-    /// What a path that adds `value` to the picture adds to layers; where there is a film of them.
+    /// The layers' shares of `value`, which the path adds to the picture. There must
+    /// be a layer film.
     std::span<const PathLayers::Share> sharesOf(const FullPath& path, const Rgb& value,
                                                 TaskResult& result) const {
         return layerFilm_->layers().shares(path, value, result.layerScratch);
     }
     void countInvalid(const Sample& sample, TaskResult& result) const;
-    /// Whether it is the environment as the lens sees it, and that is left out.
+    /// Whether the path is the environment seen directly, and the background is transparent.
     bool isBackground(const FullPath& path) const {
         return setup_.settings.transparentBackground && path.edges == 1 &&
                path.vertex[0]->infinite();

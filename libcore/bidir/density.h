@@ -1,5 +1,5 @@
-// What the weights believe about a selector: how many samples a connection stands for. A function
-// of the path and of frozen data alone; the picks themselves are the method's business (method.h).
+// The weights' belief about a selector: how many samples a connection is worth. The belief is a
+// function of the path and of frozen data alone. The method itself makes the picks (method.h).
 // (theory.md, "Beliefs")
 #pragma once
 
@@ -25,8 +25,8 @@ struct Connection {
     ConnectionEnd eye, light;
     Rgb beta;         ///< throughput that light tracing would have had at the light's end
     double geometry;  ///< G of the edge
-    /// Which of the eye vertices that a connection could end at is the eye's end: 1 for the first,
-    /// z_1 or what is seen in mirrors and through glass.
+    /// Number of the eye's end among the eye vertices that a connection could end at. The first
+    /// one, z_1 or what is seen in mirrors and through glass, has number 1.
     int order;
 };
 
@@ -55,19 +55,21 @@ class ConnectionDensity {
     };
 
     virtual ~ConnectionDensity() = default;
-    /// Set: effectiveSamples is never asked.
+    /// If set, effectiveSamples is never called.
     virtual std::optional<Constants> constants() const { return std::nullopt; }
     virtual double effectiveSamples(const Connection& connection) const = 0;
-    /// Seen: what is said of s = 1 above is still to be multiplied by LightSampler::seenSamples.
+    /// With Lamps::Seen, what effectiveSamples and constants say of s = 1 is still to be multiplied
+    /// by LightSampler::seenSamples.
     virtual Lamps lamps() const { return Lamps::Power; }
 
-    /// Whether it keeps labels: what it knows a vertex by, so that it is looked up once and not
-    /// once per path. A label is a function of the vertex, of its predecessor in the role, and of
-    /// frozen data; effectiveSamples must do with ends that have none.
+    /// Whether the density keeps labels. A label (of a cache point, a node, a subspace) is what the
+    /// density knows a vertex by; it is looked up once and not once per path. It is a function of
+    /// the vertex, of its predecessor in the role, and of frozen data. effectiveSamples must accept
+    /// ends without one.
     virtual bool keepsLabels() const { return false; }
-    /// Labels the vertices of a whole walk, z_0 or y_0 first, in both roles: in that of the walk
-    /// with the vertex before as predecessor, in the other one with the vertex behind (the last
-    /// vertex has none).
+    /// Labels the vertices of a whole walk, z_0 or y_0 first, in both roles. In the walk's own role
+    /// the predecessor is the vertex before. In the other role it is the vertex behind, which the
+    /// last vertex does not have.
     virtual void labelWalk(std::span<PathVertex> walk) const { (void)walk; }
     /// Labels the two ends of each connection in the role that the other walk would have given
     /// them.

@@ -14,32 +14,34 @@
 namespace lacuna {
 namespace {
 
-constexpr std::size_t kPlaces = 1 << 16;  // about as many
+constexpr std::size_t kPlaces = 1 << 16;  // of the lattice, about
 constexpr std::size_t kPlacesPerTask = 1 << 10;
-constexpr int kRadius = 3;  // of the window, 49 pixels: a bit each
+constexpr int kRadius = 3;  // of the window: 49 pixels, one bit each
 constexpr int kSide = 2 * kRadius + 1;
 constexpr std::uint64_t kRow = (std::uint64_t(1) << kSide) - 1;
-constexpr double kAlike = 0.05;  // difference of albedo per channel, of normals squared
+constexpr double kAlike = 0.05;  // largest difference of albedo per channel, of normals squared
 
 /// e of the error measures is 0.01 of the mean.
 constexpr double kEpsilon = 0.01;
 
 /// Sizes of nodes that are looked at: the largest, its half, quarter and eighth.
 constexpr std::uint64_t kSizes = 4;
-/// An eighth has to be more than an iteration.
+/// An eighth of the iterations has to be more than one.
 constexpr std::uint64_t kFewestIterations = 16;
-/// For a variance.
+/// Fewest samples from which a variance is trusted.
 constexpr std::uint64_t kFewestSamples = 16;
-/// Of pixels times iterations: what is rarer has not been seen.
+/// Fewest paths, pixels times iterations. Rarer events may not have been seen.
 constexpr double kFewestPaths = 1 << 17;
-/// How many standard deviations of the picture's own error are added to what is said: 19 of 20.
+/// Standard deviations of the picture's own error that are added to the estimate. It then holds for
+/// 19 of 20 pictures.
 constexpr double kCaution = 1.645;
-/// Where so much of the error is borne by so few that it may be anything.
+/// Largest unevenness at which an estimate is trusted: as good as 25 pixels carry the error.
 constexpr double kMostUneven = 0.2;
-/// Of the error, by the unevenness of its square: spikes of which the largest few carry the square
-/// have larger ones behind them that no path has met yet. With kSafety, what the model leaves out,
-/// chosen on half of the scenes of tests/results/until-2026-11-24.md.
+/// Share of the error that is added for spikes that no path has met yet, times the unevenness of
+/// relmse. Where the largest few spikes carry relmse, larger ones are likely to come. This number
+/// and kSafety were chosen on half of the scenes of tests/results/until-2026-11-24.md.
 constexpr double kUnseenShare = 0.7;
+/// Factor for what the model leaves out.
 constexpr double kSafety = 1.05;
 
 std::array<double, 3> channels(const Rgb& c) {
@@ -52,16 +54,17 @@ double epsilonOf(const FilmSum& left, const FilmSum& right) {
     return kEpsilon * sum / 6.0;
 }
 
-/// Channels of the pixels of a row of the window.
+/// The channels of the pixels of one row of the window.
 using Strip = std::array<float, std::size_t(3 * kSide)>;
 
-/// Of the pixels from `first` on, in memory one behind the other.
+/// The channels of the pixels from `first` on, which lie one behind the other in memory.
 const float* stripAt(std::span<const Rgb> pixels, std::size_t first) {
     static_assert(sizeof(Strip) == sizeof(Rgb) * std::size_t(kSide));
     return &pixels[first].r;
 }
 
-/// By the bits of a row: one for the channels of the pixels whose bit is set, zero for the others.
+/// Masks, indexed by the bits of a row: 1 for the channels of pixels whose bit is
+/// set, 0 for others.
 constexpr auto kChosen = [] {
     std::array<Strip, std::size_t(kRow) + 1> chosen{};
     for (std::size_t row = 0; row < chosen.size(); ++row) {
@@ -107,15 +110,15 @@ ErrorMeter::ErrorMeter(const FeatureLayers& features) : width_(features.albedo.w
     }
 }
 
-/// The mean of both pictures over the pixels around that show the same; without the pixel itself,
-/// whose noise would make its own error small. Where there are none, the pixel.
+/// The mean of both pictures over the pixels around that show the same. The pixel itself is left
+/// out, because its noise would make its own error small. It stands in where there are no others.
 Vec3d ErrorMeter::smoothed(std::span<const Rgb> left, std::span<const Rgb> right,
                            const Place& place) const {
     if (place.alike == 0) {
         const auto a = channels(left[place.pixel]), b = channels(right[place.pixel]);
         return Vec3d{a[0] + b[0], a[1] + b[1], a[2] + b[2]} * 0.5;
     }
-    // By columns, without a branch for a pixel: quick renders spend much of their time here.
+    // Sum by columns, without a branch per pixel: quick renders spend much of their time here.
     const float share = 0.5f / float(std::popcount(place.alike));
     Strip columns{};
     std::uint64_t bits = place.alike;
@@ -227,8 +230,8 @@ double ErrorMeter::overSquare(const FilmSum& sum, std::span<const float> values,
 
 namespace {
 
-/// Relative standard deviation of a node's h among those of its size: more than the pixels' own
-/// where they share light paths.
+/// Relative standard deviation of h among nodes of one size. It is larger than the pixels' noise
+/// explains where they share light paths.
 double scatter(std::span<const HalfDifference> sizes) {
     double squares = 0.0, freedom = 0.0;
     for (const HalfDifference& d : sizes) {
@@ -254,7 +257,7 @@ const char* const kTooFew = "too few iterations";
 const char* const kUnseen = "too few paths to have met rare bright ones";
 const char* const kNotFinite = "pixels that are not finite";
 
-/// Of what is at hand: `error` with what it may be above it.
+/// `error` plus a margin for its relative `uncertainty`, and the doubt where few places carry it.
 Measured measured(double error, double uncertainty, double unevenness, std::size_t places) {
     if (!std::isfinite(error)) return {error, kNotFinite};
     return {error * kSafety * (1.0 + kCaution * uncertainty), doubtOf(unevenness, places)};
@@ -264,7 +267,7 @@ bool seesLittle(const FilmSum& sum) {
     return double(sum.iterations) * double(sum.mean.size()) < kFewestPaths;
 }
 
-/// `squares`: of relmse.
+/// `squares` is the mean that gives relmse.
 Measured mapeOf(const FilmSum& sum, const ErrorMeter::Mean& squares, std::size_t places) {
     if (sum.differences.empty()) return {kUnknown, kTooFew};
     const std::uint64_t largest = sum.differences.back().iterations;
@@ -283,8 +286,8 @@ Measured mapeOf(const FilmSum& sum, const ErrorMeter::Mean& squares, std::size_t
                              ? even.noise(sum.iterations)
                              : model.g() / std::sqrt(double(sum.iterations));
     const double half = noise + model.c();
-    // Of spikes of which a pixel has none or one, halves show a half. Where pixels have several,
-    // h falls more slowly than noise as well, but shows nearly all.
+    // Where pixels have met no spike or one, halves show half of the error. Where pixels have met
+    // several, h also falls more slowly than noise, but shows nearly all of the error.
     const double seen = half > 0.0 ? model.c() * model.c() / half : 0.0;
     const double error = half + std::max(seen, kUnseenShare * squares.unevenness * half);
     Measured m = measured(error, s * std::sqrt(1.0 + 1.0 / nodes), unevenness, places);

@@ -13,14 +13,14 @@ constexpr int kPathsPerBatch = 1 << 18;  // between two additions of splats: bou
 /// Side of the squares whose pixels share walks.
 constexpr int kSide = 4;
 static_assert(kSide * kSide == kTile);
-/// Of a light subpath of s vertices with this eye subpath.
+/// The technique group of a light subpath of s vertices with this eye subpath.
 TechniqueGroup groupOf(std::size_t s, Subpath eye) {
     return TechniqueGroup::of(int(s), int(eye.size()), connectionOrder(eye));
 }
 }  // namespace
 
-/// A part of a row, or, where walks are shared, a square of the film, elsewhere in each iteration, so that
-/// the picture has no seams.
+/// A block is a part of a row. Where walks are shared it is a square of the film; the squares shift from one iteration
+/// to the next so that the picture has no seams.
 EyePass::Blocks EyePass::blocksOf(const Iteration& iteration) const {
     const PixelRect& crop = setup_.settings.crop;
     if (!iteration.counts.sharing.any()) return {crop.x0, crop.y0, kTile, 1, crop};
@@ -77,7 +77,7 @@ std::size_t EyePass::pixel(const Iteration& iteration, int x, int y, Rgb& value,
     return std::size_t((y - pixels.y0) * pixels.width() + x - pixels.x0);
 }
 
-/// At most kTile pixels.
+/// `pixels` are at most kTile.
 void EyePass::block(const Iteration& iteration, const PixelRect& pixels, const Target& target,
                     Worker& worker, TaskResult& result) const {
     struct Place {
@@ -90,8 +90,8 @@ void EyePass::block(const Iteration& iteration, const PixelRect& pixels, const T
         for (int x = pixels.x0; x < pixels.x1; ++x) all[count++] = {x, y, setup_.filmIndex(x, y)};
     }
     const auto places = std::span(all).first(count);
-    // One thing after the other for all pixels, and not all things for one pixel: the processor's
-    // first cache holds the code of one of them.
+    // Each step is done for all pixels before the next step begins: the processor's first cache
+    // holds the code of one step.
     const bool traced = setup_.techniques.ownLightPath && !pool_.findsSubpaths();
     if (traced) {
         std::array<std::uint64_t, kTile> numbers;
@@ -174,10 +174,10 @@ void EyePass::close(const PixelPaths& paths, const Joints& joints, Ends ends,
         [&](std::size_t t) { merge(paths, paths.eye.first(t), iteration, worker, result); });
 }
 
-/// Over mirrors and through glass, to where no edge can be joined.
+/// Techniques over mirrors and through glass, for paths that have no edge to connect.
 void EyePass::searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                                 TaskResult& result) const {
-    // Merges make those paths as well.
+    // Merges already make the paths of chains.
     if (chains_ && iteration.counts.merges == Merges::Nowhere) {
         chain(paths, iteration, worker, result);
     }
@@ -185,7 +185,7 @@ void EyePass::searchBehindGlass(const PixelPaths& paths, const Iteration& iterat
     if (iteration.counts.knownWays) goKnownWays(paths, iteration, worker, result);
 }
 
-/// An eye subpath's last vertex with the photons around it.
+/// Merges an eye subpath's last vertex with the photons around it.
 void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& iteration,
                     Worker& worker, TaskResult& result) const {
     if (photons_.empty() || !asksForPhotons(eye, iteration.counts.merges)) return;
@@ -199,14 +199,15 @@ void EyePass::merge(const PixelPaths& paths, Subpath eye, const Iteration& itera
         if (edges > setup_.settings.limits.maxDepth || !onSameSurface(light.back(), z)) continue;
         const auto closed = closeMerge(setup_.walker, light, eye, worker.fullPath);
         if (!closed) continue;
-        // By the photons' number and the kernel's area, constant over it.
+        // K / n_m: mergeSamples is n_m pi R^2, and the kernel K is constant over the disk.
         const double scale = 1.0 / iteration.counts.mergeSamples;
         deliver(*closed, paths, iteration, worker, result, scale);
     }
     result.clock.lap([&] { return TechniqueGroup::ofMerge(connectionOrder(eye)); });
 }
 
-/// The eye path's vertices with lights that no ray can hit, over mirrors and through smooth glass.
+/// Joins the eye path's vertices with lights that no ray can hit, over mirrors and
+/// through smooth glass.
 void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                     TaskResult& result) const {
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::Chain, paths.sample.number);
@@ -222,7 +223,7 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
     }
 }
 
-/// The eye path's vertices with lamps and the sky behind smooth glass.
+/// Joins the eye path's vertices with lamps and the sky behind smooth glass.
 void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                       TaskResult& result) const {
     const RefractedLamps& lamps = *iteration.counts.refractedLamps;
@@ -240,7 +241,7 @@ void EyePass::refract(const PixelPaths& paths, const Iteration& iteration, Worke
     }
 }
 
-/// And over the chains that light is known to come by.
+/// Joins the eye path's vertices with lamps and the sky over chains that light is known to take.
 void EyePass::goKnownWays(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                           TaskResult& result) const {
     Rng rng = setup_.sampler.stream(iteration.number, StreamKind::KnownWay, paths.sample.number);
@@ -255,8 +256,8 @@ void EyePass::goKnownWays(const PixelPaths& paths, const Iteration& iteration, W
     }
 }
 
-/// For all vertices of the path before the first one is connected: light vertices lie anywhere in
-/// memory, and those that were picked are on their way from there meanwhile.
+/// Picks light vertices for all vertices of the path before the first one is connected. They lie
+/// anywhere in memory, and the picked ones are fetched meanwhile.
 void EyePass::select(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                      TaskResult& result) const {
     joints.proposals.clear();
@@ -282,7 +283,8 @@ void EyePass::select(const PixelPaths& paths, Joints& joints, const Iteration& i
     }
 }
 
-/// Likewise before the first one is weighed: the rest of the light subpaths, and labels.
+/// Traces the shadow rays of all connections before the first one is weighed. The rest of the light
+/// subpaths is fetched meanwhile, and labels are looked up together.
 void EyePass::open(const PixelPaths& paths, Joints& joints, const Iteration& iteration,
                    TaskResult& result) const {
     joints.open.clear();

@@ -11,8 +11,8 @@ namespace lacuna {
 
 class EyePass {
   public:
-    /// All must outlive it. `photons` are vertices of `pool`, none where nothing is merged; `chains`
-    /// may be null.
+    /// All arguments must outlive the pass. `photons` are vertices of `pool`, and empty where nothing is merged.
+    /// `chains` may be null.
     EyePass(const RenderSetup& setup, const LightPass& lightPass, const LightPool& pool,
             const PhotonGrid& photons, const SpecularChains* chains, Delivery& delivery,
             const Workers& workers)
@@ -24,15 +24,15 @@ class EyePass {
           delivery_(delivery),
           workers_(workers) {}
 
-    /// All pixels of the crop. False if cancelled.
+    /// Renders all pixels of the crop. False if cancelled.
     bool run(const Iteration& iteration) const;
-    /// One pixel of the film, with those that share its walk. Returns where in worker.eye and
-    /// worker.light its subpaths are.
+    /// Renders one pixel of the film into `value`; pixels that share its walk are traced along.
+    /// Returns the index of its subpaths in worker.eye and worker.light.
     std::size_t pixel(const Iteration& iteration, int x, int y, Rgb& value, Worker& worker,
                       TaskResult& result) const;
 
   private:
-    /// Which pixels get light, and where they are.
+    /// The pixels that receive light, and their values.
     struct Target {
         PixelRect shown;
         Rgb* values;  ///< row-major in `shown`
@@ -44,14 +44,15 @@ class EyePass {
         }
     };
     using Joints = Worker::Joints;
-    /// Eye subpaths z_0 .. z_{t-1}, by t.
+    /// Range of eye subpaths z_0 .. z_{t-1}: t from first to last, both included.
     struct Ends {
         std::size_t first, last;
     };
-    /// Blocks of pixels whose walks are under way at once, from that corner on.
+    /// Grid of blocks of pixels whose walks are traced together. (x0, y0) is the corner of
+    /// the first one.
     struct Blocks {
         int x0, y0, width, height;
-        PixelRect bounds;  ///< what is outside is in no block
+        PixelRect bounds;  ///< pixels outside are in no block
 
         PixelRect at(int x, int y) const;
     };
@@ -70,8 +71,8 @@ class EyePass {
                      TaskResult& result) const;
     void borrow(std::size_t borrower, const PixelPaths& paths, const Iteration& iteration,
                 Worker& worker, TaskResult& result) const;
-    /// f(ending) for what the path gets at its vertices from lamps and over connections, in the order of t,
-    /// and behind those of each t after(t).
+    /// Calls f(ending) for each hit and each connection of the eye path, in the order of t. Calls after(t) when those
+    /// of t are done.
     template <class F, class After>
     void forEachEnding(const PixelPaths& paths, const Joints& joints, Ends ends, const F& f,
                        const After& after) const {
@@ -91,11 +92,12 @@ class EyePass {
                Worker& worker, TaskResult& result) const;
     void searchBehindGlass(const PixelPaths& paths, const Iteration& iteration, Worker& worker,
                            TaskResult& result) const;
-    /// Returns what the pixel got, or would get if it is not shown.
+    /// Closes the path that ends with `ending`. Returns what the pixel got, or would get if
+    /// it is not shown.
     Rgb closeAt(const Ending& ending, Subpath eye, const PixelPaths& paths,
                 const Iteration& iteration, Worker& worker, TaskResult& result,
                 double scale = 1.0) const;
-    /// The path that was closed last, to its own pixel.
+    /// Adds the path that was closed last to its own pixel.
     Rgb deliver(const Closed& closed, const PixelPaths& paths, const Iteration& iteration,
                 Worker& worker, TaskResult& result, double scale = 1.0,
                 const Proposal* proposal = nullptr) const {

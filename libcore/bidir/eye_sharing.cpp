@@ -6,13 +6,13 @@
 namespace lacuna {
 
 namespace {
-/// Of those that lend, how many a pixel borrows from.
+/// Most picks that a pixel makes among the walks that others lend.
 constexpr std::size_t kMostBorrowed = 4;
-/// Of picks by worth, those that do not look at it: what is worth nothing to the lender may be worth
-/// something to the borrower.
+/// Share of the picks that are made without regard to worth: what is worth nothing to the lender may be worth something
+/// to the borrower.
 constexpr double kShareOfAny = 0.1;
 
-/// Probability of one of `count` that are worth `sum` together.
+/// Pmf of one of `count` choices by its worth. All of them together are worth `sum`.
 double pmfOf(double worth, double sum, std::size_t count) {
     const double even = 1.0 / double(count);
     return sum > 0.0 ? kShareOfAny * even + (1.0 - kShareOfAny) * worth / sum : even;
@@ -34,7 +34,7 @@ PickedEnding pickEnding(const Lent& lent, double u) {
 }
 }  // namespace
 
-/// In groups.
+/// Closes the paths of all pixels, in groups that share walks.
 void EyePass::closeTogether(std::span<const PixelPaths> all, const Iteration& iteration,
                             Worker& worker, TaskResult& result) const {
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -69,8 +69,9 @@ void EyePass::closeGroup(std::span<const PixelPaths> group, std::span<const Join
     }
 }
 
-/// What a walk was joined to behind z_h, as one of the ways of all who could have gone it: to its own pixel,
-/// and into worker.lent. Returns the first t that it keeps for itself.
+/// Closes the endings that the lender's walk has behind z_h, weighed against all walks of the group that could have
+/// gone the same way. Adds them to the lender's pixel, and lists them in worker.lent for the others. Returns the first
+/// t whose endings the lender does not share.
 std::size_t EyePass::lend(std::size_t lender, std::size_t h, std::span<const PixelPaths> group,
                           const Joints& joints, const Iteration& iteration, Worker& worker,
                           TaskResult& result) const {
@@ -102,7 +103,8 @@ std::size_t EyePass::lend(std::size_t lender, std::size_t h, std::span<const Pix
     return ends.last + 1;
 }
 
-/// Some of what the others lend, by what it is worth to them: from here it is worth about as much.
+/// Borrows some of the walks that the others lend. They are picked by what they are worth to their
+/// lenders, because the borrower sees much the same.
 void EyePass::borrow(std::size_t borrower, const PixelPaths& paths, const Iteration& iteration,
                      Worker& worker, TaskResult& result) const {
     std::vector<Offer>& offers = worker.offers;

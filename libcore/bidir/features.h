@@ -1,9 +1,8 @@
 // What a picture shows, without light: the layers albedo, normal, Z and position beside it.
 //
-// Z and position are of the first surface that the lens sees: what a compositor puts in front of it
-// or behind it asks where things are. Albedo and normal are for denoisers, which ask what a pixel's
-// pattern comes from: they are of the first surface that has a lobe with a density, over mirrors and
-// through smooth glass before it. (render/README.md, "Denoisers")
+// Z and position are of the first surface that the lens sees. A compositor needs them to put things in front of it or
+// behind it. Albedo and normal are for denoisers, which need the surface that a pixel's pattern comes from. That is the
+// first one that has a lobe with a density, seen over mirrors and through smooth glass. (render/README.md, "Denoisers")
 #pragma once
 
 #include <cstdint>

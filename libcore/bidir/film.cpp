@@ -58,7 +58,8 @@ void Film::measure(const ErrorMeter& meter) {
     measureOpen();
 }
 
-/// Iterations of the open block: where it lies says which are worth comparing.
+/// Tells the open block's tree which iterations its items are: that decides which
+/// nodes are compared.
 void Film::measureOpen() {
     open_.measure(plan_.areSamples ? nullptr : meter_, block_ * plan_.iterations, 1);
 }

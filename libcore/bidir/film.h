@@ -1,4 +1,4 @@
-// Where contributions go: one iteration's picture, and what iterations add up to.
+// Films: the picture of one iteration, and the sum of all iterations.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Splat {
 std::uint64_t addSplats(std::span<const std::vector<Splat>> chunks, std::span<Rgb> pixels,
                         const ThreadPool& pool);
 
-/// By pixel: a sum over iterations as their mean; black where there are none.
+/// The mean over iterations, from their `sum` by pixel. Black where there are no iterations.
 Image meanOfSum(std::span<const Rgb> sum, std::uint64_t iterations, int width, int height);
 
 /// Layers that are filled while the iterations of a block run.
@@ -49,16 +49,16 @@ class BlockLayers {
 struct BlockPlan {
     static constexpr std::uint64_t kEndless = std::uint64_t(1) << 40;
 
-    std::uint64_t iterations = kEndless;  ///< B, of a block
-    /// Iterations of a block share light paths: variances come from blocks.
+    std::uint64_t iterations = kEndless;  ///< B: of a block
+    /// Whether blocks are the independent samples: then iterations of a block share light paths.
     bool areSamples = false;
-    /// Else they come from groups of so many iterations, a power of two, whose random numbers lie
-    /// evenly together.
+    /// Otherwise the samples are groups of so many iterations. A power of two: the random numbers
+    /// of a group lie evenly together.
     std::uint64_t groupIterations = 1;
 
-    /// Of an independent sample.
+    /// Iterations of an independent sample.
     std::uint64_t sampleIterations() const { return areSamples ? iterations : groupIterations; }
-    /// The iterations of a sample.
+    /// What the iterations of a sample are to each other.
     Parts partsOfSample() const { return areSamples ? Parts::OfAlikeSample : Parts::OfEvenSample; }
 };
 
@@ -73,28 +73,30 @@ class Film {
     /// Begins with iteration 0 of block `first`.
     Film(int width, int height, BlockPlan plan = {}, std::uint64_t first = 0);
 
-    /// Layers to sum up as well; they must outlive the film. Before the first iteration.
+    /// Adds layers that are summed up as well; they must outlive the film. Called before the
+    /// first iteration.
     void addLayers(BlockLayers& layers) { layers_.push_back(&layers); }
-    /// Compares the halves of what it adds up: FilmSum::differences. `meter` must outlive the film.
-    /// Before the first iteration.
+    /// Compares the halves of sums from now on (FilmSum::differences). `meter` must outlive the
+    /// film. Called before the first iteration.
     void measure(const ErrorMeter& meter);
 
-    /// The next iteration: `pixels` = width * height values. Ends the block with its last one.
+    /// Adds the next iteration: `pixels` are width * height values. A block's last
+    /// iteration ends it.
     void add(std::span<const Rgb> pixels, const ThreadPool& threads);
-    /// The next iterations of the open block, a node of its tree. `threads` may be null.
+    /// Adds the next iterations of the open block as a node of its tree. `threads` may be null.
     void add(SumTree::Node node, const ThreadPool* threads);
 
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Of the first block on.
+    /// Number of iterations added, from the first block on.
     std::uint64_t iterations() const { return iterations_; }
     /// Number of the next iteration.
     std::uint64_t nextIteration() const { return block_ * plan_.iterations + inBlock_; }
-    /// Number of its block, and how many iterations of it there are.
+    /// Number of the open block, and how many of its iterations were added.
     std::uint64_t block() const { return block_; }
     std::uint64_t inBlock() const { return inBlock_; }
 
-    /// Everything that there is. `threads` may be null.
+    /// The sum of all iterations. `threads` may be null.
     FilmSum sum(const ThreadPool* threads = nullptr, Layered layered = Layered::Yes) const;
     /// Likewise without layers.
     FilmSum pictureSum(const ThreadPool* threads = nullptr) const {
@@ -106,17 +108,20 @@ class Film {
     Image variance() const { return pictureSum().variance(width_, height_); }
     FilmSum::MeanColour meanColour() const { return pictureSum().meanColour(); }
 
-    /// Sums that a film goes on from; a copy is a snapshot.
+    /// Sums from which a film can go on. A copy is a snapshot.
     struct State {
         std::vector<SumTree::Node> blocks;  ///< items are blocks
         std::uint64_t openBlock = 0;
         std::vector<SumTree::Node> open;  ///< items are iterations of the open block
     };
-    /// To go on from. `withOpen`: in the middle of the open block, whose layers are left out.
+    /// The state to go on from. With `withOpen` it has the open block's iterations,
+    /// without their layers.
     State state(bool withOpen) const;
-    /// To be added to others: the open block's iterations as one node, with its layers.
+    /// The state to be added to that of others. The open block's iterations are one node,
+    /// with its layers.
     State finalState(const ThreadPool& threads) const;
-    /// Of a film of the same plan that began with the same block. Before the first iteration.
+    /// Goes on from the state of a film that had the same plan and began with the same block.
+    /// Called before the first iteration.
     void restore(State state, const ThreadPool& threads);
 
   private:

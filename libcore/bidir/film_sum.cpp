@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPixelsPerTask = 1 << 14;
 
-/// body(i) for all pixels, in pieces.
+/// Calls body(i) for all pixels, in tasks of kPixelsPerTask.
 template <class Body>
 void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) {
     const std::size_t tasks = (pixels + kPixelsPerTask - 1) / kPixelsPerTask;
@@ -30,7 +30,8 @@ void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) 
     }
 }
 
-/// Means and spreads of two sums, one number at a time; in double between two roundings.
+/// Joins the means and spreads of two sums, one number at a time. Only the results are
+/// rounded to float.
 struct Joint {
     Joint(const FilmSum& left, const FilmSum& right, Parts parts)
         : nLeft(double(left.iterations)),
@@ -54,7 +55,7 @@ struct Joint {
     const double between;  ///< weight of the squared distance of the two means
 };
 
-/// All of it, or what there is beside its layers.
+/// A copy, with or without the layers.
 FilmSum copyOf(const FilmSum& sum, Layered layered) {
     if (layered == Layered::Yes) return sum;
     return {sum.iterations, sum.samples,      sum.mean, sum.spread,
@@ -89,7 +90,7 @@ void addDifference(std::vector<HalfDifference>& list, const HalfDifference& d) {
 
 double varianceOfMean(double squares, double divisor) {
     if (divisor == 0.0) return 0.0;
-    return std::max(0.0, squares / divisor);  // and where it is no number
+    return std::max(0.0, squares / divisor);  // also where it is NaN
 }
 
 }  // namespace
@@ -194,13 +195,13 @@ void SumTree::add(Node node, const ThreadPool* threads) {
     }
 }
 
-/// The last two nodes, which are siblings.
+/// Joins the last two nodes, which are siblings.
 void SumTree::joinLast(const ThreadPool* threads) {
     Node &left = nodes_[nodes_.size() - 2], &right = nodes_.back();
     if (left.sum.use_count() > 1) left.sum = std::make_shared<FilmSum>(*left.sum);
-    std::atomic_thread_fence(std::memory_order_acquire);  // whoever held it has read it
-    // What a node says depends on its range alone, whoever makes it. The last block may have fewer
-    // iterations than others.
+    std::atomic_thread_fence(std::memory_order_acquire);  // former holders have read it
+    // A node's content depends on its range alone, not on who makes it. Only halves of the same
+    // size are compared: the last block may have fewer iterations than others.
     const bool even = left.sum->iterations == right.sum->iterations;
     const Parts parts = 2 * left.size <= sampleItems_ ? within_ : Parts::Samples;
     const std::uint64_t end = first_ + (right.begin + right.size) * itemIterations_;
@@ -215,7 +216,7 @@ void SumTree::joinLast(const ThreadPool* threads) {
 }
 
 void SumTree::addTo(FilmSum& sum, const ThreadPool* threads, Layered layered) const {
-    // The last ones, smaller than a sample, are one that is not whole.
+    // The last nodes, smaller than a sample, together are the sample that is not whole yet.
     FilmSum last;
     for (const Node& node : nodes_) {
         const bool whole = node.size >= sampleItems_;

@@ -1,4 +1,4 @@
-// The first surface along a ray, as layers beside a picture know it: panes are looked through.
+// The first surface along a ray, for the layers beside the picture. Panes are looked through.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ struct Sight {
 /// The primary ray through `raster` from the lens point of `u`, in [0, 1)^2.
 Sight sightThrough(const Camera& camera, Vec2 raster, Vec2 u);
 
-/// Every ray passes panes here, whether it would stop there or not: the few that do would be specks.
-/// Empty where nothing is met.
+/// The first surface that is no pane. Panes stop a few rays of the render, which would be specks in the layers; here
+/// all rays pass. Empty where nothing is met.
 std::optional<SurfacePoint> firstSeen(const Scene& scene, const Sight& sight, RayTally& tally);
 
 }  // namespace lacuna

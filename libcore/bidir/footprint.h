@@ -5,9 +5,10 @@
 
 namespace lacuna {
 
-/// Side of a square that a pixel sees where it looks straight at it: the median over the film, at
-/// the first vertex that a connection may end at, mirrors and smooth glass passed (scene unit).
-/// A function of scene and camera. A thousandth of the scene where nothing is seen.
+/// Side of the square that a pixel sees on a surface at right angles to its ray, in scene units:
+/// the median over the film. The surface is the first vertex that a connection may end at, behind
+/// mirrors and smooth glass. A function of scene and camera. A thousandth of the scene's radius
+/// where nothing is seen.
 double medianFootprint(const Walker& walker);
 
 }  // namespace lacuna

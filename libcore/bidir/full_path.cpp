@@ -5,7 +5,8 @@
 namespace lacuna {
 
 double FullPath::geometryOf(int i) const {
-    // The end that knows the edge as its way back: the farther one of its own walk.
+    // The end whose toPrevious is the edge's direction: the later one in the walk that
+    // made the edge.
     const PathVertex* end = i < lightEdges          ? &lightsEnd(i)
                             : i >= edges - eyeEdges ? vertex[i]
                                                     : nullptr;

@@ -1,5 +1,5 @@
-// A full path x_0 (light) .. x_k (lens), with the densities of both walks: what weights read.
-// (theory.md, "Paths and measures")
+// A full path x_0 (light) .. x_k (lens), with the densities of both walks. Weights are
+// computed from it. (theory.md, "Paths and measures")
 //
 // Delta events keep their generalised densities; strategies that would connect through one do not
 // exist.
@@ -15,18 +15,19 @@
 
 namespace lacuna {
 
-/// Longest path in edges that can be asked for.
+/// Largest number of edges that a path may have.
 inline constexpr int kMaxEdges = 254;
 
-/// How many times as likely next event through glass or along known ways makes a path as an eye walk does
-/// without roulette, s = 0; zero where it cannot (refracted_lamps.h, known_ways.h). To a light that no eye walk
-/// hits: as one does that would, if its density at x_0 were that of FullPath::eyePdfA.
+/// Density of a path by next event through glass or along known ways, over its density by an eye walk that hits the
+/// light (s = 0, without roulette). Zero where next event cannot make the path (refracted_lamps.h, known_ways.h). If no
+/// eye walk hits the light, the ratio is to an eye walk whose density at x_0 is FullPath::eyePdfA.
 struct OverChain {
     double ratio = 0.0;
     int vertices = 0;  ///< of the chain
 };
 
-/// All arrays by vertex, x_0 first; valid up to `edges`. Filled while a path is closed (close.h).
+/// All arrays are indexed by vertex, x_0 first, and valid up to `edges`. Filled while a path is
+/// closed (close.h).
 struct FullPath {
     template <class T>
     using PerVertex = std::array<T, std::size_t(kMaxEdges) + 1>;
@@ -45,10 +46,10 @@ struct FullPath {
     bool splattable = true;           ///< k = 1 under a punctual light is not splatted
     std::span<const Rgb> absorption;  ///< of the scene, by material (absorption.h)
     OverChain refracted;
-    /// How many of the first (last) edges the light's (the eye's) walk made.
+    /// How many first edges the light's walk made, and how many last edges the eye's walk made.
     int lightEdges = 0, eyeEdges = 0;
-    /// Merges: what the light's walk has in the place of its last vertex, x_i with i = lightEdges;
-    /// x_i itself is the eye's. Else null.
+    /// Merges: the last vertex of the light's walk. It stands in the place of x_i, i = lightEdges,
+    /// which is the eye's vertex. Null for all other paths.
     const PathVertex* photon = nullptr;
 
     /// Whether strategy t (s = edges + 1 - t) could have made this path at all.
@@ -59,14 +60,14 @@ struct FullPath {
         // The connection's two ends scatter smoothly, as the light's point and the lens always do.
         return !delta[std::size_t(s - 1)] && !delta[std::size_t(s)];
     }
-    /// Whether a row that merges there merges this path at x_i, 0 < i < edges.
+    /// Whether a row that merges as `where` says merges this path at x_i, 0 < i < edges.
     bool mergesAt(int i, Merges where) const {
         const auto n = std::size_t(i);
         if (delta[n] || where == Merges::Nowhere) return false;
         if (where == Merges::FirstFromEye) return isSeenNearlySpecularly(i);
         return where != Merges::BetweenDeltas || (delta[n - 1] && delta[n + 1]);
     }
-    /// Whether all between x_i and the lens are deltas or scatter narrowly.
+    /// Whether all vertices between x_i and the lens are deltas or scatter narrowly.
     bool isSeenNearlySpecularly(int i) const {
         for (int j = i + 1; j < edges; ++j) {
             if (!delta[std::size_t(j)] && vertex[std::size_t(j)]->scattersWidely()) return false;
@@ -77,13 +78,14 @@ struct FullPath {
     int orderOf(int i) const {
         return 1 + int(std::count(delta.begin() + i + 1, delta.begin() + edges, false));
     }
-    /// How many delta events follow x_0 before something scatters; zero where that is the lens alone.
+    /// Number of delta events behind x_0 before the first other event; zero where only the lens follows them.
     int deltasBehindLight() const {
         int i = 1;
         while (i < edges && delta[std::size_t(i)]) ++i;
         return i < edges ? i - 1 : 0;
     }
-    /// Roulette in the light's (the eye's) walk for reaching x_i: survival at its predecessor.
+    /// Probability that roulette lets the light's (the eye's) walk reach x_i: the survival at the
+    /// vertex before x_i in that walk.
     double lightRoulette(int i, int rouletteDepth) const {
         return ifPlayed(i - 1 >= rouletteDepth, survival[std::size_t(std::max(0, i - 1))]);
     }
@@ -91,13 +93,14 @@ struct FullPath {
         return ifPlayed(edges - i - 1 >= rouletteDepth,
                         survival[std::size_t(std::min(i + 1, edges))]);
     }
-    /// G of the edge x_i, x_{i+1}. A walk's edge has the direction that the walk drew, which its
-    /// densities are made of: the positions at its ends know it to 1e-7 of the scene's size only,
-    /// and over a short or grazing edge the cosines of the two differ by percents.
+    /// G of the edge x_i, x_{i+1}. A walk's edge has the direction that the walk drew, which
+    /// its densities are made of. The positions at its ends give that direction only to 1e-7
+    /// of the scene's size. Over a short or grazing edge the cosines of the two directions
+    /// differ by percents.
     double geometryOf(int i) const;
     /// Unit, from x_i to x_{i+1}; a walk's edge has the direction that the walk drew.
     Vec3 directionOf(int i) const;
-    /// x_{i+1} as the light's walk has it, which made the edge from x_i.
+    /// x_{i+1} as the light's walk left it. That walk must have made the edge from x_i.
     const PathVertex& lightsEnd(int i) const {
         return photon && i + 1 == lightEdges ? *photon : *vertex[std::size_t(i) + 1];
     }
@@ -108,7 +111,8 @@ struct FullPath {
     void fillLightThroughputs(int rouletteDepth);
 
   private:
-    /// The survival, or one. By bits: a branch would be taken the wrong way half of the time.
+    /// `survival` where roulette is played, else one. It selects by bits, because a branch would be
+    /// mispredicted half of the time.
     static double ifPlayed(bool played, float survival) {
         const std::uint32_t mask = played ? ~0u : 0u;
         return double(std::bit_cast<float>((std::bit_cast<std::uint32_t>(survival) & mask) |

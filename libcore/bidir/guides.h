@@ -1,4 +1,4 @@
-// What was learned of a scene about where paths go: how light subpaths begin, and where walks go on to.
+// Guides that were learned from a scene: how light subpaths begin, and where walks go on to.
 #pragma once
 
 #include <memory>

@@ -9,15 +9,16 @@ namespace lacuna {
 
 namespace {
 
-/// What is smooth in a pixel's area falls by m^(-1) and faster; nothing is promised of it.
+/// Largest a. Where the integrand is smooth over a pixel, errors fall by m^(-1) and faster, but
+/// that is not promised.
 constexpr double kSteepest = 1.0;
 
-/// Whether the largest power of two in it is an odd one.
+/// 1 if the largest power of two that divides `iterations` has an odd exponent, else 0.
 std::size_t oddness(std::uint64_t iterations) {
     return std::size_t(std::countr_zero(iterations)) % 2;
 }
 
-/// a, by sizes of which one is four times the other; from 1/2 to kSteepest.
+/// a in [1/2, kSteepest], from pairs of sizes of which one is four times the other.
 double exponentOf(std::span<const HalfDifference> sizes, double uncertainty) {
     double sum = 0.0, weights = 0.0;
     for (const HalfDifference& small : sizes) {
@@ -73,7 +74,8 @@ EvenModel::EvenModel(std::span<const HalfDifference> sizes, double uncertainty)
         nodes[odd] += double(d.nodes);
     }
     if (!(nodes[0] > 0.0 && nodes[1] > 0.0)) return;
-    // h(m)^2 m^(2a) of both: c1 q - c0 where m is an even power, c0 q - c1 where it is an odd one.
+    // h(m)^2 m^(2a) is c1 q - c0 where m is an even power of two, and c0 q - c1 where it
+    // is an odd one.
     const double q = std::exp2(2.0 * exponent_);
     const double even = std::exp(2.0 * logs[0] / nodes[0]);
     const double odd = std::exp(2.0 * logs[1] / nodes[1]);

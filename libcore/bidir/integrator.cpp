@@ -74,7 +74,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     return counts;
 }
 
-/// R. Two of a pixel's footprints to begin with: what is blurred by less is not seen.
+/// The merging radius R. It begins with two footprints of a pixel: a smaller blur is not seen.
 double BidirIntegrator::radiusOf(std::uint32_t iteration) {
     constexpr double kFootprints = 2.0;
     const Merging merging = method_->merging();
@@ -84,13 +84,13 @@ double BidirIntegrator::radiusOf(std::uint32_t iteration) {
     return lacuna::mergeRadius(kFootprints * *footprint_, iteration);
 }
 
-/// M.
+/// M: light subpaths in the pool.
 std::uint64_t BidirIntegrator::pooledSubpaths() const {
     const PoolRequest request = method_->pool();
     return request.perPixel ? setup_.filmPixels() : request.subpaths;
 }
 
-/// Behind the light pass: the pool's photons by place.
+/// Sorts the pool's photons by place. Runs after the light pass.
 void BidirIntegrator::findPhotons(const Iteration& iteration) {
     photons_ = {};
     if (iteration.counts.merges == Merges::Nowhere) return;
@@ -106,7 +106,7 @@ IterationContext BidirIntegrator::contextFor(std::uint32_t generation,
             generation,   setup_.filmPixels(), statistics};
 }
 
-/// Behind the warm-ups of its block and of all before.
+/// Number of the iteration among all, with the warm-ups of its block and of all blocks before it.
 std::uint32_t BidirIntegrator::generationOf(std::uint32_t iteration) const {
     const std::uint64_t block = iteration / setup_.settings.blockIterations;
     return std::uint32_t(iteration + (block + 1) * std::uint64_t(method_->warmupIterations()));
@@ -148,7 +148,7 @@ bool BidirIntegrator::render(std::uint32_t number, std::span<Rgb> pixels,
         LightPass::Purpose purpose = poolAlone(StreamKind::LightPath);
         if (techniques.splats) purpose.splats = setup_.lightPaths;
         if (!lightPass_.run(iteration, purpose, pool_)) {
-            std::fill(pixels.begin(), pixels.end(), Rgb{});  // a share of the light, everywhere
+            std::fill(pixels.begin(), pixels.end(), Rgb{});  // they hold a share of the splats only
             return false;
         }
     }

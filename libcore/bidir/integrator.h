@@ -21,22 +21,22 @@ class BidirIntegrator {
     BidirIntegrator(const Scene& scene, const Camera& camera, Techniques techniques, Method& method,
                     const RenderSettings& settings, const ThreadPool& threads);
 
-    /// Goes on with a method that has not seen an iteration yet, and runs those that it wants
-    /// thrown away before the first of the block. Returns false if cancelled.
+    /// Begins a block with a method that has not seen an iteration yet, and runs the warm-up
+    /// iterations that the method wants. Returns false if cancelled.
     bool beginBlock(std::uint64_t block, Method& fresh, const std::atomic<bool>& cancel,
                     IterationStatistics& statistics);
 
     /// Renders one iteration, one eye path per pixel of the crop, into `pixels` (overwritten).
-    /// Those of a block must come in order, behind its beginBlock(), where the method learns from
-    /// them. Returns false if cancelled: `pixels` then hold the eye paths that were made, or
-    /// nothing where light paths were not finished.
+    /// Where the method learns from iterations, those of a block must come in order and after its
+    /// beginBlock(). Returns false if cancelled: `pixels` then hold the eye paths that were made,
+    /// or zeros where the light paths were not finished.
     bool render(std::uint32_t iteration, std::span<Rgb> pixels, const std::atomic<bool>& cancel,
                 IterationStatistics& statistics);
 
-    /// Runs one sample alone after the light pass of its iteration: eye path through a pixel of the
-    /// full film, or one light subpath. Its block must have begun, and the block's iterations
-    /// before it must have been run where the method learns from them. Returns the walks' vertices,
-    /// valid until the next call of anything.
+    /// Runs one sample alone after the light pass of its iteration: the eye path through a pixel of
+    /// the full film, or one light subpath. Its block must have begun. Where the method learns from
+    /// iterations, the block's earlier ones must have been run. Returns the walks' vertices, valid
+    /// until the next call of any function.
     struct Replayed {
         Subpath eye, light;
     };
@@ -44,13 +44,13 @@ class BidirIntegrator {
     Replayed replayLightPath(std::uint32_t iteration, std::uint64_t number,
                              const PathObserver& observer);
 
-    /// Layers to fill as well, observers, recordings.
+    /// Takes layers to fill as well, observers and recordings.
     Delivery& delivery() { return delivery_; }
-    /// Alpha to fill as well, or null.
+    /// Sets the film of alpha to fill as well, or null.
     void setCoverageFilm(CoverageFilm* film) { coverage_ = film; }
 
     const Walker& walker() const { return setup_.walker; }
-    /// L.
+    /// L: light subpaths that splat.
     std::uint64_t lightPaths() const { return setup_.lightPaths; }
     const LightPool& pool() const { return pool_; }
 
@@ -78,7 +78,7 @@ class BidirIntegrator {
     std::unique_ptr<const RefractedLamps> refractedLamps_;  // likewise
     std::unique_ptr<const KnownWays> knownWays_;            // likewise
     EyePass eyePass_;
-    std::optional<double> footprint_;  // once a radius comes from it
+    std::optional<double> footprint_;  // set once a radius comes from it
 };
 
 }  // namespace lacuna

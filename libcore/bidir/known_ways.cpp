@@ -12,9 +12,10 @@ namespace lacuna {
 
 namespace {
 
-constexpr double kAngle = 1e-3;  // between the first directions of a walk's path and of its chain
+constexpr double kAngle =
+    1e-3;  // largest between the first directions of a walk's path and of its chain
 
-/// What chains are a function of.
+/// The query for chains between z and y_0. They are functions of it alone.
 ChainQuery queryOf(const PathVertex& z, const Vec3& side, const PathVertex& y0) {
     return {{z.position, z.ng, z.bsdf.transmits() ? Vec3{} : side},
             {y0.position, y0.infinite()},
@@ -28,13 +29,13 @@ bool isAboutNg(const FullPath& path, std::size_t i) {
     return v.bsdf.isAboutNg(toEye, toLight, v.event);
 }
 
-/// Whether the events of so many of a path's first vertices behind x_0 are a way's.
+/// Whether the events at the path's vertices x_1 .. x_count are those of the way.
 bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) {
     if (way.size != count) return false;
     for (std::size_t i = 0; i < count; ++i) {
         const SpecularEvent& event = way.events[i];
         if (path.vertex[count - i]->event != event.event) return false;
-        // A clearcoat's normals are its own.
+        // A clearcoat has normals of its own, whatever aboutNg says.
         if (!event.onClearcoat && isAboutNg(path, count - i) != event.aboutNg) return false;
     }
     return true;
@@ -42,13 +43,13 @@ bool hasEventsOf(const FullPath& path, const ChainSeed& way, std::size_t count) 
 
 }  // namespace
 
-/// The bound of n(z). Of deep vertices there are many, and each carries little.
+/// The upper bound of n(z). It is lower for deep vertices: there are many, and each carries little.
 double KnownWays::mostSamples(int order) const {
     constexpr double kByOrder[] = {0.25, 0.125, 0.0625};
     return effort_ * kByOrder[std::min(order, 3) - 1];
 }
 
-/// n(z) over its bound. Beside the ways all is left to walks.
+/// n(z) over its bound. Zero where no way is near: there all is left to walks.
 double KnownWays::shareOfSamples(const WaysNearby& ways) {
     constexpr double kFewest = 0.002;
     return ways.strength > 0.0 ? ways.samples(kFewest) : 0.0;
@@ -60,7 +61,7 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const PathVertex& z = eye.back();
     const int left = walker_.limits().maxDepth - int(eye.size());
     if (left < 1 || !SpecularChains::begin(eye, counts)) return;
-    // By the bound first: ways lie anywhere in memory.
+    // The bound is tried first, because ways lie anywhere in memory.
     const double most = mostSamples(connectionOrder(eye)), u = rng.uniformDouble();
     if (u >= most) return;
     const Vec3 side = sideOfPath(z);
@@ -92,12 +93,13 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     if (ways.others.empty()) return;
     const std::uint32_t way = ways.others[rng.below(std::uint32_t(ways.others.size()))];
     const std::optional<FoundChain> drawn = follower_.followOther(ways.all[way], query, tally);
-    // What is usual would come to nothing, after some work.
+    // A usual chain would be rejected in `bring`, after some work.
     if (drawn && !isAmong(usual, *drawn)) bring(*drawn, false);
 }
 
-/// The chain that a path runs through behind its first edge, of so many vertices, as ways lead to it. Where two
-/// facets of a smooth surface meet, chains may lie closer together than what floats know of a walk: the nearest.
+/// The chain of `count` vertices that the path runs through between x_0 and z, as ways lead to it; empty where none
+/// does. Where two facets of a smooth surface meet, chains may lie closer together than a walk's floats can tell. Then
+/// it is the nearest one.
 std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::size_t count,
                                                    const ChainQuery& query, const WaysNearby& ways,
                                                    RayTally& tally) const {
@@ -126,13 +128,14 @@ std::optional<KnownWays::Known> KnownWays::knownOf(const FullPath& path, std::si
     };
     const FoundChain own = std::ranges::min_element(led, {}, apart)->found;
     std::erase_if(led, [&](const Led& l) { return !isAmong({&own, 1}, l.found); });
-    // The same bits as in sample(), which goes them in the same order: what is left of a miss differs from way to way.
+    // The same bits as in sample(), which follows the ways in the same order. The miss that remains differs
+    // from way to way.
     const auto usual = std::ranges::find_if(led, &Led::byUsual);
     if (usual != led.end()) return Known{usual->found, true, 1.0};
     return Known{own, false, double(led.size()) / double(ways.others.size())};
 }
 
-/// Over the area of x_0 (solid angle at infinity), per what an eye walk's direction has at z.
+/// Density of y_0 over the chain, relative to an eye walk's without its direction's density at z.
 double KnownWays::densityOf(const Known& known, const PathVertex& y0) const {
     return densityOfNextEvent(walker_, known.found, y0) * known.pmf;
 }

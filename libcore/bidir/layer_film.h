@@ -1,4 +1,4 @@
-// What some paths add to the picture, layer by layer: --light-groups and --layer.
+// Layers of the contributions of some paths: --light-groups and --layer.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class ThreadPool;
 /// layers, black ones too.
 class LayerFilm final : public BlockLayers {
   public:
-    /// `layers` must outlive the film. `noiseSample`: so many iterations (BlockPlan's) are a sample
-    /// that the noise of light groups is known by; 0: it is not asked for.
+    /// `layers` must outlive the film. `noiseSample` is the number of iterations (BlockPlan's) in a
+    /// sample, if the noise of light groups is asked for, and else 0.
     LayerFilm(const PathLayers& layers, int width, int height, std::uint64_t noiseSample = 0);
 
     const PathLayers& layers() const { return layers_; }
@@ -33,8 +33,8 @@ class LayerFilm final : public BlockLayers {
   private:
     const PathLayers& layers_;
     int width_, height_;
-    // By layer: of the iteration under way, and over those before. One sum of all would round what a
-    // splat adds to a pixel by what the brightest one has left there.
+    // By layer: the sums of the current iteration, and of those before. In a single sum the brightest splat of a pixel
+    // would round off what later ones add to it.
     std::vector<std::vector<Rgb>> now_, sums_;
     std::optional<LightProducts> products_;
     std::uint64_t iterations_ = 0;

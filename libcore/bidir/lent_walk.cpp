@@ -9,8 +9,8 @@ namespace lacuna {
 
 namespace {
 
-/// As edgeBetween, of a walk's edge: in the direction that the walk drew, which two positions in float know
-/// only so well.
+/// edgeBetween for an edge that a walk made, in the direction that the walk drew. Two positions in float give
+/// it less exactly.
 Edge edgeOfWalk(const PathVertex& from, const PathVertex& to) {
     const double cosine = measureCosine(to, to.toPrevious);
     const double distance2 =
@@ -19,7 +19,7 @@ Edge edgeOfWalk(const PathVertex& from, const PathVertex& to) {
             float(cosine * double(to.toPreviousFactor))};
 }
 
-/// What a walk's step from `from` on to `to` multiplies its throughput by. From what the vertices know, and
+/// The factor by which a walk's step from `from` to `to` changes its throughput. It is computed from the vertices and
 /// not as a quotient of throughputs, which are zero in colours that the walk itself has lost.
 Rgb carriedOn(const Walker& walker, const PathVertex& from, const PathVertex& to) {
     const double pdf = double(to.pdfA) * double(walker.survivalAt(from));
@@ -88,7 +88,7 @@ void LentWalk::take(std::size_t i, std::size_t t, std::vector<PathVertex>& out) 
     next.toPreviousFactor = from.edge.toFirst;
     next.pdfA = from.at.pdfWToLight * from.edge.toSecond;
     next.throughput = from.arrives * float(1.0 / sum_);
-    if (from.walk.data() != walk_.data()) next.asEye = kNone;  // known by another predecessor
+    if (from.walk.data() != walk_.data()) next.asEye = kNone;  // labelled for another predecessor
     if (t <= h_ + 2) return;
 
     PathVertex& behind = out[h_ + 2];

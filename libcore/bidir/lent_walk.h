@@ -1,5 +1,5 @@
-// A pixel's eye walk, as those of the pixels beside it could have gone it as well [Bekaert02]. (theory.md, "Shared
-// walks")
+// A pixel's eye walk that it lends to pixels beside it, whose walks could have gone the same way [Bekaert02].
+// (theory.md, "Shared walks")
 #pragma once
 
 #include <array>
@@ -14,27 +14,28 @@ class LentWalk {
   public:
     /// Whether z_h is a vertex that walks may be exchanged at: nothing but delta events before it.
     static bool forksAt(Subpath walk, std::size_t h);
-    /// h where it goes on from there to a vertex that others may go on from; zero where it does not.
+    /// h, if the walk goes on from z_h to a vertex that others may go on from. Zero if it does not.
     static std::size_t begin(Subpath walk);
 
-    /// The walk lends what lies behind z_h, h = begin(walk). All must outlive it.
+    /// Lends what lies behind z_h of `walk`, h = begin(walk). All arguments must
+    /// outlive this object.
     LentWalk(const Walker& walker, Subpath walk, std::size_t h)
         : walker_(&walker), walk_(walk), h_(h) {}
 
-    /// z_{t-1} of what it lends lies in [firstEnd(), lastEnd()], as t; what is behind lastEnd() was found by
-    /// a delta event, which leads elsewhere from elsewhere.
+    /// The lent subpaths z_0 .. z_{t-1} have t in [firstEnd(), lastEnd()]. What is behind lastEnd() was found by a
+    /// delta event, which leads another walk elsewhere.
     std::size_t firstEnd() const { return h_ + 2; }
     std::size_t lastEnd() const { return goesOn() ? walk_.size() : h_ + 2; }
 
-    /// The next one that forks at z_h; the walk itself is one of them. Traces a ray, unless it is its own.
-    /// At most kTile.
+    /// Adds the next walk that forks at z_h. The lending walk itself must be one of them, at most kTile in all. Traces
+    /// a shadow ray for every other one.
     void add(Subpath borrower, RayTally& tally);
-    /// Whether the one that was added as number `i` could have gone this way.
+    /// Whether the walk that was added as number `i` could have gone this way.
     bool leadsFrom(std::size_t i) const { return from_[i].pdfA > 0.0; }
-    /// How much more it carries to z_{h+1} than number k does.
+    /// What walk number i carries to z_{h+1}, relative to number k. Zero where k carries nothing.
     double brightness(std::size_t i, std::size_t k) const;
-    /// Replaces `out` by z_0 .. z_{t-1}: number i's up to z_h, the walk's behind it, with the throughput
-    /// of a sample of all those who could have gone this way, weighed by the balance heuristic.
+    /// Replaces `out` by z_0 .. z_{t-1}: number i's vertices up to z_h, the lent ones behind it. Throughputs are
+    /// weighted by the balance heuristic over all walks that could have gone this way.
     void take(std::size_t i, std::size_t t, std::vector<PathVertex>& out) const;
 
   private:
@@ -54,7 +55,7 @@ class LentWalk {
     std::size_t count_ = 0;
     std::array<From, kTile> from_;
     double sum_ = 0;      ///< of the densities of z_{h+1}
-    double sumNext_ = 0;  ///< and of those times that of z_{h+2}'s direction
+    double sumNext_ = 0;  ///< of those densities times the pdfW towards z_{h+2}
 };
 
 }  // namespace lacuna

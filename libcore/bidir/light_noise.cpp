@@ -18,7 +18,7 @@ std::string productLayer(std::size_t first, std::size_t second) {
     return pairName("product", first, second);
 }
 
-/// visit(pair, first, second) for all pairs with first <= second.
+/// Calls visit(pair, first, second) for all pairs with first <= second.
 template <class Visit>
 void forPairs(std::size_t groups, const Visit& visit) {
     std::size_t pair = 0;

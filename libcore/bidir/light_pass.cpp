@@ -81,7 +81,7 @@ void LightPass::trace(std::span<const std::uint64_t> numbers, const Iteration& i
     }
 }
 
-/// What weights will ask of the subpath.
+/// Sets what weights read of the subpath: labels, and next event's density through glass.
 void LightPass::label(std::span<PathVertex> path, const Iteration& iteration,
                       TaskResult& result) const {
     iteration.counts.labelWalk(path);
@@ -99,7 +99,7 @@ void LightPass::splat(std::span<PathVertex> path, bool labelled, std::uint64_t n
         if (!light.back().connectable()) continue;
         const auto open = lensEdge(walker, light.back(), z0, setup_.settings.crop, result.tally);
         if (!open) continue;
-        if (!labelled) label(path, iteration, result);  // here: most paths are never seen
+        if (!labelled) label(path, iteration, result);  // only now: most paths are never seen
         labelled = true;
         const auto closed = closeSplat(walker, light, z0, *open, worker.fullPath);
         if (!closed) continue;

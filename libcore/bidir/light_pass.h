@@ -11,7 +11,7 @@ namespace lacuna {
 
 class LightPass {
   public:
-    /// All must outlive it.
+    /// All arguments must outlive the pass.
     LightPass(const RenderSetup& setup, Delivery& delivery, const Workers& workers)
         : setup_(setup), delivery_(delivery), workers_(workers) {}
 
@@ -22,8 +22,8 @@ class LightPass {
         std::uint64_t splats;  ///< subpaths [0, splats) are shown to the lens
     };
 
-    /// Replaces the pool, and splats into the iteration's pixels; leaves out the subpaths that
-    /// pixels trace for themselves (those that are pooled they take from there). False if cancelled.
+    /// Replaces the pool, and splats into the iteration's pixels. Leaves out the subpaths that pixels trace for
+    /// themselves; pooled ones the pixels take from the pool. False if cancelled.
     bool run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const;
 
     /// Traces subpaths into worker.light, at most kTile of them, labels them where they are kept,

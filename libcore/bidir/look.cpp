@@ -11,20 +11,21 @@ namespace lacuna {
 namespace {
 
 constexpr int kMostEvents = 8;
-constexpr float kFaint = 0.04f;  // of the ray; what one side of a window reflects
+constexpr float kFaint = 0.04f;  // share of the ray: what one side of a window reflects
 
 Rgb atMostOne(const Rgb& c) {
     return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
 }
 
-/// A part of the light that a ray brings, on its way backwards.
+/// A part of a ray that is followed backwards from the eye.
 struct Part {
-    Rgb weight;   ///< share of it, by channel
+    Rgb weight;   ///< throughput to the eye, by channel
     float share;  ///< of the ray; all parts together are 1
     int events = 0;
 };
 
-/// Where a delta event leads, and what of the light comes from there.
+/// The direction that a delta event leads to, and the share of the light from there that
+/// comes through.
 struct Branch {
     Vec3 direction;
     Rgb through;
@@ -73,8 +74,8 @@ class Looker {
         follow(branch.direction, *next, part);
     }
 
-    /// A reflection and, where light passes, a transmission: the two ends of the range of the number
-    /// that draws the lobe. The through of one that is not there is black.
+    /// The delta reflection and, where light passes, the delta transmission. The two ends of the range of uLobe, the
+    /// number that draws the lobe, give them. `through` of a missing branch is black.
     static std::array<Branch, 2> eventsAt(const Bsdf& bsdf, const Vec3& toEye) {
         std::array<Branch, 2> branches;
         bool transmits = false;
@@ -83,7 +84,8 @@ class Looker {
             const auto sample = bsdf.sample(Side::Eye, toEye, uLobe, 0.5f, 0.5f);
             if (!sample) continue;
             const bool passes = sample->event == ScatterEvent::DeltaTransmission;
-            if (i == 1 && passes == transmits && !isBlack(branches[0].through)) break;  // the same
+            if (i == 1 && passes == transmits && !isBlack(branches[0].through))
+                break;  // the same event
             transmits = passes;
             branches[i] = {sample->to, through(bsdf, *sample, toEye)};
         }

@@ -10,10 +10,10 @@ struct Look {
     Vec3 normal;  ///< at most of length 1
 };
 
-/// From where `sight` has met `point` to the first surfaces that have a lobe with a density. At a mirror or smooth glass
-/// it parts into what is reflected and what goes through, by their shares, as often as that shows:
-/// nothing is drawn, so nothing is noisy. A part that comes to no end, or holds little, is white, with
-/// the normal of where it was left; one that meets nothing adds nothing.
+/// Follows `sight` from `point`, which it has met, to the first surfaces that have a lobe with a density. At a mirror
+/// or smooth glass it splits into the reflected and the transmitted part, weighted by their shares. Nothing is drawn at
+/// random, so the result has no noise. A part that reaches no such surface within a few events, or whose share is
+/// small, is white, with the normal of the surface where it was left. A part that meets nothing adds nothing.
 Look lookFrom(const Scene& scene, const Sight& sight, const SurfacePoint& point, RayTally& tally);
 
 }  // namespace lacuna

@@ -20,7 +20,7 @@ struct Named {
         };
         for (const ObjectNames& object : objects) names.push_back(nameOf(object));
         std::ranges::sort(names);
-        // Of ranges:: clang 14 makes nothing with this library.
+        // clang 14 does not compile ranges::unique with this library.
         names.erase(std::unique(names.begin(), names.end()), names.end());
         for (const ObjectNames& object : objects) {
             const auto at = std::ranges::lower_bound(names, nameOf(object));
@@ -43,7 +43,7 @@ class Met {
         ++rays_;
         if (hit) objects_.push_back(hit->object);
     }
-    /// Whether one name, or nothing, is all of it.
+    /// Whether all rays met the same name, or all met nothing.
     bool agreesOn(const Named& named) const {
         if (objects_.empty()) return true;
         const auto nameOf = [&](std::uint32_t object) { return named.ofObject[object]; };

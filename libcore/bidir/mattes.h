@@ -1,4 +1,4 @@
-// How much of each pixel is covered by which object and which material (image/cryptomatte.h).
+// The share of each pixel that each object and each material covers (image/cryptomatte.h).
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct Mattes {
     Matte materials;  ///< by those of materials
 };
 
-/// Of what the lens sees first, through panes, as alpha lets it: shares of 16 rays that lie evenly over
-/// the pixel, and of 64 where those 16 do not agree. What has no name is called "unnamed"; things of
-/// one name are one. For the pixels of `crop`; a pixel's values do not depend on the crop.
+/// Mattes of what the lens sees first, through panes and where alpha lets it. Shares come from 16 rays that lie evenly
+/// over the pixel, or from 64 where those 16 do not agree. Objects without a name are called "unnamed", and objects of
+/// one name count as one. For the pixels of `crop`; a pixel's values do not depend on the crop.
 Mattes renderMattes(const Scene& scene, const Camera& camera, const PixelRect& crop,
                     std::uint64_t seed, const ThreadPool& pool);
 

@@ -7,7 +7,7 @@
 // iteration:
 //   freeze -> light pass -> prepare(pool) -> eye pass (select, in parallel) -> observe
 //
-// Merging needs nothing but to be asked for (merging()): the integrator does it.
+// A method only asks for merging (merging()); the integrator does it.
 #pragma once
 
 #include <cstdint>
@@ -61,11 +61,11 @@ struct EyeContext {
     const PathVertex& vertex;  ///< z_{t-1}
     Subpath eyePath;           ///< z_0 .. z_{t-1}
     Subpath ownLightPath;      ///< the pixel's own light subpath, where the row asks for it
-    std::uint32_t pixel;
+    std::uint32_t pixel;       ///< row-major in the full film
     std::uint32_t iteration;
     const LightSampler& lights;
     const PathSpace& space;
-    RayTally& tally;  ///< of the rays that it traces through the space
+    RayTally& tally;  ///< of the rays that the selector traces through the space
 
     int t() const { return int(eyePath.size()); }
     const PathVertex& predecessor() const { return eyePath[eyePath.size() - 2]; }
@@ -79,12 +79,11 @@ struct Techniques {
     bool connects = false;      ///< t >= 2, s >= 1 through select()
     bool splats = false;        ///< t = 1: light paths seen by the lens
     bool ownLightPath = false;  ///< every pixel traces a light subpath of its own
-    /// With connections, and where nothing is merged: specular chains, for paths that none of all these
-    /// makes.
+    /// Specular chains, for paths that none of all these makes. Only with connections, and where nothing is merged.
     bool chains = true;
-    /// With hits and connections: next event through smooth glass.
+    /// Next event through smooth glass. Only with hits and connections.
     bool refractions = true;
-    /// Likewise, and where nothing is merged: next event along known ways.
+    /// Next event along known ways. Only with hits and connections, and where nothing is merged.
     bool knownWays = true;
 
     bool refract() const { return hits && connects && refractions; }
@@ -98,7 +97,7 @@ class Method {
   public:
     virtual ~Method() = default;
 
-    /// Rows that need assets get them before anything else; without them they must still work.
+    /// Gives a row the assets that it needs, before anything else. It must still work without them.
     virtual void use(const AssetSet& assets) { (void)assets; }
     /// Iterations to run and throw away before the first one of a block that counts.
     virtual int warmupIterations() const { return 0; }
@@ -106,12 +105,12 @@ class Method {
     /// Which paths are merged with the vertices of the pool, its M subpaths; fixed for the render.
     /// Wherever it is not Nowhere the picture is consistent, not unbiased.
     virtual Merging merging() const { return {}; }
-    /// How pixels share eye walks; fixed for the render. Only for methods that may propose at a vertex, from
-    /// wherever it is seen, whatever they may propose there when it is seen from elsewhere on that side.
+    /// How pixels share eye walks; fixed for the render. Only for methods whose set of possible proposals at a vertex
+    /// is the same from wherever it is seen on that side.
     virtual Sharing sharing() const { return {}; }
 
-    /// What the weights believe in the coming iteration: may depend on earlier iterations alone.
-    /// Valid until the next call.
+    /// The belief of the weights in the coming iteration. It may depend on earlier iterations
+    /// alone. Valid until the next call.
     virtual const ConnectionDensity& freeze(std::uint32_t iteration) = 0;
     /// Builds this iteration's pmfs, trees, bins. `pool` stays valid and unchanged until observe().
     virtual void prepare(const LightPool& pool, IterationContext& context) {
@@ -119,7 +118,7 @@ class Method {
     }
     /// Appends 0..n proposals. Called from many threads at once.
     virtual void select(const EyeContext& context, Rng& rng, ProposalSink& sink) const = 0;
-    /// What later iterations may learn from; after warm-ups as well.
+    /// Learns for later iterations. Called after warm-ups as well.
     virtual void observe(const LightPool& pool, IterationContext& context) {
         (void)pool, (void)context;
     }

@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// The part of effectiveCount that reads more than two flags.
+/// n r of strategy t by a density that has no constants.
 double samplesByDensity(const FullPath& path, const TechniqueCounts& counts, int t) {
     const auto s = std::size_t(path.edges + 1 - t);
     const double samples = counts.connections->effectiveSamples(
@@ -21,7 +21,7 @@ double samplesByDensity(const FullPath& path, const TechniqueCounts& counts, int
     return s == 1 ? samples * counts.samplesOfLamp(*path.vertex[0], *path.vertex[1]) : samples;
 }
 
-/// effectiveCount() where it depends on nothing but the kind of strategy.
+/// n r of a strategy, if it depends on nothing but the strategy's kind.
 class CountsByKind {
   public:
     CountsByKind(const FullPath& path, const TechniqueCounts& counts) : path_(path) {
@@ -51,7 +51,8 @@ class CountsByKind {
     std::array<double, 5> counts_;
 };
 
-/// What n r of a strategy is still to be multiplied by, because pixels share the eye's walk.
+/// The factor that n r of a strategy is still to be multiplied by, because pixels share
+/// the eye's walk.
 class SamplesByShare {
   public:
     SamplesByShare(const FullPath& path, const Sharing& sharing)
@@ -95,7 +96,8 @@ template <bool kMerges, class CountOf>
 double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made,
              const CountOf& countOf) {
     const int k = path.edges;
-    // Ratios are to p_t. A merge at x_i is measured by the strategy whose light part ends with x_i.
+    // Ratios are relative to p_t. For a merge at x_i this is the strategy whose light part
+    // ends with x_i.
     const int t = made.refracts() ? k + 1 : made.merges() ? made.t - 1 : made.t;
     const int rouletteDepth = counts.rouletteDepth;
     const auto lightPdf = [&](int i) {
@@ -110,14 +112,13 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
     if (own <= 0.0) return 0.0;
     double sum = ofStrategy;
 
-    // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0. Where it takes over a vertex
-    // that light still makes, the two are merged.
+    // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0. Where both walks make x_i, the two are merged.
     double ratio = 1.0;
     for (int i = k - t; i >= 0; --i) {
         const double eye = eyePdf(i);
         if (kMerges && i > 0) sum += ratio * eye * mergedSamples(path, counts, i);
         ratio *= eye / lightPdf(i);
-        if (!(ratio > 0.0)) break;  // all further strategies hold this zero as well
+        if (!(ratio > 0.0)) break;  // all further strategies have this zero as a factor
         sum += ratio * countOf(k - i + 1);
     }
     if (refracted > 0.0 && ratio > 0.0) sum += ratio * refracted;  // beside s = 0

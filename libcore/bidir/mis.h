@@ -4,10 +4,9 @@
 //     w_t(x) = n_t p_t(x) r_t(x) / sum_i n_i p_i(x) r_i(x)            (theory.md, "Weights")
 //
 // Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k
-// + 1. Neighbouring strategies differ in one vertex:  p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so
-// the sum is a sweep of ratios in double, and products of densities, which leave a float's range
-// within ten vertices, never occur. A merge at x_i is strategy t = k - i with one vertex more from the
-// eye, so it stands beside it in the sweep.
+// + 1. Neighbouring strategies differ in one vertex: p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so the sum is a sweep
+// of ratios in double. Products of densities, which leave a float's range within ten vertices, never occur. A merge at
+// x_i is strategy t = k - i with one more vertex from the eye, so it stands beside that strategy in the sweep.
 #pragma once
 
 #include <optional>
@@ -22,12 +21,12 @@ namespace lacuna {
 class KnownWays;
 class RefractedLamps;
 
-/// What made a path, by its t vertices from the eye.
+/// The technique that made a path, with t vertices from the eye.
 struct Technique {
     enum class By : std::uint8_t {
         Strategy,  ///< s = edges + 1 - t from the light
-        Merge,     ///< of light's last vertex with the eye's
-        Chain,     ///< specular, which no other technique makes (specular_chains.h)
+        Merge,     ///< of the light's last vertex with the eye's
+        Chain,     ///< specular chain, which no other technique makes (specular_chains.h)
         Refraction,  ///< next event through glass (refracted_lamps.h), along known ways (known_ways.h)
     };
     int t;
@@ -37,35 +36,36 @@ struct Technique {
     bool merges() const { return by == By::Merge; }
     bool chains() const { return by == By::Chain; }
     bool refracts() const { return by == By::Refraction; }
-    /// s: the first vertex of the eye's part (merges: the one that both walks have).
+    /// s: index of the first vertex of the eye's part (merges: of the vertex that both walks have).
     int firstOfEye(int edges) const { return edges + 1 - t; }
     bool operator==(const Technique&) const = default;
 };
 
-/// How many samples each technique has, as seen from every other one: fixed for an iteration.
+/// How many samples each technique has in all weights. Fixed for an iteration.
 struct TechniqueCounts {
     bool hit = false;   ///< s = 0: eye paths that run into a light
     double splats = 0;  ///< t = 1: light paths that splat (L); 0: there is no such technique
     const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
-    /// connections->constants(), looked up once. Set all four by connectThrough.
+    /// connections->constants(), looked up once. connectThrough sets it, and connections,
+    /// labels and seen.
     std::optional<ConnectionDensity::Constants> constants = std::nullopt;
     bool labels = false;  ///< connections->keepsLabels(), likewise
-    /// What s = 1 counts times seenSamples of; null: s = 1 draws y_0 as light walks do.
+    /// Its seenSamples multiply the count of s = 1. Null: s = 1 draws y_0 as light walks do.
     const LightSampler* seen = nullptr;
     Merges merges = Merges::Nowhere;  ///< where paths are merged
-    /// Of a merge where there is one: n_m pi R^2, light subpaths times the area around an eye vertex
-    /// in which photons count. Times the densities of both walks at x_i it counts like n r.
+    /// n_m pi R^2 of a merge: light subpaths times the area around an eye vertex in which photons count. Times the
+    /// densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;
     const RefractedLamps* refractedLamps = nullptr;  ///< null: no next event through glass
     const KnownWays* knownWays = nullptr;            ///< null: no next event along known ways
     Sharing sharing = {};                            ///< of eye walks, by pixels
     int rouletteDepth = 1;  ///< first vertex index (own end = 0) at which roulette is played
 
-    /// Whether there are none but s = 0 and s = 1.
+    /// Whether there are no merges and no strategies but s = 0 and s = 1.
     bool onlyDirect() const {
         return splats == 0.0 && merges == Merges::Nowhere && !connectsIndirect();
     }
-    /// Whether there are any of t >= 2, s >= 2.
+    /// Whether there are strategies with t >= 2 and s >= 2.
     bool connectsIndirect() const {
         return connections && !(constants && constants->indirect == 0.0);
     }
@@ -76,7 +76,7 @@ struct TechniqueCounts {
         labels = density.keepsLabels();
         seen = density.lamps() == Lamps::Seen ? &lights : nullptr;
     }
-    /// What n r of s = 1 is still to be multiplied by, from y_0 and the eye's end.
+    /// The factor that n r of s = 1 is still to be multiplied by, from y_0 and the eye's end.
     double samplesOfLamp(const PathVertex& light, const PathVertex& eye) const {
         return seen ? seen->seenSamples(light, eye) : 1.0;
     }
@@ -98,7 +98,8 @@ inline double mergedSamples(const FullPath& path, const TechniqueCounts& counts,
     return path.mergesAt(i, counts.merges) ? counts.mergeSamples : 0.0;
 }
 
-/// Of next event through glass and along known ways, in samples of s = 0; zero where it does not exist.
+/// Samples of next event through glass or along known ways, relative to the density of s = 0. Zero where neither
+/// makes the path.
 double refractedSamples(const FullPath& path, const TechniqueCounts& counts);
 
 /// Weight of the technique that made the path (1 <= t <= edges + 1; merges: 2 <= t <= edges), in

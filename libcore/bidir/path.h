@@ -52,12 +52,11 @@ struct PathVertex {
     /// Of the surface that the vertex lies on, whose body may absorb (absorption.h); y_0 has it
     /// only where something in the scene absorbs.
     std::uint32_t material = kNone;
-    std::uint32_t region =
-        kNone;  ///< of the guide that walks follow here; kNone: none (walk_guide.h)
-    std::uint32_t object = kNone;  ///< Surface only: the scene's
-    /// Light subpaths, at the first vertex behind nothing but glass, smooth or nearly so: the density of next event
-    /// through that glass, per what an eye walk's direction has from here; zero where it would not find
-    /// this way (refracted_lamps.h).
+    std::uint32_t region = kNone;  ///< of the walks' guide; kNone: none (walk_guide.h)
+    std::uint32_t object = kNone;  ///< Surface only: index among the scene's objects
+    /// Light subpaths, at a vertex behind nothing but glass that is smooth or nearly so: the density of next event
+    /// through that glass, relative to an eye walk's without the density of its direction here. Zero where next event
+    /// does not find this way (refracted_lamps.h).
     float throughGlass = 0;
     VertexKind kind = VertexKind::Surface;
     ScatterEvent event = ScatterEvent::Smooth;  ///< of the scatter that was sampled here
@@ -67,8 +66,8 @@ struct PathVertex {
     bool infinite() const { return kind == VertexKind::Infinite; }
     /// Whether a connection may end here.
     bool connectable() const { return kind != VertexKind::Surface || bsdf.connectable(); }
-    /// Whether a surface sends light anywhere but into narrow lobes, mirrors and smooth glass: then walks that
-    /// arrive from elsewhere are worth something here.
+    /// Whether a surface scatters light elsewhere than into narrow lobes, mirrors and smooth glass. Then walks that
+    /// arrive from other directions are worth something here.
     bool scattersWidely() const {
         return kind == VertexKind::Surface && bsdf.connectable() && !bsdf.isNarrow();
     }
@@ -86,8 +85,8 @@ inline Vec3 sideOfPath(const PathVertex& v) {
 }
 
 /// ng on the side that light leaves the vertex to; zero where that is both sides, because a surface
-/// transmits or a lamp has no back. Surfaces: the side that the path lies on, the same in either
-/// walk's vertex.
+/// transmits or a lamp has no back. For surfaces it is the side that the path lies on, which is the
+/// same in either walk's vertex.
 inline Vec3 scatteringSide(const PathVertex& v) {
     if (v.kind != VertexKind::Surface) return v.twoSided ? Vec3{} : v.ng;
     if (v.bsdf.transmits()) return {};
@@ -104,7 +103,7 @@ inline void prefetch(const PathVertex& vertex) {
 using Subpath = std::span<const PathVertex>;
 
 /// Connection::order of connections with the last vertex of an eye subpath z_0 .. z_{t-1}, t >= 2:
-/// 1 for the first one that nothing but mirrors and smooth glass lies before.
+/// 1 for the first one, before which there are only mirrors and smooth glass.
 inline int connectionOrder(Subpath eyePath) {
     const auto between = eyePath.subspan(1, eyePath.size() - 2);
     return 1 + int(std::ranges::count_if(between,
@@ -132,10 +131,10 @@ inline bool leadsBehind(const PathVertex& v, const Vec3& to) {
     return dot(v.ng, to) * dot(v.ng, v.toPrevious) < 0.0f;
 }
 
-/// From `a` to `b`. At most one of them may be Infinite: then no distance is divided by, the
-/// measure of the infinite vertex is solid angle, and the factor towards the finite one is its
-/// cosine (from a disk's area). Coincident points give an edge whose geometry is 0: nothing is
-/// carried.
+/// The edge from `a` to `b`. At most one of them may be Infinite. Then no distance is divided by,
+/// the measure of the infinite vertex is solid angle, and the factor towards the finite vertex is
+/// the cosine there (from a disk's area). Coincident points give an edge whose geometry is 0:
+/// nothing is carried.
 inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     Edge e;
     if (a.infinite() || b.infinite()) {
@@ -153,7 +152,7 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
     const double d2 = lengthSquared(d);
     if (!(d2 > 0.0)) return e;
     const double inverse2 = 1.0 / d2;
-    e.direction = Vec3(d * (inverse2 * std::sqrt(d2)));  // neither root nor division waits
+    e.direction = Vec3(d * (inverse2 * std::sqrt(d2)));  // root and division run at once
     const double cosA = measureCosine(a, e.direction), cosB = measureCosine(b, e.direction);
     e.toSecond = float(cosB * inverse2);
     e.toFirst = float(cosA * inverse2);
@@ -164,7 +163,8 @@ inline Edge edgeBetween(const PathVertex& a, const PathVertex& b) {
 /// The vertex as a point on its light with its density and exitance. `vertex.light` must be set.
 LightPoint lightPointOf(const Lights& lights, const PathVertex& vertex);
 
-/// Profile and density of what leaves the light vertex along `direction` and comes to `x1`.
+/// Emission profile and density (pdfW) of light that leaves the vertex along `direction` and
+/// arrives at `x1`.
 inline Lights::Emission emissionOf(const Lights& lights, const PathVertex& vertex,
                                    const Vec3& direction, const Vec3& x1) {
     return lights.emission({vertex.light, vertex.position, vertex.ng, vertex.lightUv}, direction,

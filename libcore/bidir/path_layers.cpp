@@ -35,7 +35,7 @@ EventType typeOf(NamedLights::Kind kind) {
     return EventType::Lamp;
 }
 
-/// Those of `names` that expressions mention, in order: others tell nothing apart.
+/// Those of `names` that expressions mention, in order. Other names tell nothing apart.
 Names mentioned(const Names& names, const std::set<std::string>& mentions) {
     std::set<std::string> some;
     for (const std::string& name : names) {
@@ -44,7 +44,7 @@ Names mentioned(const Names& names, const std::set<std::string>& mentions) {
     return {some.begin(), some.end()};
 }
 
-/// Throws UsageError where an expression names what is not there.
+/// Throws UsageError where an expression uses a name that the scene does not have.
 void requireNames(std::span<const LayerExpression> expressions, const std::set<std::string>& all) {
     constexpr std::size_t kShown = 30;
     for (const LayerExpression& e : expressions) {
@@ -60,7 +60,8 @@ void requireNames(std::span<const LayerExpression> expressions, const std::set<s
     }
 }
 
-/// Letters are few: a scene's names count only where expressions mention them.
+/// Throws UsageError where there are more letters than a Letter can number. Only names that
+/// expressions mention need letters.
 Letter letterAt(std::size_t index) {
     if (index > std::numeric_limits<Letter>::max()) {
         throw UsageError("--layer: expected expressions that tell fewer objects apart by names");
@@ -77,14 +78,14 @@ void add(std::vector<PathLayers::Live>& all, JointAutomaton::State state, const 
     all.push_back({state, weight});
 }
 
-/// At x_i, unit: towards x_{i+1} and x_{i-1}.
+/// Unit directions at x_i, towards x_{i+1} and x_{i-1}.
 struct Directions {
     Directions(const FullPath& path, int i)
         : toEye(path.directionOf(i)), toLight(-path.directionOf(i - 1)) {}
     Vec3 toEye, toLight;
 };
 
-/// What the diffuse base adds to f at x_i, as a share of it.
+/// The share of f at x_i that the diffuse base adds, by channel.
 Rgb diffuseShare(const FullPath& path, int i) {
     const Directions to(path, i);
     const Rgb part = path.vertex[std::size_t(i)]->bsdf.diffusePart(to.toEye, to.toLight);
@@ -182,7 +183,7 @@ inline PathLayers::Scattered PathLayers::scatteredAt(const FullPath& path, int i
     return of(kDiffuseReflection, v.bsdf.isGlossy());
 }
 
-/// The same, looked up; asked for from the camera on.
+/// Likewise, computed once per path. Vertices must be asked for in order, from the camera on.
 inline PathLayers::Scattered& PathLayers::scatteredAt(const FullPath& path, int i,
                                                       Scratch& s) const {
     const auto asked = std::size_t(path.edges - 1 - i);
@@ -190,7 +191,8 @@ inline PathLayers::Scattered& PathLayers::scatteredAt(const FullPath& path, int 
     return s.vertices[asked];
 }
 
-/// Appends the shares of the layers that match. Mostly that is all of the path: nothing is split.
+/// Appends the shares of the layers that match. Mostly that is the whole path, and
+/// nothing is split.
 void PathLayers::match(const JointAutomaton& automaton, const FullPath& path, const Rgb& value,
                        Scratch& s) const {
     JointAutomaton::State state = automaton.start();
@@ -219,7 +221,7 @@ void PathLayers::match(const JointAutomaton& automaton, const FullPath& path, co
     }
 }
 
-/// Leaves in `live` what becomes of a path that has come to x_i in `state`.
+/// Follows a path on from x_i, which it has reached in `state`. Leaves its final states in `live`.
 void PathLayers::split(const JointAutomaton& automaton, const FullPath& path, int i,
                        JointAutomaton::State state, Scratch& s) const {
     s.live.assign(1, {state, Rgb(1.0f)});

@@ -21,18 +21,18 @@ struct LayerExpression {
     std::string name, text;
     ParsedExpression parsed;
 
-    /// What its errors begin with.
+    /// The text that its errors begin with.
     std::string what() const { return "--layer " + name + "=" + text; }
 };
 
-/// What the layer of a group of lights is called.
+/// The name of the layer of a group of lights.
 inline std::string lightLayer(const std::string& group) {
     return "light." + group;
 }
 
 class PathLayers {
   public:
-    /// None.
+    /// No layers.
     PathLayers() = default;
     /// A layer light.GROUP for each group of lights where they are asked for, then one for each
     /// expression. Throws UsageError for an expression that names what the scene has not, that
@@ -40,9 +40,9 @@ class PathLayers {
     PathLayers(const Scene& scene, bool lightGroups, std::span<const LayerExpression> expressions);
 
     bool empty() const { return names_.empty(); }
-    /// By layer, as the picture calls it.
+    /// Names by layer, as in the picture.
     const std::vector<std::string>& names() const { return names_; }
-    /// So many of them, the first ones, are those of groups of lights.
+    /// How many layers are those of groups of lights. They come first.
     std::size_t lightGroups() const { return lightGroups_; }
 
     /// A part of what a path adds to the picture, and the layer that it is added to.
@@ -50,13 +50,13 @@ class PathLayers {
         std::uint32_t layer;
         Rgb value;
     };
-    /// A state that automata are in with a share of the path.
+    /// A state of the automata, and the share of the path that led to it.
     struct Live {
         JointAutomaton::State state;
         Rgb weight;
     };
-    /// What happened at a vertex. Where the diffuse base and rough lobes scatter both, the next letter
-    /// is that of the rough lobes.
+    /// The event at a vertex. Where both the diffuse base and rough lobes scatter (`mixed`), `letter` is that of the
+    /// base, and the next letter is that of the rough lobes.
     struct Scattered {
         Automaton::Letter letter = 0;
         bool mixed = false, shareKnown = false;
@@ -70,7 +70,8 @@ class PathLayers {
         std::vector<Scattered>
             vertices;  ///< x_{k-1}, x_{k-2}, .. as far as they have been asked for
     };
-    /// The layers that `value` of this path goes to, each once. Valid until the next call.
+    /// The layers that this path adds to, each once, and the part of `value` that each gets. Valid
+    /// until the next call.
     std::span<const Share> shares(const FullPath& path, const Rgb& value, Scratch& scratch) const;
 
   private:
@@ -95,7 +96,7 @@ class PathLayers {
     std::vector<std::string> names_;
     std::size_t lightGroups_ = 0;
     std::vector<std::uint32_t> group_;         // by light, where groups are asked for
-    std::vector<JointAutomaton> automata_;     // of the last layers
+    std::vector<JointAutomaton> automata_;     // of the expressions' layers
     std::vector<Automaton::Letter> ofObject_;  // by object, its first letter
     std::vector<Automaton::Letter> ofLight_;   // by light
 };

@@ -20,14 +20,15 @@ class PathSpace {
     /// Replaces `out` by an eye subpath through a uniform point of the whole film.
     virtual void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const = 0;
 
-    /// What arrives where a light subpath meets an eye subpath's last vertex; visibility, and what
-    /// coloured glass absorbs between the two, left out.
+    /// What arrives from a light subpath's last vertex at an eye subpath's last vertex, without
+    /// visibility and without absorption in coloured glass between the two.
     struct Arrival {
         Rgb flow;             ///< beta rho at the light's end
         Rgb scattered;        ///< flow times rho at the eye's end, where asked for
         double geometry = 0;  ///< G
     };
-    /// Zero where what comes from behind the eye's last vertex would not be scattered there.
+    /// `throughEye` asks for Arrival::scattered. All is zero where light comes from behind the
+    /// eye's last vertex and is not scattered there.
     virtual Arrival arrival(Subpath light, Subpath eye, bool throughEye) const = 0;
     virtual bool visible(const PathVertex& light, const PathVertex& eye, RayTally& tally) const = 0;
     /// Distance along a unit direction from a point in empty space to the first surface; infinite
@@ -35,7 +36,8 @@ class PathSpace {
     virtual float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const = 0;
 };
 
-/// What a method may use before and after an iteration's eye paths, and must account for.
+/// What a method may use before and after an iteration's eye paths, and the statistics
+/// that it adds to.
 struct IterationContext {
     const PathSpace& space;
     const ThreadPool& threads;

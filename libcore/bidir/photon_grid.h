@@ -13,8 +13,8 @@ namespace lacuna {
 class PhotonGrid {
   public:
     PhotonGrid() = default;
-    /// Of those `vertices` that `photons` lists, for questions about `radius` >= 0 (scene unit). The
-    /// order of both decides the order of answers, and nothing else does.
+    /// Grid of those `vertices` that `photons` lists, for queries within `radius` >= 0 (scene units). The order of
+    /// answers depends on the order of the two lists alone.
     PhotonGrid(std::span<const PathVertex> vertices, std::span<const std::uint32_t> photons,
                double radius);
 
@@ -29,7 +29,7 @@ class PhotonGrid {
         Vec3 position;
         std::uint32_t vertex;
     };
-    /// The first of the two cells along an axis that hold all within the radius of a coordinate.
+    /// The first of the two cells along an axis that hold all points within the radius of `x`.
     std::int64_t firstCell(float x) const;
     std::int64_t cellOf(float x) const;
     std::size_t bucketOf(std::int64_t x, std::int64_t y, std::int64_t z) const;

@@ -25,7 +25,8 @@ class LightPool {
         std::uint32_t vertex, count;
     };
 
-    /// Empties the pool for `subpaths` new ones, whose photons are those of rows that merge there.
+    /// Empties the pool for `subpaths` new ones. It will keep the photons that a row with
+    /// these merges needs.
     void reset(std::uint64_t subpaths, Merges merges = Merges::Nowhere) {
         vertices_.clear();
         connectable_.clear();
@@ -34,9 +35,9 @@ class LightPool {
         subpaths_ = subpaths;
         merges_ = merges;
     }
-    /// Whole subpaths, one after the other. With maxDepth edges, y_{s-1} can be connected while
-    /// s + t - 1 <= maxDepth for t = 2. `lengths`: of all of them, those without a vertex included,
-    /// where subpath() is to find them.
+    /// Adds whole subpaths, one after the other. With maxDepth edges, y_{s-1} can be connected
+    /// while s + t - 1 <= maxDepth for t = 2. `lengths` are the numbers of vertices of all
+    /// subpaths, the empty ones included; only subpath() needs them.
     void add(std::span<const PathVertex> vertices, int maxDepth,
              std::span<const std::uint8_t> lengths = {}) {
         std::size_t begin = vertices_.size();
@@ -56,29 +57,29 @@ class LightPool {
         }
     }
 
-    /// M, those without any vertex included.
+    /// M, subpaths without any vertex included.
     std::uint64_t subpaths() const { return subpaths_; }
     std::span<const PathVertex> vertices() const { return vertices_; }
     std::span<const Entry> connectable() const { return connectable_; }
     /// Indices of the vertices that may be merged with.
     std::span<const std::uint32_t> photons() const { return photons_; }
-    /// Whether subpath() may be asked.
+    /// Whether subpath() may be called.
     bool findsSubpaths() const { return !begins_.empty(); }
-    /// The number-th that was added.
+    /// The subpath that was added as number `number`.
     Subpath subpath(std::size_t number) const {
         const std::size_t begin = begins_[number];
         const std::size_t end =
             number + 1 < begins_.size() ? begins_[number + 1] : vertices_.size();
         return {vertices_.data() + begin, end - begin};
     }
-    /// y_0 .. of vertices()[vertex], which ends it.
+    /// The subpath from y_0 to vertices()[vertex].
     Subpath prefixOf(std::uint32_t vertex) const {
         const PathVertex* last = vertices_.data() + vertex;
         return {last - last->index, last->index + std::size_t(1)};
     }
 
-    /// y_0 .. y_{s-1}. Asks the cache for the last vertex: it will be looked at soon, and lies
-    /// anywhere in some hundred megabytes.
+    /// y_0 .. y_{s-1}. Prefetches the last vertex, which will be read soon and lies anywhere in
+    /// some hundred megabytes.
     Subpath prefix(Entry entry) const {
         const PathVertex* last = vertices_.data() + entry.vertex;
         prefetch(*last);

@@ -9,11 +9,11 @@ namespace lacuna {
 
 namespace {
 
-/// What a walk's path may differ from a chain in double between the same ends: the angle of its first
-/// direction, and by how far of the scene's radius rays leave surfaces.
+/// Largest differences between a walk's path and the chain in double between the same ends: the angle of their first
+/// directions, and the offset of rays from surfaces in terms of the scene's radius.
 constexpr double kAngle = 1e-3, kOffset = 1e-5;
 
-/// What a chain is a function of.
+/// The query for chains between z and y_0. They are functions of it, and of facets.
 ChainQuery queryOf(const PathVertex& z, const PathVertex& y0) {
     return {{z.position, z.ng, {}}, {y0.position, y0.infinite()}, Chain::kMost};
 }
@@ -27,10 +27,11 @@ bool hasFacets(const Chain& chain) {
 
 }  // namespace
 
-/// By the chain's vertices; those of smooth glass have none.
+/// The facets' slopes at the chain's vertices. At smooth glass the slope is zero.
 class RefractedLamps::Facets {
   public:
-    /// A path's that is refracted at v, from its light's end. False where the facet is too steep.
+    /// Adds the facet of a path that is refracted at v. Vertices come in order from the light's
+    /// end. False where the facet is too steep.
     bool add(const PathVertex& v, bool delta, const Vec3& toEye, const Vec3& toLight) {
         const auto facet = delta ? FacetSlope{} : facetBetween(v.bsdf, toEye, toLight);
         if (facet) add(*facet);
@@ -43,7 +44,7 @@ class RefractedLamps::Facets {
         }
     }
     std::size_t size() const { return size_; }
-    /// From the eye's.
+    /// In order from the eye's end.
     std::span<const FacetSlope> inOrder() const { return std::span(facets_).last(size_); }
 
   private:
@@ -53,14 +54,14 @@ class RefractedLamps::Facets {
     std::size_t size_ = 0;
 };
 
-/// Of deep vertices there are many, and each carries little.
+/// Deep vertices have fewer samples: there are many of them, and each carries little.
 double RefractedLamps::samplesAt(const PathVertex& z, int order) const {
     constexpr double kByOrder[] = {1.0, 0.5, 0.25};
     return effort_ * kByOrder[std::min(order, 3) - 1] * glass_->shadows().triesAt(z.position);
 }
 
-/// The one chain that the straight ray leads to, or from within glass a guess: a function of the two, whichever
-/// walk made z. No ray is traced where the lamp lies behind z or nothing lies between.
+/// The one chain that the straight ray leads to or, from within glass, a guess. It is a function of the two ends,
+/// whichever walk made z. No ray is traced where the lamp lies behind z or no glass lies between.
 std::optional<RefractedLamps::Joined> RefractedLamps::straight(const PathVertex& z,
                                                                const PathVertex& y0,
                                                                RayTally& tally) const {
@@ -81,7 +82,7 @@ std::optional<RefractedLamps::Joined> RefractedLamps::straight(const PathVertex&
     return found ? std::optional(Joined{*found, 1.0}) : std::nullopt;
 }
 
-/// One that leaves the body around z by the face of `way`, of all `ways`.
+/// The chain that leaves the body around z by the face of `way`, one of `ways`.
 std::optional<RefractedLamps::Joined> RefractedLamps::out(const GlassBodies::WaysOut& ways,
                                                           const GlassBodies::WayOut& way,
                                                           const PathVertex& z, const PathVertex& y0,
@@ -92,7 +93,7 @@ std::optional<RefractedLamps::Joined> RefractedLamps::out(const GlassBodies::Way
     return Joined{*found, 1.0 / double(ways.size())};
 }
 
-/// One of the chains between the two, if Newton's method finds it.
+/// One of the chains between z and y_0, drawn by `u`. Empty where Newton's method does not find it.
 std::optional<RefractedLamps::Joined> RefractedLamps::drawBetween(const PathVertex& z,
                                                                   const PathVertex& y0, double u,
                                                                   RayTally& tally) const {
@@ -102,7 +103,7 @@ std::optional<RefractedLamps::Joined> RefractedLamps::drawBetween(const PathVert
     return out(ways, ways[i], z, y0, tally);
 }
 
-/// That one of them whose first vertex, from z, is on a face with this normal.
+/// The chain between z and y_0 whose first vertex, from z, is on a face with this normal.
 std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& normal,
                                                                   const PathVertex& z,
                                                                   const PathVertex& y0,
@@ -113,7 +114,8 @@ std::optional<RefractedLamps::Joined> RefractedLamps::betweenOver(const Vec3& no
     return way ? out(ways, *way, z, y0, tally) : std::nullopt;
 }
 
-/// The chain as its facets make it; by the same face out of the body around z.
+/// The chain that `smooth` becomes with these facets. It must leave the body around z by
+/// the same face.
 std::optional<RefractedLamps::Joined> RefractedLamps::turned(const Joined& smooth,
                                                              const Facets& facets,
                                                              const PathVertex& z,
@@ -130,13 +132,14 @@ std::optional<RefractedLamps::Joined> RefractedLamps::turned(const Joined& smoot
     return Joined{*found, smooth.pmf};
 }
 
-/// p(y_0) and the chain's pmf, likewise.
+/// Density of y_0 over this chain, relative to an eye walk's as in densityOfNextEvent.
 double RefractedLamps::densityAt(const PathVertex& y0, double seenSamples,
                                  const Joined& joined) const {
     return densityOfNextEvent(walker_, joined.found, y0) * seenSamples * joined.pmf;
 }
 
-/// That of a path through these refractions over the smooth chain between its ends; `last` is the one next to z.
+/// densityAt for a path through these facets, from the smooth chain between its ends. `last` is the path's vertex next
+/// to z. Zero where the facets lead to another chain.
 double RefractedLamps::densityOver(const Joined& smooth, double seenSamples, const PathVertex& z,
                                    const PathVertex& y0, const PathVertex& last,
                                    const Facets& facets, const Vec3& toChain,
@@ -150,7 +153,7 @@ double RefractedLamps::densityOver(const Joined& smooth, double seenSamples, con
     return densityAt(y0, seenSamples, *joined);
 }
 
-/// Likewise where that chain is not known.
+/// Likewise where the smooth chain is not known yet.
 double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
                                       const PathVertex& last, const Facets& facets,
                                       const Vec3& toChain, RayTally& tally) const {
@@ -161,7 +164,7 @@ double RefractedLamps::densityOfChain(const PathVertex& z, const PathVertex& y0,
     return densityOver(*smooth, seenSamples, z, y0, last, facets, toChain, tally);
 }
 
-/// Whether a path that comes and goes this way is refracted at v, by a smooth surface or by a facet.
+/// Whether a path with these directions at v is refracted there, by a smooth surface or by a facet.
 bool RefractedLamps::refracts(const PathVertex& v, bool delta, const Vec3& toEye,
                               const Vec3& toLight) const {
     if (v.kind != VertexKind::Surface) return false;
@@ -172,8 +175,8 @@ bool RefractedLamps::refracts(const PathVertex& v, bool delta, const Vec3& toEye
            dot(toEye, v.ng) * dot(toLight, v.ng) < 0.0f;
 }
 
-/// Whether light may come from there if what is first behind it refracts by a facet, or else is smooth. Over smooth
-/// surfaces that of lights without a size is left to searches for chains, or missing.
+/// Whether next event may reach this light. `byFacet` says that the vertex next to the light refracts by a facet; else
+/// it is smooth. Over smooth surfaces, lights without a size are left to searches for chains, or are missing.
 bool RefractedLamps::mayReach(std::uint32_t light, bool byFacet) const {
     return byFacet ? glass_->hasFacets() : isHittable(walker_.lights().kind(light));
 }
@@ -193,7 +196,8 @@ void RefractedLamps::look(std::span<PathVertex> light, RayTally& tally) const {
     }
 }
 
-/// Of a path that is refracted behind its light until z; empty where no chain is asked for.
+/// The facets of a path that is refracted at all vertices between its light and z. Empty where next
+/// event through glass does not make such a path.
 std::optional<RefractedLamps::Facets> RefractedLamps::facetsOf(const FullPath& path) const {
     if (path.edges < 2 || !mayReach(path.vertex[0]->light, !path.delta[1])) return std::nullopt;
     Facets facets;
@@ -253,13 +257,14 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     if (!joined) return std::nullopt;
     const Chain& chain = joined->found.chain;
     if (!mayReach(y0.light, !isDelta(chain[chain.size() - 1].event.event))) return std::nullopt;
-    // What is refracted at z itself is a longer chain's.
+    // A path that is refracted at z itself belongs to a longer chain.
     if (refracts(z, false, z.toPrevious, Vec3(chain.firstDirection()))) return std::nullopt;
     auto event = closeNextEvent(walker_, joined->found, y0, eye, tally, light, path);
     if (!event) return std::nullopt;
     event->closed.contribution *= float(1.0 / (samples * joined->pmf));
     if (hasFacets(chain)) {
-        // As other techniques know it: by facets from the directions of the path, in float.
+        // The ratio as other techniques compute it: with facets from the path's
+        // directions in float.
         const auto known = facetsOf(path);
         if (!known) return std::nullopt;
         const std::size_t count = known->size();

@@ -1,7 +1,7 @@
-// Next event through glass [Hanika15]: at an eye vertex a point of a lamp or of the sky is drawn, and joined
-// over the one chain of refractions that the straight ray leads to. Where glass is nearly smooth, the facets that
-// refract are drawn too. Unlike other specular chains that one is a function of its ends and facets, so that its
-// density is known and other techniques share their paths with it by weights. (theory.md, "Next event through glass")
+// Next event through glass [Hanika15]. At an eye vertex a point of a lamp or of the sky is drawn, and joined over the
+// one chain of refractions that the straight ray leads to. Where glass is nearly smooth, the facets that refract are
+// drawn too. Unlike other specular chains, this one is a function of its ends and facets. So its density is known, and
+// weights share the paths with other techniques. (theory.md, "Next event through glass")
 #pragma once
 
 #include <memory>
@@ -18,33 +18,34 @@ namespace lacuna {
 
 class RefractedLamps {
   public:
-    /// `walker` must outlive it. `glass`: of its scene, not empty. `effort`: GlassEffort::refractions.
+    /// `walker` must outlive this object. `glass` is that of its scene and not empty. `effort` is
+    /// GlassEffort::refractions.
     RefractedLamps(const Walker& walker, std::shared_ptr<const SmoothGlass> glass, double effort)
         : walker_(walker), solver_(walker.scene()), glass_(std::move(glass)), effort_(effort) {}
 
-    /// A path from an eye subpath's last vertex, z_0 .. z_{t-1}, t >= 2, through glass to a lamp; mostly
-    /// none. Fills `light`, y_0 .. y_{s-1} with a refraction at each but y_0, and `path`.
+    /// Samples a path from the last vertex of an eye subpath z_0 .. z_{t-1}, t >= 2, through glass to a lamp. Mostly
+    /// the result is empty. Fills `path` and `light` (y_0 .. y_{s-1}, with a refraction at each but y_0).
     std::optional<Closed> sample(Subpath eye, Rng& rng, RayTally& tally,
                                  std::vector<PathVertex>& light, FullPath& path) const;
 
     /// Sets PathVertex::throughGlass of a whole light subpath.
     void look(std::span<PathVertex> light, RayTally& tally) const;
 
-    /// FullPath::refracted of a path that another technique made. What its light subpath knows is not
-    /// looked up again, unless `anew`.
+    /// FullPath::refracted of a path that another technique made. PathVertex::throughGlass is used where the light
+    /// subpath has it, unless `anew`.
     OverChain ratioOf(const FullPath& path, RayTally& tally, bool anew = false) const;
 
-    /// Whether there may be anything to sample at z: mostly, in most scenes, there is not.
+    /// Whether there may be anything to sample at z. Mostly, in most scenes, there is not.
     bool mayBring(const PathVertex& z) const {
         return !z.infinite() && glass_->shadows().reach(z.position);
     }
-    /// n(z), the expected number of samples at an eye vertex of this order: the same, whichever walk made z.
+    /// n(z): the expected number of samples at an eye vertex of this order. It does not depend on the walk that made z.
     double samplesAt(const PathVertex& z, int order) const;
 
   private:
     struct Joined {
         FoundChain found;
-        double pmf;  // of this one of all chains between the two
+        double pmf;  // of this chain among all between the two ends
     };
     /// The facets at a path's refractions.
     class Facets;

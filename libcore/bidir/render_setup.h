@@ -18,8 +18,8 @@
 
 namespace lacuna {
 
-/// How often next event through glass and along known ways are tried in a view, over how often they may be, and
-/// specular chains, over how often they are where nothing is known of the view. (theory.md, "Effort behind glass")
+/// How often techniques behind glass are tried in a view. For next event through glass and along known ways, 1 is the
+/// most; for specular chains, 1 is the rate where nothing is known of the view. (theory.md, "Effort behind glass")
 struct GlassEffort {
     double refractions = 1.0;
     double knownWays = 1.0;
@@ -31,7 +31,7 @@ struct RenderSettings {
     std::uint64_t seed = 1;
     PixelRect crop;                ///< inside the camera's film
     std::uint64_t lightPaths = 0;  ///< L; 0: one per pixel of the full film
-    /// B: what methods learn begins anew with every block of so many iterations.
+    /// B: iterations of a block. Methods learn anew in every block.
     std::uint64_t blockIterations = BlockPlan::kEndless;
     Sampling sampling = Sampling::Independent;
     Guides guides = {};
@@ -59,7 +59,8 @@ struct RenderSetup {
     RenderSetup(const RenderSetup&) = delete;
     RenderSetup& operator=(const RenderSetup&) = delete;
 
-    /// Where no walk runs into lights, next event has to draw all of a sky.
+    /// The guides, with lights for next event that draws all of a sky where no walk
+    /// runs into lights.
     static Guides guidesFor(const Scene& scene, const Techniques& techniques, Guides guides) {
         const bool byNextEvent = techniques.connects && !techniques.hits && !guides.lights;
         if (byNextEvent && scene.lights().environment()) {
@@ -71,7 +72,7 @@ struct RenderSetup {
     std::uint64_t filmPixels() const {
         return std::uint64_t(camera.film().width) * std::uint64_t(camera.film().height);
     }
-    /// Row-major.
+    /// Row-major, as is cropIndex.
     std::uint32_t filmIndex(int x, int y) const {
         return std::uint32_t(y) * std::uint32_t(camera.film().width) + std::uint32_t(x);
     }
@@ -81,7 +82,7 @@ struct RenderSetup {
                std::uint32_t(x - crop.x0);
     }
 
-    /// A pixel's eye path (x, y in the film), by the numbers of its stream.
+    /// Starts the eye path of a pixel (x, y in the film). `rng` is the pixel's stream.
     Walk startEye(int x, int y, Rng& rng, std::vector<PathVertex>& out) const {
         const auto [jitterX, jitterY] = rng.evenPair();
         return walker.startEye({float(x) + jitterX, float(y) + jitterY}, rng, out);
@@ -98,13 +99,13 @@ struct RenderSetup {
     const std::uint64_t lightPaths;  ///< L
 };
 
-/// An iteration under way.
+/// The current iteration.
 struct Iteration {
     std::uint32_t number;
     const Method& method;
     TechniqueCounts counts;  ///< frozen for it
     double mergeRadius;      ///< R; 0 where nothing is merged
-    std::span<Rgb> pixels;   ///< of the crop: what it adds up; none in a warm-up
+    std::span<Rgb> pixels;   ///< of the crop: sums of contributions; empty in a warm-up
     IterationStatistics& statistics;
     const std::atomic<bool>& cancel;
 };

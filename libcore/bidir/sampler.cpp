@@ -7,8 +7,8 @@ namespace lacuna {
 
 namespace {
 
-/// Variances are told by whole groups: a render of 64 iterations has eight. They are further apart
-/// than independent ones.
+/// Iterations of a group. Variances come from whole groups: a render of 64 iterations has eight.
+/// Groups are farther apart than independent samples.
 constexpr std::uint64_t kGroup = 8;
 
 std::uint32_t dimensionsOf(StreamKind kind) {

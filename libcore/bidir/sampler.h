@@ -18,18 +18,19 @@ constexpr const char* nameOf(Sampling sampling) {
 
 /// Dimensions of streams. A vertex has its own, whatever the vertices before it drew.
 namespace dimension {
-/// Before the first vertex of a walk: pixel and lens, or lamp and direction.
+/// Dimensions before the first vertex of a walk: pixel and lens, or lamp and direction.
 inline constexpr std::uint32_t kStart = 3;
-/// Of a vertex of a walk: roulette, lobe, direction. Of one that picks: lamp, its point, pick.
+/// Dimensions of a walk's vertex: roulette, lobe, direction. Those of a vertex that picks: lamp,
+/// its point, pick.
 inline constexpr std::uint32_t kPerVertex = 3;
-/// How many vertices have any.
+/// How many vertices have dimensions.
 inline constexpr std::uint32_t kVertices = 6;
 
-/// The first one of vertex `index` >= 1 of its subpath.
+/// The first dimension of vertex `index` >= 1 of its subpath.
 constexpr std::uint32_t ofWalk(std::uint32_t index) {
     return kStart + (index - 1) * kPerVertex;
 }
-/// Of what z_{t-1} picks, t >= 2.
+/// The first dimension of the picks at z_{t-1}, t >= 2.
 constexpr std::uint32_t ofPicks(std::uint32_t t) {
     return (t - 2) * kPerVertex;
 }
@@ -39,17 +40,17 @@ class Sampler {
   public:
     Sampler(Sampling sampling, std::uint64_t seed);
 
-    /// Iterations of a group, a power of two: what they spread by is what variances are told by
+    /// Number of iterations in a group, a power of two. Variances come from the spread of groups
     /// (theory.md, "Even numbers").
     static std::uint64_t groupOf(Sampling sampling);
 
-    /// A stream of an iteration; where its kind has dimensions, even with those of its kind and index of
-    /// all others.
+    /// The stream of an iteration for this kind and index. Where the kind has dimensions, the numbers of all iterations
+    /// lie evenly together.
     Rng stream(std::uint32_t iteration, StreamKind kind, std::uint64_t index) const;
 
   private:
     Sampling sampling_;
-    std::uint64_t seed_, sequences_;  // sequences_: which ones, by seed
+    std::uint64_t seed_, sequences_;  // sequences_: scrambling, from the seed
 };
 
 }  // namespace lacuna

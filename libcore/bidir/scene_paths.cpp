@@ -15,7 +15,7 @@ PathSpace::Arrival ScenePaths::arrival(Subpath light, Subpath eye, bool throughE
     const Edge edge = edgeBetween(y, z);
     if (!(edge.geometry > 0.0f)) return {};
     const auto atEye = [&] { return z.bsdf.evaluate(z.toPrevious, -edge.direction).f; };
-    // Whatever scatters at all reflects: only what comes from behind has to ask the material.
+    // Every material that scatters reflects. So the material is asked only about light from behind.
     if (leadsBehind(z, -edge.direction) && isBlack(atEye())) return {};
     const Rgb flow = y.throughput * lightEnd(walker_, y, edge.direction, z).f;
     const Rgb scattered = throughEye && !isBlack(flow) ? flow * atEye() : Rgb{};

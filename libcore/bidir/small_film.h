@@ -1,4 +1,4 @@
-// A picture in fewer pixels, for those who want to know something of a render before it.
+// The same picture in fewer pixels, for estimates that are made before a render.
 #pragma once
 
 #include "libcore/bidir/film.h"
@@ -11,7 +11,7 @@ inline double pixelsOf(const Camera::Film& film) {
 }
 
 struct SmallFilm {
-    /// Of about `pixels` pixels, no more than `crop` of `whole` has.
+    /// A film whose crop has about `pixels` pixels, but no more than `crop` of `whole` has.
     SmallFilm(const Camera::Film& whole, const PixelRect& crop, double pixels);
     /// Likewise, of the whole film.
     SmallFilm(const Camera::Film& whole, double pixels)

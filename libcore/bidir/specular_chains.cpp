@@ -24,8 +24,8 @@ SpecularChains::SpecularChains(const Walker& walker, std::shared_ptr<const Chain
 
 namespace {
 
-/// Whether one of so many edges from the lens could be joined: the first one by splats, others by connections
-/// with s >= 2. `smooth` tells of their ends in turn, the lens being the first.
+/// Whether one of the first `edges` edges from the lens could be joined: the first one by splats, others by connections
+/// with s >= 2. smooth(i) says whether their i-th end scatters smoothly; end 0 is the lens.
 template <class Smooth>
 bool joinsAny(std::size_t edges, const TechniqueCounts& counts, const Smooth& smooth) {
     const bool connects = counts.connectsIndirect();
@@ -42,7 +42,7 @@ bool mayBegin(const PathVertex& z) {
 
 }  // namespace
 
-// The light's edges end in mirrors or glass: those of the eye's part are left.
+// The edges of the chain end in mirrors or glass. So only the edges of the eye's part are tested.
 bool SpecularChains::begin(Subpath eye, const TechniqueCounts& counts) {
     const std::size_t last = eye.size() - 1;
     return mayBegin(eye[last]) && !joinsAny(last, counts, [&](std::size_t i) {
@@ -100,7 +100,7 @@ void SpecularChains::sample(Subpath eye, Rng& rng, RayTally& tally, std::vector<
     if (left < 1) return;
     const std::size_t most = std::min(std::size_t(left), Chain::kMost);
 
-    // A search takes longer than the rest of the path. By the bound first: ways lie anywhere in memory.
+    // A search takes longer than the rest of the path. The bound is tried first, because ways lie anywhere in memory.
     constexpr double kFewest = 0.05;
     const double u = rng.uniformDouble();
     if (u >= effort_) return;

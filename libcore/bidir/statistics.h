@@ -21,7 +21,7 @@ struct IterationStatistics {
     std::vector<std::string> invalidReplays;  ///< --replay arguments of the first few
     std::map<std::string, double> phaseSeconds;
     TechniqueSeconds techniqueSeconds{};  ///< where --techniques asks for them
-    /// What was held at one time, the most of any iteration: numbers of things, and bytes.
+    /// The most that any iteration held at one time, by name: numbers of things, and bytes.
     std::map<std::string, std::uint64_t> held;
 
     std::uint64_t totalRays() const;

@@ -36,14 +36,14 @@ struct TaskResult {
     std::vector<TechniqueSample> techniqueSplats;  // where --techniques asks for them
     TechniqueClock clock;                          // likewise
     std::vector<PathVertex> pooled;                // vertices of the subpaths that go into the pool
-    std::vector<std::uint8_t> pooledLengths;       // of each subpath, where pixels look for theirs
+    std::vector<std::uint8_t> pooledLengths;       // of each subpath, where pixels look theirs up
     RayTally tally;
     std::vector<RecordedRay> rays;
     std::uint64_t invalidSamples = 0;
     std::vector<std::string> invalidReplays;
 };
 
-/// How an eye walk becomes a path at one of its vertices: on a lamp, or over an open connection.
+/// How a path ends at a vertex of an eye walk: the vertex lies on a lamp, or a connection is open.
 struct Ending {
     std::size_t t;
     const OpenConnection* open;  ///< null: on a lamp
@@ -51,7 +51,7 @@ struct Ending {
     double value = 0.0;          ///< what the walk's own pixel got of it
 };
 
-/// A pixel's subpaths, where they belong, and where their light goes.
+/// A pixel's subpaths, the sample that they are, and where their light goes.
 struct PixelPaths {
     Subpath eye, ownLight;
     Sample sample;
@@ -65,14 +65,13 @@ struct Lent {
 
     LentWalk walk;
     std::vector<Ending> endings = {};
-    std::array<std::uint8_t, kTile> numbers =
-        {};                  ///< by pixel of the group: number in the walk, or kNobody
-    std::size_t lender = 0;  ///< its own number
-    double value = 0.0;      ///< what its pixel got
+    std::array<std::uint8_t, kTile> numbers = {};  ///< by pixel: number in `walk`, or kNobody
+    std::size_t lender = 0;                        ///< the lender's number
+    double value = 0.0;                            ///< what the lender's pixel got
 };
 struct Offer {
     const Lent* lent;
-    std::size_t number;  ///< of the borrower in its walk
+    std::size_t number;  ///< of the borrower in the lent walk
     double worth;        ///< to the borrower, about
 };
 
@@ -113,7 +112,7 @@ class Workers {
             all_.push_back(std::make_unique<Worker>(maxDepth));
         }
     }
-    /// That of the calling thread; the first one outside of the pool.
+    /// The worker of the calling thread. Outside of the pool it is the first one.
     Worker& own() const { return *all_[std::size_t(threads_.workerIndex())]; }
 
   private:

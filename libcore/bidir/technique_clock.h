@@ -13,14 +13,15 @@ using TechniqueSeconds = std::array<double, TechniqueGroup::kCount + 2>;
 inline constexpr std::size_t kEyeWalks = TechniqueGroup::kCount;
 inline constexpr std::size_t kLightWalks = TechniqueGroup::kCount + 1;
 
-/// Off unless --techniques asks for it: two looks at the clock are a twentieth of a connection.
+/// Off unless --techniques asks for it: two readings of the clock take a twentieth of a
+/// connection's time.
 class TechniqueClock {
   public:
     void switchOn() { on_ = true; }
     bool isOn() const { return on_; }
     const TechniqueSeconds& seconds() const { return seconds_; }
 
-    /// The time from here on is that of the next lap.
+    /// Begins the time of the next lap.
     void start() {
         if (on_) last_ = Clock::now();
     }
@@ -33,7 +34,7 @@ class TechniqueClock {
     void lapOfWalks(std::size_t which) {
         if (on_) seconds_[which] += passed();
     }
-    /// Shares it among groups: group(i), i in [0, n). Nobody's where there are none.
+    /// Shares that time among the groups group(i), i in [0, n). Does nothing for n = 0.
     template <class Group>
     void lapAmong(std::size_t n, const Group& group) {
         if (!on_ || n == 0) return;

@@ -14,7 +14,7 @@ bool isZero(float value) {
     return value == 0.0f;
 }
 
-/// visit(s, t, merged) for all techniques of paths of up to `maxDepth` edges.
+/// Calls visit(s, t, merged) for all techniques of paths of up to `maxDepth` edges.
 template <class Visit>
 void forEachTechnique(int maxDepth, const Visit& visit) {
     for (int k = 1; k <= maxDepth; ++k) {
@@ -113,7 +113,7 @@ std::vector<float> TechniqueFilm::meanOf(const Moments& moments) const {
     return mean;
 }
 
-/// The sample under way counts by its iterations.
+/// The current sample counts by its iterations.
 std::vector<float> TechniqueFilm::meanSquareOf(const Moments& moments) const {
     std::vector<float> squares = moments.squares;
     const float scale = iterations_ ? 1.0f / float(iterations_) : 0.0f;
@@ -192,7 +192,7 @@ void setTechniqueVariances(LayeredImage& image, const Layers& layers, std::uint6
 
 void addShareOfFirstConnections(LayeredImage& image, int maxDepth) {
     const std::size_t pixels = std::size_t(image.width()) * std::size_t(image.height());
-    std::vector<double> total(pixels, 0.0), first(pixels, 0.0);  // of the channels, over layers
+    std::vector<double> total(pixels, 0.0), first(pixels, 0.0);  // over channels and layers
     for (int k = 1; k <= maxDepth; ++k) {
         for (int s = 0; s <= k; ++s) {
             const int t = k + 1 - s;

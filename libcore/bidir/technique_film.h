@@ -18,21 +18,22 @@ struct TechniqueSample {
     Rgb weighted, unweighted;
 };
 
-/// Summed over a block's iterations: --techniques.
+/// Sums over a block's iterations: --techniques.
 ///
-/// Layers, of techniques that contributed: weighted.sSStTT and unweighted.sSStTT, of merges at x_i
-/// with the last of t vertices from the eye weighted.mIItTT likewise; weighted.GROUP by
-/// group of techniques, the mean of the channels; and for both square.NAME, the mean square of the
-/// mean of the channels over independent samples, which variances are made of.
+/// Every technique that contributed has the layers weighted.sSStTT and unweighted.sSStTT. Merges at
+/// x_i, the last of t vertices from the eye, have mIItTT in place of sSStTT. A group of techniques
+/// has weighted.GROUP, the mean of the channels. Techniques and groups also have square.NAME: the
+/// channels' mean, squared, in the mean over independent samples. Variances are made of it.
 class TechniqueFilm final : public BlockLayers {
   public:
-    /// `sampleIterations`: BlockPlan's. `merges`: with layers for them.
+    /// `sampleIterations` is BlockPlan::sampleIterations(). `merges` says whether there are merges.
     TechniqueFilm(int width, int height, int maxDepth, std::uint64_t sampleIterations = 1,
                   bool merges = false);
 
     /// "s02t03", "m02t03"
     static std::string layerName(int s, int t, bool merged = false);
-    /// Of all channels that a film of this depth may come to have in an image (setVariances).
+    /// Names of all channels that a film of this depth may have in an image
+    /// (setTechniqueVariances).
     static std::vector<std::string> channelNames(int maxDepth);
     /// Different pixels may be added to at the same time.
     void add(const TechniqueSample& sample);
@@ -47,8 +48,8 @@ class TechniqueFilm final : public BlockLayers {
     }
 
   private:
-    /// Of a value per pixel: its sum over the sample under way, and over those before sums of it and
-    /// of its square per iteration of the sample.
+    /// Moments of a value per pixel. `now` is its sum over the current sample. Over the samples before, `sum` adds
+    /// these sums up, and `squares` their squares over the sample's iterations.
     struct Moments {
         std::vector<float> now, sum, squares;
         explicit Moments(std::size_t pixels) : now(pixels), sum(pixels), squares(pixels) {}
@@ -75,12 +76,12 @@ class TechniqueFilm final : public BlockLayers {
     std::uint64_t sampleIterations_;
     std::uint64_t iterations_ = 0, inSample_ = 0;
     std::vector<Technique> techniques_;
-    std::vector<Technique> merges_;  // none where the row has none
+    std::vector<Technique> merges_;  // empty where the row has none
     std::vector<Moments> groups_;
 };
 
-/// Variance of the mean of `samples` samples, of the technique or group NAME of a film's layers:
-/// of the mean of the channels. Empty where it has none.
+/// Variance per pixel of the mean of `samples` samples, for the technique or group `name` of a
+/// film's layers. It is that of the channels' mean. Empty where the layers do not have it.
 std::vector<float> techniqueVariance(const Layers& layers, const std::string& name,
                                      std::uint64_t samples);
 

@@ -1,4 +1,4 @@
-// Techniques by what they do and where the eye subpath ends: what tables of noise and of time go by.
+// Groups of techniques by what they do and where the eye subpath ends, for tables of noise and of time.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,9 @@ enum class TechniqueKind : std::uint8_t {
     Refractions,  ///< next event through smooth glass
 };
 
-/// A kind and, but for splats, the order of the eye subpath's last vertex before the connection or
-/// the light that was hit, of the merged one, or of the one at a chain's end (Connection::order); the last of kOrders stands for all that follow.
+/// A kind and, except for splats, an order (Connection::order). This is the order of the eye subpath's last vertex
+/// before the connection or before the light that was hit, of the merged vertex, or of the vertex at a chain's end.
+/// Order kOrders stands for all higher ones as well.
 struct TechniqueGroup {
     static constexpr int kOrders = 3;
     static constexpr std::size_t kCount = 1 + 6 * std::size_t(kOrders);
@@ -42,7 +43,7 @@ struct TechniqueGroup {
     static TechniqueGroup ofRefraction(int order) {
         return {TechniqueKind::Refractions, std::min(order, kOrders)};
     }
-    /// Splats first.
+    /// The group with this index. Splats are the first.
     static TechniqueGroup at(std::size_t index) {
         if (index == 0) return {};
         const std::size_t kind = (index - 1) / kOrders;
@@ -57,7 +58,7 @@ struct TechniqueGroup {
                                           "merges", "chains", "refractions"};
         return kNames[std::size_t(kind)];
     }
-    /// Of its layers: "splats", "direct2".
+    /// The name in layers: "splats", "direct2".
     std::string name() const {
         return kind == TechniqueKind::Splats ? kindName() : kindName() + std::to_string(order);
     }

@@ -1,9 +1,9 @@
-// How many subpaths are under way together.
+// How many subpaths are traced together.
 #pragma once
 
 namespace lacuna {
 
-/// Subpaths that a thread has under way at once; also the side of a tile of pixels.
+/// Subpaths that a thread traces at once; also the side of a tile of pixels.
 inline constexpr int kTile = 16;
 
 }  // namespace lacuna

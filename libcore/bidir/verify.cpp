@@ -20,8 +20,8 @@ double logOf(double density) {
     return density == 0.0 ? kNever : std::log(density);
 }
 
-/// One full path seen afresh. Vertices by x_0 (light) .. x_k (lens); `made` is the technique that
-/// the path came from.
+/// Densities of one full path, computed anew. Vertices are x_0 (light) .. x_k (lens). `made` is the
+/// technique that made the path.
 class Products {
   public:
     Products(const Walker& walker, const FullPath& path, const TechniqueCounts& counts,
@@ -43,7 +43,7 @@ class Products {
     }
 
     double weight() const {
-        // A chain: it has no density, and the weight one if nothing else makes the path.
+        // A specular chain has no density. Its weight is one if nothing else makes the path.
         const double refracted = logRefraction();
         const double own = made_.chains()     ? 0.0
                            : made_.merges()   ? logMerge(split_)
@@ -58,16 +58,17 @@ class Products {
 
   private:
     const PathVertex& x(int i) const { return *path_.vertex[std::size_t(i)]; }
-    /// x_{i+1} as an edge from x_i ends there: a merged vertex has two places, that of the light's
-    /// walk (the photon) and that of the eye's, where all other things are asked.
+    /// x_{i+1} as the end of the edge from x_i. A merged vertex has two places: that of the
+    /// light's walk (the photon), where this edge ends, and that of the eye's walk, which is
+    /// used for all else.
     const PathVertex& endOfEdge(int i) const {
         return made_.merges() && i + 1 == split_ ? *path_.photon : x(i + 1);
     }
     /// Towards the lens, from x_i to x_{i+1}.
     Vec3 towardsLens(int i) const { return direction_[std::size_t(i)]; }
 
-    /// Edge x_i -> x_{i+1}: its direction as the walk that made it had it, and the factors that
-    /// turn a density per solid angle at one end into the measure of the other.
+    /// Sets edge x_i -> x_{i+1}: the direction that its walk had, and the factors that turn a
+    /// density per solid angle at one end into the measure of the other.
     void setEdge(int i) {
         const PathVertex &a = x(i), &b = endOfEdge(i);
         const auto e = std::size_t(i);
@@ -88,15 +89,15 @@ class Products {
             return;
         }
         const double squared = lengthSquared(Vec3d(b.position) - Vec3d(a.position));
-        // A chain's vertices may meet, at the edge of a body. No strategy joins them, so that any distance
-        // does: it is a factor of all densities there are.
+        // Vertices of a chain may coincide, at the edge of a body. No strategy joins them, so any distance will do: it
+        // is a factor of all densities.
         const double inverse2 = squared > 0.0 ? 1.0 / squared : 1.0;
         toLens_[e] = cosine(b) * inverse2;
         toLight_[e] = cosine(a) * inverse2;
         geometry_[e] = cosine(a) * cosine(b) * inverse2;
     }
 
-    /// p(x_0), p(x_1 | x_0).
+    /// Sets p(x_0) and p(x_1 | x_0).
     void setLightSource() {
         const Lights::Emission emission =
             lights_.emission(source_, towardsLens(0), endOfEdge(0).position);
@@ -106,8 +107,9 @@ class Products {
         event_[0] = ScatterEvent::Smooth;
     }
 
-    /// At x_i: what the eye's walk has for x_{i-1} and the light's for x_{i+1}. The connection's
-    /// two ends, or the merged vertex, scatter smoothly; every other one did what its walk says.
+    /// Sets what scattering at x_i gives: the eye walk's density of x_{i-1} and the light walk's of
+    /// x_{i+1}. A connection's two ends and a merged vertex scatter smoothly. At other vertices the
+    /// event is the walk's.
     void setScatter(int i) {
         const auto v = std::size_t(i);
         const bool connects = made_.by == Technique::By::Strategy;
@@ -124,7 +126,7 @@ class Products {
         if (i + 1 < k_) lightPdfA_[v + 1] = double(e.pdfWToEye) * toLens_[v];
     }
 
-    /// p(x_{k-1} | x_k). The lens itself has the same density in every strategy: it cancels.
+    /// Sets p(x_{k-1} | x_k). The lens itself has the same density in every strategy: it cancels.
     void setLens() {
         const Camera& camera = walker_.camera();
         const Vec3 lens = x(k_).position, direction = -towardsLens(k_ - 1);
@@ -133,8 +135,8 @@ class Products {
         if (projection) {
             pdfW = projection->pdfW;
         } else if (const float cosine = dot(direction, camera.forward()); cosine > 0.0f) {
-            // On the film's very edge rounding may put the raster position outside: the density as
-            // it is at the film's middle, carried over by 1 / cos^3.
+            // On the film's very edge rounding may put the raster position outside. The density
+            // then follows from that at the film's middle, by 1 / cos^3.
             const Camera::Film film = camera.film();
             const Camera::Direction middle = camera.directionAt(
                 camera.position(), {0.5f * float(film.width), 0.5f * float(film.height)});
@@ -144,8 +146,8 @@ class Products {
         eyePdfA_[std::size_t(k_) - 1] = pdfW * toLight_[std::size_t(k_) - 1];
     }
 
-    /// Roulette for reaching x_i: at its predecessor, if that one's index in the walk is high
-    /// enough.
+    /// Probability that roulette lets a walk reach x_i: the survival at its predecessor, if the
+    /// predecessor's index in the walk is high enough.
     double lightRoulette(int i) const {
         const int at = i - 1;
         return at >= 1 && at >= counts_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
@@ -155,8 +157,8 @@ class Products {
         return at <= k_ - 1 && k_ - at >= counts_.rouletteDepth ? survival_[std::size_t(at)] : 1.0;
     }
 
-    /// beta at every x_i. What a punctual light sends out is taken from the path (it is no
-    /// density); its probability is not.
+    /// Sets beta at every x_i. The throughput of a punctual light is taken from the path, because
+    /// it is no density. The light's probability is not.
     void setThroughputs() {
         const bool known =
             source_.kind == LightKind::Area || source_.kind == LightKind::Environment;
@@ -203,8 +205,8 @@ class Products {
                              .order = orderOf(s)});
     }
 
-    /// What n r of strategy t is worth more, if its eye walk made the edge that pixels share: the first
-    /// one from a vertex that scatters smoothly.
+    /// The factor of n r of strategy t if its eye walk makes the edge that pixels share: the first one from a vertex
+    /// that scatters smoothly.
     double share(int t) const {
         if (!counts_.sharing.any()) return 1.0;
         int i = k_ - 1;
@@ -220,7 +222,8 @@ class Products {
         const int s = k_ + 1 - t;
         return logOf(count(t)) + logOf(share(t)) + logDensities(s, s);
     }
-    /// Of the light's walk over its first `byLight` vertices, and of the eye's from x_first on.
+    /// Log of the density of the light's walk over its first `byLight` vertices, and of the eye's
+    /// walk from x_first on.
     double logDensities(int byLight, int first) const {
         double sum = 0.0;
         for (int i = 0; i < byLight; ++i) {
@@ -232,7 +235,8 @@ class Products {
         return sum;
     }
 
-    /// log p of next event through glass: an eye walk's, but that the chain is a function of its ends.
+    /// log p of next event through glass or along known ways: an eye walk's without roulette on the chain, times the
+    /// ratio of the two.
     double logRefraction() const {
         RayTally ignored;
         const OverChain over = refractedRatioOf(path_, counts_, ignored, true);

@@ -1,10 +1,11 @@
-// The weight a second time: by full products in log space, from geometry and materials alone.
+// The weight computed a second time: by full products in log space, from geometry and
+// materials alone.
 //
 // misWeight (mis.h) sweeps ratios of densities that the walks stored. Nothing here reads a stored
 // density: positions, normals, stored unit directions inside a subpath, events and materials give
 // every p(y), p(z), every roulette probability and every light throughput anew, and each strategy's
-// product is formed as a whole. What both agree on, no bookkeeping error can have touched: a wrong
-// but consistent ratio still sums to one, and fails here.
+// product is formed as a whole. Where both agree, no error of bookkeeping can have touched the
+// weight. Weights from a wrong but consistent ratio still sum to one, but they fail here.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,8 @@
 
 namespace lacuna {
 
-/// Weight of the technique that made this path (a connection's ends, or the merged vertex, are where
-/// events are smooth; the connection's edge has no stored direction). May be NaN only where a density
-/// is.
+/// Weight of the technique that made this path. Events are smooth at a connection's ends and at a merged vertex, and a
+/// connection's edge has no stored direction. May be NaN only where a density is.
 double misWeightByProducts(const Walker& walker, const FullPath& path,
                            const TechniqueCounts& counts, Technique made);
 
@@ -35,7 +35,7 @@ class WeightVerifier {
         std::uint64_t notNumbers = 0;
         std::string replay;  ///< --replay argument of the largest difference
     };
-    /// Between iterations. The same for any number of threads.
+    /// Called between iterations. The same for any number of threads.
     Result result() const;
 
   private:
@@ -43,7 +43,7 @@ class WeightVerifier {
         double difference = -1.0;
         Sample sample;
 
-        /// Largest difference, first sample where two are equal.
+        /// By the larger difference; where two are equal, by the earlier sample.
         bool worseThan(const Worst& other) const;
     };
     struct alignas(64) Slot {  // one per thread

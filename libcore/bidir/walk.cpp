@@ -12,7 +12,7 @@
 namespace lacuna {
 
 namespace {
-/// More of them do not fit into the processor's first cache.
+/// Walks that are traced in turn. More of them do not fit into the processor's first cache.
 constexpr std::size_t kTogether = 8;
 
 Viewpoint viewpointOf(const PathVertex& eye) {
@@ -48,7 +48,7 @@ double Walker::seenSamples(const PathVertex& light, const PathVertex& eye) const
                                viewpointOf(eye));
 }
 
-/// False where the point is dark.
+/// Makes y_0 of the point. False where it is dark.
 bool Walker::setLightVertex(const LightPoint& p, PathVertex& out) const {
     const Rgb throughput = p.throughput();
     if (isBlack(throughput)) return false;
@@ -94,7 +94,7 @@ std::optional<Walk> Walker::startLight(Rng& rng, std::vector<PathVertex>& out) c
     return walk;
 }
 
-/// What the first ray of a light walk carries.
+/// Sets density and throughput of the first ray of a light walk.
 void Walker::setOut(Walk& walk, const Lights::Emission& emission) {
     const PathVertex& y0 = walk.path->front();
     const auto cosine = float(measureCosine(y0, walk.direction));
@@ -148,8 +148,8 @@ void Walker::addSurface(const SurfacePoint& point, const Vec3& direction, float 
 }
 
 void Walker::finish(std::span<Walk> walks, RayTally& tally) const {
-    // Where a walk has to wait for texels, others go on meanwhile. Elsewhere that only makes rays
-    // less alike.
+    // Where a walk has to wait for texels, others go on meanwhile. Where none waits, taking turns
+    // only makes successive rays less coherent.
     if (!scene_.hasFarTextures()) {
         for (Walk& walk : walks) finishAlone(walk, tally);
         return;
@@ -170,7 +170,7 @@ void Walker::finishAlone(Walk& walk, RayTally& tally) const {
     } while (scatter(walk, point));
 }
 
-/// A step of each in turn; at most kTogether.
+/// Traces at most kTogether walks, a step of each in turn.
 void Walker::finishTogether(std::span<Walk> walks, RayTally& tally) const {
     std::array<Walk*, kTogether> going;
     std::array<std::optional<Hit>, kTogether> hits;
@@ -191,7 +191,7 @@ void Walker::finishTogether(std::span<Walk> walks, RayTally& tally) const {
     }
 }
 
-/// Where the walk arrives. An eye walk that runs into nothing sees the environment.
+/// The walk's next hit. An eye walk that leaves the scene gets a vertex on the environment.
 std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
     std::vector<PathVertex>& out = *walk.path;
     const RayKind kind = walk.side == Side::Light ? RayKind::LightWalk
@@ -212,12 +212,12 @@ std::optional<Hit> Walker::nextHit(const Walk& walk, RayTally& tally) const {
     return hit;
 }
 
-/// Adds the vertex and draws what the walk goes on along; false where it ends.
+/// Adds the vertex and draws the walk's next direction. False where the walk ends.
 bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     std::vector<PathVertex>& out = *walk.path;
     if (hit.position == out.back().position) return false;  // no distance, no measure
-    // The density of the disk is asked for by what the whole path knows: x_1. Rounding may have
-    // led over the edge of a cell.
+    // The density on the disk is looked up by x_1, which every walk of this path knows. Rounding
+    // may have moved the ray over the edge of a cell.
     if (out[0].infinite() && out.size() == 1 && lights_.guided()) {
         setOut(walk, emissionOf(lights_, out[0], walk.direction, hit.position));
     }
@@ -252,7 +252,7 @@ bool Walker::scatter(Walk& walk, const SurfacePoint& hit) const {
     return true;
 }
 
-/// Where the walk goes on to from `v`: by the guide's share as it says, else by the BSDF.
+/// Draws the walk's direction from `v`: by the guide as often as its share says, else by the BSDF.
 std::optional<BsdfSample> Walker::sampleDirection(Side side, const PathVertex& v, Rng& rng) const {
     float uLobe = rng.evenUniform();
     const Rng::Pair u = rng.evenPair();

@@ -16,12 +16,11 @@ namespace lacuna {
 struct WalkLimits {
     int maxDepth = 12;  ///< longest full path, in edges (1 = light seen directly), <= kMaxEdges
     /// First vertex index at which Russian roulette is played. The survival probability is a
-    /// function of the vertex's material alone, so that both walks know it, and part of p(y) and
-    /// p(z).
+    /// function of the vertex's material alone, so both walks know it. It is part of p(y) and p(z).
     int rouletteDepth = 3;
 };
 
-/// A subpath under way: what its walk needs for the next step.
+/// A subpath that is being traced: what its walk needs for the next step.
 struct Walk {
     Side side;
     std::vector<PathVertex>* path;  ///< y_0 or z_0 at least
@@ -30,7 +29,8 @@ struct Walk {
     Vec3 direction;   ///< unit
     float pdfW;       ///< of the direction; at infinity: of the point on the disk
     Rgb throughput;   ///< that the ray carries
-    /// Whether others may go on along it, who carry what it does not: it goes on in the dark.
+    /// Whether other pixels may go on along the walk. They may carry colours that it has lost, so
+    /// it goes on when its throughput is black.
     bool lends = false;
 };
 
@@ -47,7 +47,7 @@ class Walker final : public LightSampler {
         : Walker(scene, Guides{}, camera, limits) {}
 
     const Scene& scene() const { return scene_; }
-    /// The scene's, or those guided.
+    /// The scene's lights, or the guided ones.
     const Lights& lights() const { return lights_; }
     const WalkGuide* guide() const { return guides_.walks.get(); }
     const Camera& camera() const { return camera_; }
@@ -60,22 +60,23 @@ class Walker final : public LightSampler {
     /// the last one Infinite where it left a scene with an environment.
     void traceEye(Vec2 raster, Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const;
 
-    /// traceLight in two parts, for several at once: y_0, and the walk from there, empty where the
-    /// subpath ends with it.
+    /// The first part of traceLight, for tracing several walks at once: makes y_0, and returns the
+    /// walk from there. Empty where the subpath ends with y_0.
     std::optional<Walk> startLight(Rng& rng, std::vector<PathVertex>& out) const;
-    /// Likewise z_0 of traceEye.
+    /// Likewise for traceEye: makes z_0.
     Walk startEye(Vec2 raster, Rng& rng, std::vector<PathVertex>& out) const;
-    /// Walks to their ends, each as if it were alone.
+    /// The second part: traces all walks to their ends. Each becomes what it would be
+    /// if traced alone.
     void finish(std::span<Walk> walks, RayTally& tally) const;
 
     bool sampleLight(Rng& rng, PathVertex& out) const override;
     double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
     double seenSamples(const PathVertex& light, const PathVertex& eye) const override;
-    /// y_0 on a light without an extent, which is picked with this probability. False where it is
-    /// dark.
+    /// Makes y_0 on a light without an extent that was picked with probability `pmf`. False where
+    /// the light is dark.
     bool placeLight(std::uint32_t light, double pmf, PathVertex& out) const;
-    /// What happens at a surface vertex: the BSDF's value, and the densities that the two walks have
-    /// for it. `event`: of the pair (Bsdf::evaluate).
+    /// The BSDF's value at a surface vertex, and the densities (pdfW) that the two walks have there, guides included.
+    /// `event` is that of the pair of directions (Bsdf::evaluate).
     BsdfEvaluation scattering(const PathVertex& v, const Vec3& toEye, const Vec3& toLight,
                               ScatterEvent event = ScatterEvent::Smooth) const {
         BsdfEvaluation e = v.bsdf.evaluate(toEye, toLight, event);

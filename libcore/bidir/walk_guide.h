@@ -1,13 +1,14 @@
-// Where walks go on to, learned from paths that reach the picture: by place, the directions towards the
-// light for eye walks, and towards the camera for light walks. Frozen. (theory.md, "Guided walks")
+// A guide for where walks go on to, learned from paths that reach the picture. By place, it has the directions towards
+// the light for eye walks, and towards the camera for light walks. It is frozen. (theory.md, "Guided walks")
 //
-// A tree halves the surfaces by place and normal down to regions. In each, both walks have a density of
-// directions, and a share: so often a walk takes its direction from there, and otherwise from the BSDF,
+// A tree splits the surfaces by place and normal into regions. For each of the two walks a region has a density of
+// directions and a share. The share is the probability that a walk takes its direction from that density, and not
+// from the BSDF:
 //
 //     p(to) = (1 - share) p_bsdf(to) + share p_region(to),
 //
-// a delta event only from the latter. Share and density depend on the vertex alone, so either walk knows
-// what the other one would do.
+// where a delta event has the first term alone. Share and density depend on the vertex alone, so either walk knows what
+// the other one would do.
 #pragma once
 
 #include <array>
@@ -22,9 +23,10 @@
 
 namespace lacuna {
 
-/// The directions of a region as points of the unit square, about an axis: evenly spread points are
-/// cosine-distributed directions. First coordinate: the sine squared; where light passes the surfaces, the
-/// lower half of the square is one side of them, the upper half the other. Second: turns about the axis.
+/// Maps the directions of a region, about an axis, to points of the unit square. Evenly spread points are
+/// cosine-distributed directions. The first coordinate is the squared sine of the angle to the axis. Where light passes
+/// the surfaces, its lower half is for one side of them and its upper half for the other. The second coordinate is the
+/// angle about the axis, in turns.
 class DirectionSquare {
   public:
     DirectionSquare() = default;
@@ -32,7 +34,7 @@ class DirectionSquare {
 
     Vec3 axis() const { return frame_.n; }
     bool bothSides() const { return bothSides_; }
-    /// Density per solid angle of a direction whose point has density one; zero where it has no point.
+    /// Density (pdfW) of a direction whose point has density one. Zero where the direction has no point.
     float pdfW(const Vec3& direction) const {
         const float cosine = dot(direction, frame_.n);
         return bothSides_ ? 0.5f * kInvPi * std::abs(cosine) : kInvPi * std::max(0.0f, cosine);
@@ -47,7 +49,7 @@ class DirectionSquare {
 
 class WalkGuide {
   public:
-    /// What one walk finds in a region.
+    /// What a region has for one of the two walks.
     struct Field {
         float share = 0.0f;  ///< in [0, kMostShare]
         SquareDensity directions;
@@ -57,7 +59,7 @@ class WalkGuide {
         std::array<Field, 2> fields;  ///< by Side: of the walk that goes on
 
         const Field& of(Side side) const { return fields[std::size_t(side)]; }
-        /// Density per solid angle.
+        /// Density (pdfW) of the direction `to` by the region's field.
         float pdfW(Side side, const Vec3& to) const {
             const float even = square.pdfW(to);
             return even > 0.0f ? even * float(of(side).directions.at(square.pointOf(to)).pdf)
@@ -70,8 +72,7 @@ class WalkGuide {
     /// A node of the tree compares one of the place's six numbers.
     struct Node {
         float threshold = 0.0f;  ///< smaller ones go to the first child
-        std::uint32_t code =
-            0;  ///< region: its number; else kInner, which number, first child's index
+        std::uint32_t code = 0;  ///< a region, or kInner, the number compared, the first child
         friend bool operator==(const Node&, const Node&) = default;
     };
     static constexpr std::uint32_t kInner = 0x80000000u;
@@ -79,13 +80,14 @@ class WalkGuide {
     static constexpr std::uint32_t kChildMask = (1u << kNumberShift) - 1;
     static constexpr float kMostShare = 0.9f;
 
-    /// What a surface point is found by: its kind, its position, and its normal on the side that light
-    /// leaves to (either side, where it passes).
+    /// The key that a surface point is found by: its kind, its position, and its normal on the side that light leaves
+    /// to (on either side, where light passes).
     struct Place {
         std::uint32_t kind;
         std::array<float, 6> numbers;
     };
-    /// Surfaces that let light pass are regions of their own, and those whose every lobe is narrow.
+    /// Surfaces that let light pass have regions of their own, and so have surfaces whose lobes
+    /// are all narrow.
     static constexpr std::uint32_t kPasses = 1, kNarrow = 2, kKinds = 4;
     static Place placeOf(const PathVertex& surface);
 
@@ -97,9 +99,10 @@ class WalkGuide {
     std::span<const Node> nodes() const { return nodes_; }
     std::span<const Region> regions() const { return regions_; }
     const Region& region(std::uint32_t number) const { return regions_[number]; }
-    /// The same for the walks of one side alone.
+    /// The guide for the walks of one side alone.
     WalkGuide of(Side side) const;
-    /// Adds to both densities of the BSDF what the guide does to them. `event`: of the pair.
+    /// Mixes the guide into both densities (pdfW) of the BSDF. `event` is that of the pair
+    /// of directions.
     void mix(std::uint32_t region, const Vec3& toEye, const Vec3& toLight, ScatterEvent event,
              BsdfEvaluation& e) const;
     std::uint32_t regionAt(const Place& place) const {
@@ -110,7 +113,7 @@ class WalkGuide {
         }
         return node->code;
     }
-    /// Of everything above, as hexadecimal digits.
+    /// Hash of all nodes and regions, as hexadecimal digits.
     std::string contentHash() const;
 
   private:
