@@ -91,7 +91,7 @@ class Layers(Mapping[str, NDArray[np.float32]]):
 
 
 class Image:
-    """A picture with its layers and with everything that was measured. It does not change."""
+    """A picture with its layers and everything that was measured. It is immutable."""
 
     def __init__(self, rgb: Any):
         """`rgb`: an array (height, width, 3), or the picture of a render."""
@@ -115,7 +115,7 @@ class Image:
 
     @property
     def rgb(self) -> NDArray[np.float32]:
-        """Linear Rec. 709 radiance: (height, width, 3), float32. A view that cannot be written."""
+        """Linear Rec. 709 radiance: (height, width, 3), float32. A read-only view."""
         return self._picture.rgb
 
     @property
@@ -124,22 +124,22 @@ class Image:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """What `lacuna-render --json` writes; of an image that was read or relit, its header."""
+        """What `lacuna-render --json` writes; for an image that was read or relit, its header."""
         statistics: dict[str, Any] = json.loads(self._picture.statistics())
         return statistics
 
     def relight(self, lights: Mapping[str, float | Sequence[float]]) -> Image:
         """The image under other light: {"sun": .1, "lamps": (2, 1.8, 1.4)} multiplies these groups by a
-        number, or by one for each channel; the others stay as they are. It wants a render with
-        light_groups=True; with light_noise=True its "variance" is known as well. Layers that are
-        of the old light are left out. Raises UsageError for a group that is not there or a factor
+        number, or by one for each channel; the others stay as they are. It needs a render with
+        light_groups=True; with light_noise=True its "variance" is known as well. Layers that show
+        the old light are left out. Raises UsageError for a group that does not exist or a factor
         below 0, InputError for an image without groups.
         """
         factors = {group: _three(factor) for group, factor in lights.items()}
         return Image(self._picture.relight(factors))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """.exr with all layers, .pfm, or .png, which is exposed by itself. Raises RunError."""
+        """Writes an .exr with all layers, a .pfm, or a .png with automatic exposure. Raises RunError."""
         self._picture.save(os.fspath(path))
 
     def compare(self, reference: Image | NDArray[Any]) -> dict[str, float]:
@@ -187,14 +187,14 @@ def render(
     """Renders a scene: a .glb or .gltf file, or a lacuna.Scene.
 
     `options` are those of `lacuna-render --help`: method="bpt", width=640, time=30 (seconds, or
-    "10m"), crop=(0, 32, 0, 32), until={"mape": .05}, effect={"dispersion": False}, prepare=True,
-    layer={"caustics": "C.*D[GS]+L"}, output="door.exr". None leaves one out. `set` holds parameters of the method:
-    set={"candidates": 200}.
+    "10m"), crop=(0, 32, 0, 32), until={"mape": .05}, effect={"clearcoat": False}, prepare=True,
+    layer={"caustics": "C.*D[GS]+L"}, output="door.exr". None leaves an option out. `set` holds parameters of the
+    method: set={"candidates": 200}.
 
-    `on_progress` is called where a phase begins and after each iteration, with a Progress: phase,
+    `on_progress` is called when a phase begins and after each iteration, with a Progress: phase,
     iterations, limit, seconds, time_limit, accuracy, and preview(), the picture as it is now or
-    None. What it raises ends the render. Ctrl-C ends it as well: what was to be written is written,
-    then KeyboardInterrupt is raised. Other Python threads run meanwhile.
+    None. An exception that it raises ends the render. Ctrl-C ends it as well: the output is
+    written, then KeyboardInterrupt is raised. Other Python threads run meanwhile.
 
     Raises UsageError, InputError, RunError. Warnings are LacunaWarning.
     """

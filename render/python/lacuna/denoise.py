@@ -1,8 +1,8 @@
-"""Gives a picture with its layers albedo and normal to Open Image Denoise, where that is installed:
+"""Gives a picture with its layers albedo and normal to Open Image Denoise, if that is installed:
 
     python3 -m lacuna.denoise picture.exr denoised.exr
 
-runs its program oidnDenoise (2.0 or newer, in the PATH, or where --program says). Debian 12 has none:
+runs its program oidnDenoise, 2.0 or newer, from the PATH or as --program names it. Debian 12 has no package of it:
 https://www.openimagedenoise.org. The result is the picture alone; alpha and layers stay in the first file.
 """
 
@@ -21,8 +21,8 @@ _INPUTS = {"": "--hdr", "albedo": "--alb", "normal": "--nrm"}
 
 
 def denoise(image: Image, program: str = "oidnDenoise") -> Image:
-    """The picture without its noise. Raises UsageError where there is no such program, InputError for a
-    picture without the layers, RunError where the program fails."""
+    """The denoised picture. Raises UsageError if there is no such program, InputError for a picture
+    without the layers, RunError if the program fails."""
     found = shutil.which(program)
     if found is None:
         raise UsageError(

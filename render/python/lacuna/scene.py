@@ -45,7 +45,7 @@ def _rows_or_none(name: str, values: Any, width: int) -> NDArray[np.float32] | N
 
 
 class Scene:
-    """Meshes, materials, textures, lamps and cameras; what is added is numbered from 0."""
+    """Meshes, materials, textures, lamps and cameras. Each kind is numbered from 0, in the order of adding."""
 
     def __init__(self) -> None:
         self._builder = SceneBuilder()
@@ -93,8 +93,8 @@ class Scene:
         place: bool = True,
     ) -> int:
         """Positions (n, 3), triangles (m, 3), counterclockwise from in front; normals (n, 3), uvs
-        (n, 2; v points down) and colours (n, 4; factors of the base colour) are optional. It is
-        placed as it is, unless `place` is False: see add_instance.
+        (n, 2; v points down) and colours (n, 4; factors of the base colour) are optional. The mesh
+        is placed once, untransformed, unless `place` is False: see add_instance.
         """
         mesh = self._builder.add_mesh(
             _rows("positions", positions, 3, np.float32),
@@ -115,7 +115,7 @@ class Scene:
     def add_camera(
         self, to_world: Any, *, yfov: float = 0.8, aspect: float = 0.0, name: str = ""
     ) -> None:
-        """Looks along -Z of its matrix (look_at). `yfov`: radians, the whole vertical angle."""
+        """Adds a camera that looks along -Z of its matrix (look_at). `yfov`: radians, the whole vertical angle."""
         self._builder.add_camera(name, _columns(to_world), yfov, aspect)
 
     def add_lamp(
@@ -127,8 +127,8 @@ class Scene:
         inner: float = 0.0,
         outer: float = np.pi / 4,
     ) -> None:
-        """"point", "spot" (W/sr) or "directional" (W/m^2 across its rays); shines along -Z. Angles
-        of a spot: radians from its axis.
+        """Adds a lamp: "point", "spot" (W/sr) or "directional" (W/m^2 across its rays). It shines
+        along -Z. `inner` and `outer` are the angles of a spot: radians from its axis.
         """
         self._builder.add_lamp(kind, intensity, _columns(to_world), inner, outer)
 

@@ -25,7 +25,7 @@ _SHARED = "$LACUNA_SHARED_SCENES/"
 
 def find_program(name: str) -> str:
     """The path of a program of Lacuna: the one that was built or installed with this package, else
-    that of the PATH. Raises RunError where there is none.
+    the one in the PATH. Raises RunError if there is none.
     """
     package = Path(__file__).absolute().parent
     # The package is BUILD/python/lacuna, or PREFIX/lib/python3/dist-packages/lacuna.
@@ -154,13 +154,13 @@ def study(
     threads: int | None = None,
     on_message: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """Runs a study, or what is left of it, and returns what it found.
+    """Runs a study, or what an earlier call left to do, and returns its results.
 
-    `file_or_dict`: the path of a study's file, or what would stand in it (render/README.md,
-    "lacuna-study"); paths in a dict are relative to the working directory. `output`: the folder for
-    the page index.html, tables and pictures. Runs that are there already are not repeated. `quick`
-    and `threads` are those of the program. `on_message` is called with each line that it says, one
-    every ten seconds or sooner.
+    `file_or_dict`: the path of a study's file, or its content (render/README.md, "lacuna-study");
+    paths in a dict are relative to the working directory. `output`: the folder for the page
+    index.html, tables and pictures. Runs that are there already are not repeated. `quick` and
+    `threads` are the options of the program. `on_message` is called with each line that the program
+    prints, at least one every ten seconds.
 
     The result is a dict:
 
@@ -174,8 +174,8 @@ def study(
     tables: a list of dicts: id, title, columns, rows (texts), notes.
     scenes, methods, measures, seeds, baseline, knobs, title, ..: how it was made.
 
-    Raises UsageError, InputError, RunError as the program's exit code says. Ctrl-C ends it in
-    order, then KeyboardInterrupt is raised; the same call goes on from there.
+    Raises UsageError, InputError or RunError, by the program's exit code. Ctrl-C ends the program
+    in order, then KeyboardInterrupt is raised; the same call goes on from there.
     """
     program = find_program("lacuna-study")
     folder = Path(os.path.abspath(output))
