@@ -1,4 +1,4 @@
-// Bidirectional path tracing [Veach97 10], [Lafortune93]: every eye vertex with the pixel's own light
+// Bidirectional path tracing [Veach97 10], [Lafortune93]: every eye vertex is connected with the pixel's own light
 // subpath. See own_light_path.h. (theory.md, "bpt")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/own_light_path.h"

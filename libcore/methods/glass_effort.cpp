@@ -20,21 +20,22 @@ namespace lacuna {
 namespace {
 
 constexpr double kPixels = 4096;
-/// Of the pixels, the noisiest ones, which do not count as noise of walks: more samples of the technique would take
-/// their sparks away.
+/// Share of the pixels, the noisiest ones, that do not count as noise of walks: more samples of the technique would
+/// take their sparks away.
 constexpr double kSparks = 0.01;
-/// What a ray in search of a chain takes, Newton's method included, over what others take.
+/// Time of a ray in search of a chain, Newton's method included, over that of another ray.
 constexpr double kChainRay = 3.0;
 
-/// Of the mean brightness, what is added to a pixel's: darkness is no reason for samples.
+/// Share of the mean brightness that is added to a pixel's: darkness is no reason for samples.
 constexpr double kDark = 0.01;
 
-/// Samples over those of the pilot.
+/// Limits of an effort: samples over those of the pilot.
 struct Range {
     double least, most;
 };
 constexpr Range kOfRefractions{1.0 / 16, 1.0};
-/// Most of the sparks of chains are rarer than a pilot's samples, or one of them decides.
+/// The limits are narrow because a pilot knows little: it misses most sparks of chains, or a
+/// single one decides.
 constexpr Range kOfChains{1.0 / 8, 2.0};
 
 double meanOf(std::span<const double> values) {
@@ -73,7 +74,7 @@ PilotPicture rendered(const Scene& scene, const Camera& camera, const MethodRow&
         pilot.rest[i].resize(pixels);
         integrator.delivery().setObserver([&](const PathEvent& event) {
             const auto value = double(mean(event.contribution));
-            // To the pixel of the task's own path: no other task adds to it.
+            // This is the pixel of the task's own path: no other task adds to it.
             if (event.technique.by == kind && std::isfinite(value)) {
                 pilot.own[i][event.pixel] += value;
             }
@@ -88,7 +89,8 @@ PilotPicture rendered(const Scene& scene, const Camera& camera, const MethodRow&
     return pilot;
 }
 
-/// The best number of samples of its own technique, which all rays in search of chains count as the cost of.
+/// The best number of samples of the pilot's own technique, over those of the pilot. All rays in search of chains count
+/// as the technique's cost.
 double effortOf(const PilotPicture& pilot, const Range& range) {
     if (pilot.chainRays == 0.0) return 1.0;
     const std::size_t pixels = pilot.own[0].size();
@@ -149,7 +151,7 @@ GlassEffort glassEffortFor(const Scene& scene, const Camera& camera, const Techn
             effortBy(with("pt", &Techniques::knownWays), Technique::By::Refraction, kOfRefractions);
     }
     if (techniques.searchForChains() && settings.chainSeeds && settings.chainSeeds->hasPoints()) {
-        // With splats chains are left to fewer paths.
+        // Where light paths splat, fewer paths are left to chains.
         MethodRow row = with(techniques.splats ? "bpt" : "pt", &Techniques::chains);
         row.techniques.refractions = refracts;
         row.techniques.knownWays = goesKnownWays;

@@ -1,13 +1,13 @@
-// Importance caching [Georgiev12] adapted to bidirectional path tracing as [Noel15 5] compares with
-// it: light vertices resampled at importance records on surfaces (importance_records.h).
-// (theory.md, "icbpt")
+// Importance caching [Georgiev12], adapted to bidirectional path tracing as in the comparison of
+// [Noel15 5]. Light vertices are resampled at importance records on surfaces
+// (importance_records.h). (theory.md, "icbpt")
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
 //   records   vertices of record_density x pixels eye subpaths; `records` = 3 of them serve an eye
 //             vertex
-//   pick      N y per s (the paper: one), divided by M N Pbar(y)
-//   lengths   N for every s; or for s > 2 a share of N on average (LengthPicks), and divided by
-//             that
+//   pick      N vertices y per s (the paper: one); contribution h(y) / (M N Pbar(y))
+//   lengths   N picks for every s; or for s > 2 a share of N on average (LengthPicks), which then
+//             stands in the place of N
 //   MIS       credit:  r is one constant, M [Noel15, the authors' code]
 //             aware:   r of the records, then withEyeShare
 //   s = 1     from the pool, or from next event; t = 1 is never resampled

@@ -1,7 +1,7 @@
-// Probabilistic connections [Popov15], as [Nabata20a] and [Nabata20b] compare with it: light
-// vertices resampled at cache points, under the weights of plain bidirectional path tracing (r =
-// 1). See cache_resampling.h. The preset is [Popov15]'s own target, with the cache point's BSDF;
-// Nabata et al. give it the target of their methods, `flow`. (theory.md, "pcbpt")
+// Probabilistic connections [Popov15], as [Nabata20a] and [Nabata20b] compare with them. Light
+// vertices are resampled at cache points, under the weights of plain bidirectional path tracing (r
+// = 1). See cache_resampling.h. The preset has [Popov15]'s own target, with the cache point's BSDF.
+// Nabata et al. use the target of their own methods, `flow`. (theory.md, "pcbpt")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/cache_resampling.h"
 

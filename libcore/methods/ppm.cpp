@@ -1,7 +1,7 @@
 // Progressive photon mapping [Hachisuka08], in its form without statistics per pixel [Knaus11], one
 // radius for all pixels: eye vertices are merged with the photons around them, up to the first one that
 // is neither mirror nor smooth glass, nor nearly so. Eye paths that run into a light count as well, combined
-// by the balance heuristic, so that lamps and their mirror images are there. (theory.md, "ppm")
+// by the balance heuristic, so that lamps and their mirror images are in the picture. (theory.md, "ppm")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/picks.h"

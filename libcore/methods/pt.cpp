@@ -1,8 +1,8 @@
 // Path tracing with next event estimation [Kajiya86], [Veach97 10.3]. (theory.md, "pt")
 //
 // Every eye vertex z_{t-1} proposes one fresh light point y_0 (s = 1); eye paths that run into a
-// light count as well (s = 0). MIS sees n = 1 sample of both. By power the density of a fresh y_0 is
-// that of the light table, which is also p(y_0), so r = 1; else r is the quotient of the two.
+// light count as well (s = 0). MIS sees n = 1 sample of both. With lamps=power a fresh y_0 has the density of the light
+// table, which is also p(y_0), so r = 1. Otherwise r is the quotient of the two densities.
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/picks.h"
 

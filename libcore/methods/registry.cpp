@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-// Each is defined in the file that bears the method's name.
+// Each row is defined in the file that bears the method's name.
 MethodRow ptRow(), ltRow(), bptRow(), lvcbptRow(), pcbptRow(), risbptRow(), risbptCurrentRow(),
     tsrbptRow(), icbptRow(), skelbptRow(), spcbptRow(), spcbptFifoRow(), sharebptRow(), vcmRow(),
     ppmRow();
@@ -72,7 +72,7 @@ void complete(MethodRow& row, std::vector<Option> own) {
         const auto isLearned = [](const Settings& settings) {
             return emissionOptions({}).read(settings).emission == Emission::Learned;
         };
-        // First: everything else is learned from light subpaths that begin as it says.
+        // It comes first: everything else is learned from light subpaths that begin as it says.
         row.needs.insert(
             row.needs.begin(),
             AssetNeed{"emission", "", emissionOptions(row.emission).options(), isLearned});

@@ -44,14 +44,14 @@ struct MethodRow {
     std::function<std::unique_ptr<Method>(const Settings&)> create = {};
 };
 
-/// What follows from the rest of a row. All have `walks`. Rows that splat trace light subpaths, so that
-/// they have `light_paths` and `emission`; rows that need assets have the options of their making, rows with a
-/// paper's preset `preset`; then there are the row's own.
+/// Adds the options and needs that follow from the rest of a row, and the row's `own` options. All rows have `walks`.
+/// Rows that splat trace light subpaths, so they have `light_paths` and `emission`. Rows that need assets have the
+/// options of their making, and rows with a paper's values have `preset`.
 void complete(MethodRow& row, std::vector<Option> own);
 /// The assets that a render with these settings needs.
 std::vector<AssetNeed> needsOf(const MethodRow& row, const Settings& settings);
 
-/// The row with its options, and how a method is made of them.
+/// Completes a row with its options, and with how a method is made of them.
 template <class Options, class Make>
 MethodRow methodRow(MethodRow row, const OptionTable<Options>& table, Make make) {
     complete(row, table.options());
@@ -63,7 +63,7 @@ MethodRow methodRow(MethodRow row, const OptionTable<Options>& table, Make make)
 
 /// All rows, in the order of --list-methods.
 std::span<const MethodRow> methods();
-/// Throws UsageError that lists the names, behind `title`.
+/// The row of this name. Throws UsageError, which begins with `title` and lists the names.
 const MethodRow& findMethod(const std::string& name, const std::string& title = "method");
 /// Defaults overridden by "name=value" texts, the preset's values first. Throws UsageError naming
 /// the option, its range and what was found; `title` ("--set ") stands before names.
@@ -71,7 +71,8 @@ Settings resolve(const MethodRow& row, std::span<const std::string> assignments,
                  const std::string& title = {});
 /// Whether pictures with these settings are consistent but not unbiased, because they merge.
 bool isConsistentOnly(const MethodRow& row, const Settings& settings);
-/// The row with the techniques that it has with these settings: where it merges, no chains.
+/// The row with the techniques that it has with these settings: where it merges, it has no specular
+/// chains and no known ways.
 MethodRow asSet(MethodRow row, const Settings& settings);
 /// L, the light subpaths per iteration that splat; 0: one per pixel, or none splat.
 std::uint64_t lightPathsOf(const Settings& settings);

@@ -1,7 +1,7 @@
-// Resampling-aware weights [Nabata20a]: light vertices resampled at cache points, under weights
-// that know how much better a resampled vertex is than a random one. See cache_resampling.h. Beside
-// it the paper's counterexample [Nabata20a Fig. 3]: Q of the current pool, and so weights that
-// depend on the light paths that they weigh. (theory.md, "risbpt")
+// Resampling-aware weights [Nabata20a]: light vertices are resampled at cache points, under weights
+// that know how much better a resampled vertex is than a random one. See cache_resampling.h. The
+// second row is the paper's counterexample [Nabata20a Fig. 3]. It takes Q from the current pool, so
+// its weights depend on the light paths that they weigh. (theory.md, "risbpt")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/cache_resampling.h"
 
@@ -35,8 +35,8 @@ MethodRow risbptCurrentRow() {
         {.name = "risbpt-current",
          .reference = "Nabata20a",
          .summary = "risbpt with Q of the light paths that it weighs, to show the bias (Fig. 3)",
-         // Splats come before the pool is complete: they would have to see another Q, and the
-         // weights of a path would no longer add up to one. Without them Q alone is to blame.
+         // Splats come before the pool is complete: they would see another Q, and the weights
+         // of a path would not add up to one. Without splats, Q alone causes the bias.
          .techniques = {.hits = true, .connects = true},
          .biased = true,
          .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off"}},

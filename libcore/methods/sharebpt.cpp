@@ -1,12 +1,12 @@
 // Our own: spcbpt whose pixels share eye walks [Bekaert02]. (theory.md, "Shared walks")
 //
-//   walks     a pixel's eye walk is one of up to 16, those of a square of pixels: what it was joined to behind
-//             the first vertex that is no mirror and no smooth glass goes to all of them that see it there
-//   picks     of light vertices as in spcbpt
-//   weights   a shared walk counts as `share_samples` of one that is not
-//   numbers   even over iterations, unless --sampler says otherwise: what is left of the noise, the pixel's own,
-//             profits from that
-//   training  as short as serves: seconds
+//   walks     up to 16 pixels of a square share their eye walks: what a walk was joined to behind its first
+//             vertex that is no mirror and no smooth glass goes to all pixels that see the next vertex
+//   picks     light vertices are picked as in spcbpt
+//   weights   a shared walk counts as `share_samples` walks that are not shared
+//   numbers   random numbers are even over iterations, unless --sampler says otherwise: the noise that is left
+//             is mostly the pixel's own, which they reduce
+//   training  it takes seconds: more is not worth its time
 #include "libcore/methods/spcbpt.h"
 #include "libcore/subspace/training_settings.h"
 

@@ -2,16 +2,16 @@
 // (theory.md, "skelbpt")
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
-//   pick      N y per s (the paper: one) at the eye vertex's node:  contribution h(y) / (M N P(y))
-//             [eq 9]; at nodes that are not accepted evenly from L_s
-//   lengths   N for every s [4.3], or for s > 2 a share of N on average (LengthPicks), and divided
-//             by that
+//   pick      N vertices y per s (the paper: one) at the eye vertex's node:  contribution
+//             h(y) / (M N P(y)) [eq 9]; at nodes that are not accepted y comes evenly from L_s
+//   lengths   N picks for every s [4.3], or for s > 2 a share of N on average (LengthPicks), which
+//             then stands in the place of N
 //   MIS       credit:  r is one constant, M (the authors' code)
-//             aware:   r = [1/M + (1 - 1/M) / (N R)]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z: what M
-//             P(y) is for frozen means Q = (1/M) sum of the pmf's weights and Z of the sum of
-//             maxima, all per node and s from earlier iterations; after [Nabata20a eq 14]. Q_V
-//             counts where the node's map of distances (sight_map.h) has V(n, y) = 1; Z would be
-//             exact for a choice by mass and stands in for the even one
+//             aware:   r = [1/M + (1 - 1/M) / (N R)]^-1, R = max(w/Q_V, w/Q_U, 1/Q_C) / Z, after
+//             [Nabata20a eq 14]. R is M P(y) for frozen means per node and s, from earlier
+//             iterations: Q = (1/M) sum of the pmf's weights, Z the sum of maxima. Q_V counts
+//             where the node's map of distances (sight_map.h) has V(n, y) = 1. Z would be exact
+//             if the pmf were chosen by mass, and stands in for the even choice
 //   s = 1     from the pool (y_0 is stored), or from next event; t = 1 is never resampled
 #include <algorithm>
 
@@ -38,7 +38,8 @@ struct Options {
 
 /// Frozen means of one node and length: Q of its pmfs, and Z.
 struct Expected {
-    /// Z is at least one; means of iterations without a vertex may be less (theory.md, "skelbpt").
+    /// Z of an iteration that has vertices is at least one. Means that count iterations without a
+    /// vertex may be less (theory.md, "skelbpt").
     static constexpr double kLeastMaxima = 1e-3;
 
     double seen = 0, unseen = 0, uniform = 0, maxima = 0;
@@ -52,7 +53,7 @@ struct Expected {
         maxima += (now.maxima - maxima) / k;
     }
 };
-/// By node (the last row: where there is none) and s.
+/// By node and s. The last row is for nodes without pmfs.
 using ExpectedByNode = std::vector<std::vector<Expected>>;
 
 class SkeletonDensity final : public ConnectionDensity {
@@ -92,7 +93,7 @@ class SkeletonDensity final : public ConnectionDensity {
     }
 
   private:
-    /// r of the picks that are made.
+    /// n r of the picks that are made at a node.
     double samplesAtNode(const Connection& c) const {
         const double picks = picks_.repeats(c.light.count, c.order);
         if (expected_.empty()) return picks;
@@ -171,7 +172,7 @@ class SkeletonConnections final : public Method {
     }
 
   private:
-    /// Frozen means of the coming iterations.
+    /// Updates the means that the coming iterations use.
     void learnExpected() {
         const auto m = double(options_.subpaths);
         expected_.resize(nodes_.nodes() + 1);

@@ -19,8 +19,8 @@
 //             that are picked from: several of one subpath may lie in one subspace
 //   MIS       paper: r = N Gamma beta / Q(i)                                  [eq 11, 12]
 //             ris:   r = [ (1/(N Gamma)) (1/M + (1 - 1/M) Q(i)/beta) + (1 - 1/N)/M ]^-1, which
-//             knows that one of M subpaths is not always there: the paper's where beta << M Q(i)
-//             Gamma, Q, trees: frozen since lacuna-train; Q = 0: not seen there, see unseenQ
+//             knows that there are only M subpaths; equals the paper's where beta << M Q(i)
+//             Gamma, Q, trees: frozen since lacuna-train; Q = 0: not seen in training, see unseenQ
 //   t = 1     never resampled;  s = 0 ordinary
 //
 // Without subspaces there is one of each, Gamma = 1, and Q comes from a warm-up that is thrown
@@ -44,7 +44,7 @@ namespace {
 
 constexpr std::uint32_t kLongestWindow = 32;  // iterations: bounds what is kept
 
-/// Subspaces made ready to draw from and to label with.
+/// Tables made of subspaces, to draw and to label with.
 struct SubspaceTables {
     SubspaceTables(std::shared_ptr<const Subspaces> subspaces, const SubspaceOptions& options)
         : labels(subspaces),
@@ -69,7 +69,7 @@ struct SubspaceTables {
     GammaTable gamma;
     std::vector<double> q;  ///< by light subspace; 0 where no light subpath was seen
     double unseen;
-    std::vector<std::uint32_t> windows;  ///< W_i: the whole iterations that vertices are from
+    std::vector<std::uint32_t> windows;  ///< W_i: whole iterations whose vertices are kept
 };
 
 class SubspaceDensity final : public ConnectionDensity {
@@ -126,7 +126,7 @@ class SubspaceConnections final : public Method {
     PoolRequest pool() const override { return {options_.subpaths}; }
     Merging merging() const override { return options_.merging.merging(); }
     Sharing sharing() const override {
-        // All may propose everything: no column of Gamma has a zero.
+        // Every eye vertex may propose every light vertex: no column of Gamma has a zero.
         return {options_.sharedPixels, options_.sharedSamples};
     }
 
@@ -192,12 +192,13 @@ class SubspaceConnections final : public Method {
     }
 
   private:
-    /// Prefixes of one iteration (queue: of all) that end in a subspace, one after the other.
+    /// Light subpaths of one iteration (queue: of all) that end in a subspace, one after the other.
     struct Kept {
         std::vector<PathVertex> vertices;
         std::vector<std::uint32_t> lengths;
     };
-    /// Copies what the coming iterations use again. Iterations without a vertex count as well.
+    /// Copies the light subpaths that the coming iterations use again. Iterations without a vertex
+    /// count as well.
     void keep(const ThreadPool& threads) {
         threads.forEach(kept_.size(), [&](std::size_t i) {
             const std::uint32_t window = tables_.windows[i];
@@ -226,8 +227,8 @@ class SubspaceConnections final : public Method {
     SubspaceTables tables_;
     SubspaceDensity density_;
     std::uint64_t iterations_ = 0;  // j, with the warm-up
-    // By light subspace: LVC_i, how many of its members are of the pool (they are the first), and C_i,
-    // how many came in all iterations so far.
+    // By light subspace: LVC_i; how many of its members are of the pool (they come first); C_i, how many all iterations
+    // so far have put there.
     std::vector<LightCell> cells_;
     std::vector<std::size_t> fresh_;
     std::vector<std::uint64_t> generated_;

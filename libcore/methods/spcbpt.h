@@ -1,4 +1,4 @@
-// Connections by subspaces, for all rows that are made of them: spcbpt, spcbpt-fifo, sharebpt.
+// Connections by subspaces, which the rows spcbpt, spcbpt-fifo and sharebpt are made of.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct SubspaceOptions {
     int sharedPixels = 1;        ///< Sharing::pixels
     double sharedSamples = 1.0;  ///< Sharing::samples
 };
-/// `candidates`, picks and `weights`, which all have.
+/// The options that all these rows have: `candidates`, picks and `weights`.
 OptionTable<SubspaceOptions> subspaceOptions(const SubspaceOptions& defaults);
 
 std::unique_ptr<Method> subspaceConnections(const SubspaceOptions& options);

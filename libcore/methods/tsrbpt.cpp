@@ -1,5 +1,5 @@
 // Two-stage resampling [Nabata20b]: many light subpaths, thinned out at every cache point by a cut
-// through a light tree before the costly target is looked at. (theory.md, "tsrbpt")
+// through a light tree before the costly target is evaluated. (theory.md, "tsrbpt")
 //
 //   Y         all connectable vertices of M1 light subpaths, new in every iteration; a light tree
 //   stage 1   at each cache point c a cut of M2 clusters, bounded by power x G; from each cluster
@@ -20,9 +20,9 @@
 //             where Q2(c) = 0 only stage 1 helps: p/q1 takes the place of p/q2;
 //             then withEyeShare (as printed: no share)
 //   points    as printed [5.4]: N_c points and a virtual one that picks evenly from Y; one of them
-//             with 1 / (N_c + 1), and the pick's weight times (N_c + 1) a_c(y), where
+//             is chosen with 1 / (N_c + 1), and the pick's weight is times (N_c + 1) a_c(y), where
 //             a_c = r_c / (sum of all r), the virtual r = N M1 / Vbar, and r_c = 0 here where c
-//             never picks y (d = 0: where T would be zero, which asks a ray of each point);
+//             never picks y (d = 0: where T would be zero, which takes a ray for each point);
 //             MIS: the mean of all N_c + 1
 #include <algorithm>
 
@@ -107,7 +107,7 @@ class TwoStageDensity final : public ConnectionDensity {
         const double ratio2 = q2 > 0.0 ? std::max(options_.clamp, q2 / (y.flow * g)) : ratio1;
         return effective(ratio1, ratio2 / (n * (1.0 - options_.defensive)));
     }
-    /// That of the virtual point.
+    /// r of the virtual point, with n picks.
     double samplesOfVirtual(double n) const { return n * uniform_; }
 
   private:
@@ -124,7 +124,8 @@ class TwoStageDensity final : public ConnectionDensity {
     double uniform_ = 1.0;
 };
 
-/// What a cache point offers: one light vertex per cluster, with the distribution P2 over them.
+/// The light vertex that a cache point offers for one of its clusters, with the cdf of
+/// P2 over these.
 struct Offer {
     std::uint32_t candidate;
     double cdf;
@@ -140,7 +141,7 @@ class TwoStageResampling final : public Method {
           density_(options),
           earlier_(2, options.earlierIterations, kEarlierPoints) {}
 
-    // The first leaves cache points, the second finds their Q.
+    // The first warm-up leaves cache points, the second finds their Q.
     int warmupIterations() const override { return 2; }
     PoolRequest pool() const override { return {options_.subpaths}; }
     Merging merging() const override { return options_.merging.merging(); }
@@ -229,7 +230,8 @@ class TwoStageResampling final : public Method {
         std::vector<WeightedVertex> weights;
     };
 
-    /// A light vertex, and what makes its contribution one to the mean over the pool.
+    /// A light vertex, and the weight that makes its contribution an estimate of the mean
+    /// over the pool.
     struct Pick {
         std::uint32_t candidate;
         double weight;
@@ -239,7 +241,7 @@ class TwoStageResampling final : public Method {
         const auto n = double(candidates_.size());
         return {std::uint32_t(u * n), n / double(options_.subpaths)};
     }
-    /// By P2 at a point that offers something.
+    /// Picks by P2 at a point that offers something.
     Pick pickAt(std::uint32_t c, double u) const {
         const Offer* begin = offers_.data() + c * perPoint_;
         const Offer* found =
@@ -249,7 +251,8 @@ class TwoStageResampling final : public Method {
         return {found->candidate, found->scale / pmf};
     }
 
-    /// a of the choice that picked: the points around, then the virtual one.
+    /// a_c(y) of the choice that made the pick. The choices are the points around, then
+    /// the virtual one.
     double shareOf(std::uint32_t choice, std::span<const std::uint32_t> around, const Pick& pick,
                    double n, const EyeContext& context) const {
         const Subpath light = prefixOf(pick);
@@ -267,7 +270,7 @@ class TwoStageResampling final : public Method {
         }
         return chosen / sum;
     }
-    /// Whether a point may pick the vertex, were it what the first stage draws from its cluster.
+    /// Whether a point may pick the vertex, if the first stage has drawn it from its cluster.
     bool offersAt(std::uint32_t c, Subpath light, const EyeContext& context) const {
         if (options_.defensive > 0.0) return true;
         const Subpath eye = points_.eye(c);
@@ -276,14 +279,14 @@ class TwoStageResampling final : public Method {
                context.space.visible(light.back(), eye.back(), context.tally);
     }
 
-    /// G without cosines, so that nothing that has power is ever zero.
+    /// G without cosines, so that no U_j of a vertex with power is zero.
     static double falloff(const PathVertex& light, const PathVertex& eye, double limit) {
         if (light.infinite()) return 1.0;
         const double d2 = lengthSquared(Vec3d(light.position) - Vec3d(eye.position));
         return d2 * limit > 1.0 ? 1.0 / d2 : limit;
     }
 
-    /// Both stages at cache point `c`.
+    /// Runs both stages at cache point `c`.
     void offer(std::uint32_t c, const IterationContext& context, RayTally& tally, Scratch& s) {
         const Subpath eye = points_.eye(c);
         const double limit = points_.inverseSquareLimit(c);
@@ -320,7 +323,7 @@ class TwoStageResampling final : public Method {
         fill(c, perSubpath, s);
     }
 
-    /// P2 over the draws.
+    /// Sets P2 over the draws.
     void fill(std::uint32_t c, double perSubpath, const Scratch& s) {
         double total = 0.0, reserve = 0.0;
         for (const WeightedVertex& w : s.weights) total += w.weight;
@@ -330,7 +333,7 @@ class TwoStageResampling final : public Method {
         double cdf = 0.0;
         auto weight = s.weights.begin();
         Offer* out = offers_.data() + c * perPoint_;
-        std::uint32_t last = 0;  // that is ever picked
+        std::uint32_t last = 0;  // the last draw that can be picked
         for (std::uint32_t j = 0; j < s.draws.size(); ++j) {
             const LightTree::Draw& draw = s.draws[j];
             const double before = cdf;
@@ -342,7 +345,7 @@ class TwoStageResampling final : public Method {
             if (cdf > before) last = j;
             out[j] = {draw.candidate, cdf, perSubpath / draw.pmf};
         }
-        // The sum is one but for rounding: the last that is ever picked closes it.
+        // The sum is one but for rounding: the last draw that can be picked closes it.
         for (std::size_t j = last; j < s.draws.size(); ++j) out[j].cdf = 1.0;
         offered_[c] = std::uint32_t(s.draws.size());
     }

@@ -1,6 +1,6 @@
 // Vertex connection and merging [Georgiev12b], [Hachisuka12]: bpt (own_light_path.h), and every eye
-// vertex merged with the photons around it, the vertices of all pixels' light subpaths, in one
-// weight. (theory.md, "vcm")
+// vertex is merged with the photons around it, the vertices of all pixels' light subpaths. The
+// weights cover both. (theory.md, "vcm")
 #include "libcore/methods/registry.h"
 #include "libcore/resampling/merge_options.h"
 #include "libcore/resampling/own_light_path.h"
