@@ -16,7 +16,7 @@ std::uint32_t murmurHash(std::string_view text) {
     return hash;
 }
 
-/// Of an id, bright enough to be seen.
+/// A colour for an id, bright enough to be visible.
 Rgb colourOf(float id) {
     const auto bits = std::bit_cast<std::uint32_t>(id);
     const auto part = [&](int shift) { return 0.1f + 0.9f * float(bits >> shift & 255) / 255.0f; };

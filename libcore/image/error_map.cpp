@@ -6,9 +6,8 @@
 namespace lacuna {
 namespace {
 
-// One anchor per half decade from kErrorMapLow to kErrorMapHigh; CIE lightness rises by 10 to 14
-// from one to the next, so that the order is seen without knowing the colours (and in a grey
-// print).
+// One anchor per half decade from kErrorMapLow to kErrorMapHigh. CIE lightness rises by 10 to 14
+// from each to the next, so that the order is visible without a legend (and in a grey print).
 constexpr double kAnchors[][3] = {{0, 0, 0},      {40, 12, 90},   {95, 15, 120},
                                   {160, 30, 110}, {210, 55, 80},  {235, 100, 45},
                                   {245, 150, 30}, {250, 205, 75}, {255, 250, 190}};

@@ -1,4 +1,4 @@
-// Where an image differs from its reference, as a false-colour picture.
+// A false-colour picture of the error of an image against its reference.
 #pragma once
 
 #include <array>
@@ -21,7 +21,8 @@ inline constexpr const char* kErrorMapScale =
 /// sRGB bytes for a relative error >= 0 (infinity included); lightness grows with the error.
 std::array<std::uint8_t, 3> errorColour(double relativeError);
 
-/// sRGB bytes, width * height * 3, top row first. Throws InputError as ErrorReference::compare.
+/// The error map in sRGB bytes, width * height * 3, top row first. Throws InputError like
+/// ErrorReference::compare.
 std::vector<std::uint8_t> errorMap(const Image& image, const ErrorReference& reference,
                                    const std::string& name = "image");
 

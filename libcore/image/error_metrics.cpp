@@ -33,7 +33,7 @@ void requireFinite(const Image& image, const std::string& name) {
     }
 }
 
-/// A sum of row sums: the rounding grows with width + height, not with their product.
+/// A sum of row sums, whose rounding error grows with width + height and not with their product.
 class RowSum {
   public:
     void add(double v) { row_ += v; }
@@ -45,7 +45,7 @@ class RowSum {
     double total_ = 0.0;
 };
 
-/// One term of mape; a black reference has e = 0 and R = 0.
+/// One term of mape. For a black reference e = 0 and R = 0.
 double relative(double i, double r, double e) {
     const double d = std::abs(i - r);
     return d == 0.0 ? 0.0 : (r + e == 0.0 ? kInfinity : d / (r + e));

@@ -1,4 +1,4 @@
-// How far an image is from a reference (render/README.md, "lacuna-compare").
+// Errors of an image against a reference (render/README.md, "lacuna-compare").
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace lacuna {
 /// Means over all pixels and the three channels, e = 0.01 mean R:
 ///   mae  = mean |I - R|              rmse   = sqrt(mean (I - R)^2)      (radiance)
 ///   mape = mean |I - R| / (R + e)    relmse = mean (I - R)^2 / (R^2 + e^2)
-/// A black reference: mape and relmse are 0 where I = R everywhere, else infinite.
+/// For a black reference, mape and relmse are 0 if I = R everywhere, else infinite.
 struct ErrorMeasures {
     double mae = 0.0;
     double rmse = 0.0;
@@ -20,22 +20,23 @@ struct ErrorMeasures {
     std::size_t pixels = 0;
 };
 
-/// A reference that has been found usable, with what every comparison against it needs.
+/// A validated reference, with the values that every comparison against it needs.
 class ErrorReference {
   public:
     /// `name` is what messages call the reference. Throws InputError if it is empty, holds a
     /// non-finite value, or one so negative that R + e is not positive.
     explicit ErrorReference(Image reference, std::string name = "reference");
 
-    /// One thread, a fixed order, sums in double: the same result on any machine with IEEE doubles.
-    /// Throws InputError if the sizes differ or `image`, called `name`, has a non-finite value.
+    /// The errors of `image`, which messages call `name`. One thread sums in double and in a fixed
+    /// order, so that the result is the same on any machine with IEEE doubles. Throws InputError if
+    /// the sizes differ or `image` has a non-finite value.
     ErrorMeasures compare(const Image& image, const std::string& name = "image") const;
 
     /// |I - R| / (R + e), mean of the three channels, at pixel (x, y); infinite where the whole
     /// reference is black and I is not.
     double relativeError(const Image& image, int x, int y) const;
 
-    /// Throws InputError as `compare` does.
+    /// Throws InputError like `compare`.
     void requireComparable(const Image& image, const std::string& name) const;
 
     const Image& image() const { return reference_; }

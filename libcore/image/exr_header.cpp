@@ -25,7 +25,8 @@ struct Tile {
     std::uint32_t width, height;
 };
 
-/// Reads forward through the bytes and never past their end. EXR is little-endian, as are we.
+/// Reads forward through the bytes and never past their end. EXR is little-endian, like the
+/// supported machines.
 class Cursor {
   public:
     Cursor(const std::string& path, const std::vector<std::uint8_t>& bytes)
@@ -38,7 +39,7 @@ class Cursor {
         std::memcpy(&out, take(sizeof(T)), sizeof(T));
         return out;
     }
-    /// Up to the next NUL, which is passed over.
+    /// The text up to the next NUL, which is skipped.
     std::string text() {
         const auto from = bytes_.begin() + std::ptrdiff_t(position_);
         const auto end = std::find(from, bytes_.end(), std::uint8_t(0));
@@ -46,7 +47,7 @@ class Cursor {
         take(out.size() + 1);
         return out;
     }
-    /// Whether the next byte is this one, which is then passed over.
+    /// Skips the next byte if it is this one; tells whether it was.
     bool passes(std::uint8_t byte) {
         const bool is = left() > 0 && bytes_[position_] == byte;
         if (is) ++position_;
@@ -73,7 +74,7 @@ void requireTiles(const std::string& path, const Tile& tile, const Box& window, 
     const auto side = std::uint32_t(kMaxImageSide);
     const auto ceilDiv = [](std::int64_t a, std::int64_t b) { return (a + b - 1) / b; };
     bool sane = tile.width >= 1 && tile.height >= 1 && tile.width <= side && tile.height <= side;
-    // OpenEXR holds a whole row of tiles, and 8 bytes of table per tile.
+    // OpenEXR allocates a whole row of tiles, and 8 bytes of table per tile.
     sane = sane && std::size_t(tile.width) * tile.height <= kMaxImagePixels &&
            std::size_t(window.width()) * tile.height <= kMaxImagePixels &&
            std::size_t(ceilDiv(window.width(), tile.width) *
@@ -85,7 +86,7 @@ void requireTiles(const std::string& path, const Tile& tile, const Box& window, 
     }
 }
 
-/// Bytes of an attribute's value; nothing where they depend on the value.
+/// Size in bytes of an attribute of this type; empty if it depends on the value.
 std::optional<std::size_t> sizeOf(std::string_view type) {
     struct Fixed {
         std::string_view type;
@@ -105,8 +106,8 @@ std::optional<std::size_t> sizeOf(std::string_view type) {
     return found == std::end(kFixed) ? std::nullopt : std::optional(found->size);
 }
 
-/// Passes over the value as OpenEXR does, by what it holds and not by the size that is given: behind a value
-/// of another size everything would be taken for something else.
+/// Skips the value like OpenEXR, by its content and not by the size that the file gives: after a value of another size,
+/// OpenEXR would misread everything.
 void passOver(Cursor& content, std::string_view type, std::size_t size) {
     if (const auto fixed = sizeOf(type)) {
         content.take(*fixed);
@@ -119,7 +120,7 @@ void passOver(Cursor& content, std::string_view type, std::size_t size) {
     } else if (type == "preview") {
         const std::uint64_t width = content.value<std::uint32_t>();
         const std::uint64_t height = content.value<std::uint32_t>();
-        // Beyond the largest side any number is too large.
+        // Clamped to just above the largest side, which is too large already.
         const auto most = std::uint64_t(kMaxImageSide) + 1;
         content.take(std::min(width, most) * std::min(height, most) * 4);
     } else if (type == "floatvector") {
@@ -129,11 +130,11 @@ void passOver(Cursor& content, std::string_view type, std::size_t size) {
     }
 }
 
-/// What a part says of itself.
+/// The header of one part.
 struct PartHeader {
     Box window{};
     std::optional<Tile> tile;
-    std::size_t chunks = 0;  ///< as it claims; at least one for every 256 lines
+    std::size_t chunks = 0;  ///< claimed number; at least one for every 256 lines
 
     void checkTiles(const std::string& path, std::size_t bytes) const {
         if (tile) requireTiles(path, *tile, window, bytes);
@@ -194,7 +195,7 @@ void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& by
     do {
         const PartHeader header = readHeader(path, cursor);
         header.checkTiles(path, bytes.size());
-        // OpenEXR makes room for all that each part claims.
+        // OpenEXR allocates all that each part claims.
         chunks += header.chunks;
         if (chunks > bytes.size() / 8) {
             throw InputError(path + ": expected parts that fit the file, found too many scan " +

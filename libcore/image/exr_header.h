@@ -1,4 +1,4 @@
-// What an EXR header claims, checked before OpenEXR allocates by it.
+// Check of the claims in an EXR header before OpenEXR allocates by them.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace lacuna {
 
-/// Walks the attributes of all parts' headers: each has to lie inside the file, data windows have
-/// to be of a sane size, tables of tiles and scan lines have to fit into the file. OpenEXR checks the
-/// rest itself. Throws InputError, also for deep files, which no tool of ours writes.
+/// Walks through the attributes of all parts' headers. Each attribute must lie inside the file, data windows must have
+/// a sane size, and tables of tiles and scan lines must fit into the file. OpenEXR checks the rest itself. Throws
+/// InputError, also for deep files, which are not supported.
 void checkExrHeader(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
 }  // namespace lacuna

@@ -25,7 +25,7 @@
 namespace lacuna {
 namespace {
 
-/// OpenEXR's way out of bytes in memory.
+/// OpenEXR's input stream over bytes in memory.
 class ByteStream final : public Imf::IStream {
   public:
     ByteStream(const std::string& path, const std::vector<std::uint8_t>& bytes)
@@ -46,7 +46,7 @@ class ByteStream final : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
-/// An open file whose claims have been checked.
+/// An open file whose header has been checked.
 class ExrReader {
   public:
     explicit ExrReader(const std::string& path) : path_(path), bytes_(readFileBytes(path)) {
@@ -99,7 +99,7 @@ class ExrReader {
         }
     }
 
-    /// Slice of the frame buffer whose pixel (0, 0) of the window lies at `first`.
+    /// Slice of the frame buffer; the value of the data window's first pixel goes to `first`.
     Imf::Slice slice(int part, float* first, std::size_t stride) const {
         return Imf::Slice::Make(Imf::FLOAT, first, window(part), stride, stride * width(part));
     }
@@ -132,7 +132,7 @@ class ExrReader {
     std::unique_ptr<Imf::MultiPartInputFile> file_;
 };
 
-/// Everything that OpenEXR or the allocator throws about a file is the file's fault.
+/// Turns every exception of OpenEXR or the allocator into an InputError: the file causes it.
 template <class Body>
 auto asInputError(const std::string& path, Body body) {
     try {
@@ -149,7 +149,7 @@ auto asInputError(const std::string& path, Body body) {
     }
 }
 
-/// The first part with a picture; without any the first one.
+/// The first part with a picture; if there is none, the first part.
 int partOfPicture(const ExrReader& reader) {
     for (int part = 0; part < reader.parts(); ++part) {
         const Imf::ChannelList& list = reader.header(part).channels();
@@ -161,7 +161,7 @@ int partOfPicture(const ExrReader& reader) {
 void readAttributes(const Imf::Header& header, LayeredImage& image) {
     for (auto a = header.begin(); a != header.end(); ++a) {
         const std::string name = a.name();
-        if (name == "name" || name == "type" || name == "chunkCount") continue;  // the part's
+        if (name == "name" || name == "type" || name == "chunkCount") continue;  // of the part
         const Imf::Attribute& value = a.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&value)) {
             image.attributes[name] = text->value();

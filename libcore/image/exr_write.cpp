@@ -30,7 +30,7 @@
 namespace lacuna {
 namespace {
 
-/// OpenEXR's way into an AtomicFile.
+/// OpenEXR's output stream into an AtomicFile.
 class AtomicStream final : public Imf::OStream {
   public:
     AtomicStream(const std::string& path, AtomicFile& file)
@@ -45,7 +45,8 @@ class AtomicStream final : public Imf::OStream {
         file_.seek(position);
     }
 
-    /// Whether the table of scan lines, which is written last, says of some that they are nowhere.
+    /// Whether the table of scan lines, which is written last, has a zero position, that of a
+    /// missing line.
     bool hasHole() const { return hasHole_; }
 
   private:
@@ -54,7 +55,7 @@ class AtomicStream final : public Imf::OStream {
 };
 
 void insertAttribute(Imf::Header& header, const std::string& name, const Attribute& value) {
-    // Names that mean something to OpenEXR even where this header does not hold them.
+    // Names with a meaning for OpenEXR, even where this header does not hold them.
     static constexpr std::array<std::string_view, 8> reserved{
         "type", "version", "chunkCount", "name", "view", "tiles", "preview", "maxSamplesPerPixel"};
     if (name.empty() || name.size() > 255 || name.find('\0') != std::string::npos ||
@@ -73,8 +74,8 @@ void insertAttribute(Imf::Header& header, const std::string& name, const Attribu
 
 constexpr std::string_view kCryptomatte = "cryptomatte/", kCryptoLayer = "Crypto";
 
-/// "albedo" of "albedo.R". The picture's channels, its alpha among them, are those of the layer "";
-/// any other that stands alone (Z) is a layer of its own.
+/// The layer of a channel: "albedo" for "albedo.R". The picture's channels, including alpha, form
+/// the layer "". Any other channel without a dot (Z) is a layer of its own.
 std::string layerOf(const std::string& channel) {
     const std::size_t dot = channel.rfind('.');
     if (dot != std::string::npos) return channel.substr(0, dot);
@@ -82,7 +83,7 @@ std::string layerOf(const std::string& channel) {
     return picture ? "" : channel;
 }
 
-/// Whether half is too coarse for a layer (places, ids, the sums of a part) or its numbers are too small.
+/// Whether half is too coarse for a layer (positions, ids, the sums of a part) or cannot hold its small numbers.
 bool needsFloat(const std::string& layer) {
     return layer == "Z" || layer == "position" || layer.starts_with("variance") ||
            layer.starts_with("sum.") || layer.starts_with(kCryptoLayer);
@@ -93,10 +94,10 @@ struct ExrPart {
     Imf::FrameBuffer buffer;
 };
 
-/// An image as parts of a file, one or (multiPart) one for each layer, that of the picture first.
+/// An image as the parts of a file: one part, or (multiPart) one for each layer, the picture first.
 class ExrParts {
   public:
-    /// `image` must outlive it.
+    /// `image` must outlive the object.
     ExrParts(const LayeredImage& image, const ExrStyle& style) : image_(image), style_(style) {
         for (const auto& [name, values] : image_.channels()) {
             const std::string layer = layerOf(name);
@@ -109,8 +110,8 @@ class ExrParts {
         }
     }
 
-    /// Tables of scan lines are written by destructors, which swallow exceptions: that is what
-    /// commit() asks the file about afterwards.
+    /// OpenEXR's destructors write the tables of scan lines and swallow exceptions. Therefore
+    /// AtomicFile remembers errors, and commit() reports them.
     void write(AtomicStream& stream) const {
         if (!style_.multiPart) {
             const ExrPart& part = parts_.begin()->second;
@@ -166,7 +167,7 @@ class ExrParts {
     const LayeredImage& image_;
     const ExrStyle style_;
     std::map<std::string, ExrPart> parts_;
-    std::list<std::vector<half>> halves_;  // of channels that are not written from the image itself
+    std::list<std::vector<half>> halves_;  // converted channels
 };
 
 }  // namespace
@@ -186,7 +187,7 @@ void writeExr(const std::string& path, const LayeredImage& image, const ExrStyle
         throw RunError(path + ": expected to write an image, found: " + e.what() +
                        "; choose another output");
     }
-    // OpenEXR says nothing where it found no memory to compress a block in.
+    // OpenEXR does not report that it lacked the memory to compress a block.
     if (stream.hasHole()) throw std::bad_alloc();
     file.commit();
 }

@@ -1,5 +1,5 @@
-// Radiance .hdr. Not read with stb_image although that can: Debian's (2.27) loops for ever in a
-// run-length coded file that is cut off, and takes a cut-off flat one for black.
+// Radiance .hdr. It is not read with stb_image: Debian's version (2.27) loops for ever in a
+// truncated run-length coded file and reads a truncated flat one as black.
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -51,7 +51,7 @@ struct Rgbe {
     }
 };
 
-/// Four runs of one component each, after the marker 2 2 width.
+/// Reads a run-length coded row, one component after the other, after the marker 2 2 width.
 void readRuns(const std::string& path, Scanner& in, std::vector<Rgbe>& row) {
     for (int c = 0; c < 4; ++c) {
         for (std::size_t x = 0; x < row.size();) {
@@ -65,7 +65,8 @@ void readRuns(const std::string& path, Scanner& in, std::vector<Rgbe>& row) {
     }
 }
 
-/// One row: run-length coded where the marker stands (only for widths 8..32767), else flat.
+/// Reads one row: run-length coded if it begins with the marker (only for widths 8..32767), else
+/// flat.
 void readRow(const std::string& path, Scanner& in, std::vector<Rgbe>& row) {
     std::size_t x = 0;
     if (row.size() >= 8 && row.size() < 32768) {
@@ -87,7 +88,7 @@ void readRow(const std::string& path, Scanner& in, std::vector<Rgbe>& row) {
     }
 }
 
-/// "-Y height +X width": the only orientation that is in use.
+/// Parses "-Y height +X width", the only orientation in use.
 void parseSize(const std::string& path, std::string_view line, int& width, int& height) {
     const auto number = [&](std::string_view prefix) {
         if (line.substr(0, prefix.size()) != prefix) fail(path, "a size '-Y height +X width'");
@@ -119,7 +120,7 @@ Image readHdr(const std::string& path) {
     if (!isRgbe) fail(path, "FORMAT=32-bit_rle_rgbe");
     int width = 0, height = 0;
     parseSize(path, in.line(), width, height);
-    // A run is of two bytes and 127 pixels at most, for each of four components.
+    // A run takes two bytes and has at most 127 pixels, for each of four components.
     if (bytes.size() < std::size_t(width) * std::size_t(height) * 8 / 127) {
         fail(path, "more pixels");
     }

@@ -12,7 +12,7 @@ std::array<std::string, 3> rgbNames(const std::string& layer) {
     return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
-/// Number of pixels, after the sizes have been found sane.
+/// Number of pixels. Throws std::invalid_argument if the sizes are out of range.
 std::size_t checkedPixels(int width, int height) {
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
         std::size_t(width) * std::size_t(height) > kMaxImagePixels) {

@@ -1,4 +1,4 @@
-// Pictures in memory. Row-major, the top row first; linear Rec. 709, 32-bit float.
+// Pictures in memory: row-major, top row first; linear Rec. 709, 32-bit float.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace lacuna {
 
-/// Largest picture that is read or written: a corrupt header must not make us allocate at will.
+/// The largest picture that is read or written: a corrupt header must not cause arbitrary
+/// allocations.
 inline constexpr int kMaxImageSide = 65536;
 inline constexpr std::size_t kMaxImagePixels = std::size_t(1) << 28;
 
@@ -34,9 +35,9 @@ struct Image {
 
 using Attribute = std::variant<std::string, double, int>;
 
-/// Named float channels of one size ("R", "albedo.G", "normal.X", "Z", "weighted.s02t03.B") and
-/// what the header says about them. A layer is the part of the name before the last dot; the layer
-/// "" is the picture itself.
+/// Named float channels of one size ("R", "albedo.G", "normal.X", "Z", "weighted.s02t03.B"), with
+/// header attributes. A channel's layer is the part of its name before the last dot; the layer ""
+/// is the picture itself.
 class LayeredImage {
   public:
     LayeredImage() = default;
@@ -46,14 +47,14 @@ class LayeredImage {
     int width() const { return width_; }
     int height() const { return height_; }
 
-    /// The channel of that name, width * height floats; a new one is all zero.
-    /// Throws std::invalid_argument for a name that EXR cannot hold (empty, above 255 bytes, NUL).
+    /// The channel of that name, width * height floats. A missing one is created with zeros. Throws
+    /// std::invalid_argument for a name that EXR cannot hold (empty, above 255 bytes, NUL).
     std::vector<float>& channel(const std::string& name);
     /// nullptr if there is none.
     const std::vector<float>* find(const std::string& name) const;
     const std::map<std::string, std::vector<float>>& channels() const { return channels_; }
 
-    /// Removes a channel and returns what it held. Throws std::invalid_argument if there is none.
+    /// Removes a channel and returns its values. Throws std::invalid_argument if there is none.
     std::vector<float> take(const std::string& name);
     /// Sets LAYER.R, LAYER.G, LAYER.B. Throws std::invalid_argument if the sizes differ.
     void setRgb(const std::string& layer, const Image& image);

@@ -34,7 +34,7 @@ void writeImage(const std::string& path, const LayeredImage& image, const PngSty
     } else if (ending == ".png") {
         writePng(path, image.rgb(), png, image.find("A"));
     } else {
-        requireWritable(path);  // throws: one place that says which endings there are
+        requireWritable(path);  // throws: only this function lists the known endings
     }
 }
 
@@ -44,7 +44,7 @@ void requireWritable(const std::string& path) {
         throw UsageError(path + ": expected an output .exr, .pfm or .png, found the ending '" +
                          ending + "'; choose one of these");
     }
-    const AtomicFile probe(path);  // dropped without a commit: leaves no trace
+    const AtomicFile probe(path);  // without a commit it leaves no trace
 }
 
 }  // namespace lacuna

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 
-// The font: rectangles on a raster whose unit is two pixels here.
+// The font consists of rectangles on a raster. Its unit is two pixels here.
 #include <stb/stb_easy_font.h>
 
 namespace lacuna {
 namespace {
 
 constexpr int kScale = 2;
-constexpr int kLine = 11;  // units, with room for g and y
+constexpr int kLine = 11;  // height of a line in units, with room for g and y
 
-/// One byte for each character.
+/// The text with one byte for each character.
 std::string ascii(const std::string& text) {
     std::string plain;
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
-        if ((byte & 0xc0) == 0x80) continue;  // UTF-8: not the first byte of a character
+        if ((byte & 0xc0) == 0x80) continue;  // a continuation byte of UTF-8
         plain.push_back(byte >= 32 && byte < 127 ? c : '?');
     }
     return plain;
@@ -53,7 +53,7 @@ void Canvas::write(int x, int y, const std::string& text, const Colour8& colour)
                                           int(corners.size() * sizeof(Corner)));
     for (int i = 0; i < quads; ++i) {
         const Corner& first = corners[std::size_t(4 * i)];
-        const Corner& last = corners[std::size_t(4 * i + 2)];  // across from the first
+        const Corner& last = corners[std::size_t(4 * i + 2)];  // diagonally opposite to the first
         fill(x + kScale * int(first.x), y + kScale * int(first.y), kScale * int(last.x - first.x),
              kScale * int(last.y - first.y), colour);
     }

@@ -1,4 +1,4 @@
-// Pictures with writing on them.
+// Pictures with text on them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace lacuna {
 
 using Colour8 = std::array<std::uint8_t, 3>;
 
-/// sRGB bytes, top row first, that are drawn on. What lies outside is left out.
+/// A picture of sRGB bytes, top row first, for drawing. Everything is clipped to it.
 class Canvas {
   public:
     Canvas(int width, int height, const Colour8& ground);
@@ -20,10 +20,10 @@ class Canvas {
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
     void fill(int x, int y, int width, int height, const Colour8& colour);
-    /// One line, its upper left at (x, y); what is not ASCII is shown as '?'.
+    /// Writes one line with its upper left corner at (x, y). Characters outside ASCII become '?'.
     void write(int x, int y, const std::string& text, const Colour8& colour);
 
-    /// Of what `write` draws, in pixels.
+    /// Size of what `write` draws, in pixels.
     static int widthOf(const std::string& text);
     static int lineHeight();
 
@@ -32,7 +32,7 @@ class Canvas {
     std::vector<std::uint8_t> bytes_;
 };
 
-/// As much of the text as `width` pixels hold; dots at the end where that is not all.
+/// The text cut to `width` pixels; it ends with dots if it was cut.
 std::string fitted(const std::string& text, int width);
 
 }  // namespace lacuna

@@ -1,5 +1,5 @@
-// PFM: "PF" (colour) or "Pf" (grey), width, height, a scale whose sign is the byte order, one white
-// space, then raw floats, the bottom row first.
+// PFM: "PF" (colour) or "Pf" (grey), width, height, a scale whose sign gives the byte order, one
+// white space, then raw floats, bottom row first.
 #include <bit>
 #include <cctype>
 #include <charconv>
@@ -30,7 +30,7 @@ struct PfmHeader {
                      "else; the file is damaged or no PFM");
 }
 
-/// The next word and the single white space behind it.
+/// The next word; also skips the single white space after it.
 std::string_view nextWord(const std::string& path, std::string_view text, std::size_t& at) {
     const auto space = [&](std::size_t i) {
         return std::isspace(static_cast<unsigned char>(text[i])) != 0;

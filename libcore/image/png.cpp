@@ -14,7 +14,8 @@
 namespace lacuna {
 namespace {
 
-/// `T` is the stored integer; `from` holds 3 * pixels of them. One table entry per code value.
+/// Converts `from`, 3 * pixels stored integers T, to linear values with a table over all code
+/// values.
 template <class T>
 void decode(const T* from, Image& image) {
     constexpr int kMax = std::numeric_limits<T>::max();
@@ -34,7 +35,7 @@ struct StbFree {
     throw InputError(path + ": expected an intact PNG file, found: " + found + "; write it again");
 }
 
-/// What stb_image says of its last failure, which may be nothing, or hold bytes of the file.
+/// stb_image's reason for its last failure, which may be null or contain bytes of the file.
 std::string reason() {
     const char* said = stbi_failure_reason();
     return said && *said ? printable(said) : "a damaged one";
@@ -44,7 +45,7 @@ std::string reason() {
 
 Image readPng(const std::string& path) {
     const std::vector<std::uint8_t> bytes = readFileBytes(path);
-    // stb_image goes by content and would try its weaker readers on whatever this is.
+    // stb_image detects the format by content and would try its weaker readers on other files.
     constexpr std::array<std::uint8_t, 8> magic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     if (bytes.size() < 8 || !std::equal(magic.begin(), magic.end(), bytes.begin())) {
         fail(path, "no PNG signature");

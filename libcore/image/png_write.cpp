@@ -1,4 +1,4 @@
-// PNG files of our own (ISO/IEC 15948): rows through zlib, 8 or 16 bits per channel.
+// Writer of PNG files (ISO/IEC 15948): rows compressed with zlib, 8 or 16 bits per channel.
 #include <zlib.h>
 
 #include <array>
@@ -25,7 +25,7 @@ void append(Bytes& bytes, std::uint32_t value) {
     for (const int shift : {24, 16, 8, 0}) bytes.push_back(std::uint8_t(value >> shift));
 }
 
-/// Length, type, content and checksum.
+/// A chunk: length, type, content and checksum.
 Bytes chunk(std::string_view type, std::string_view content) {
     Bytes bytes;
     append(bytes, std::uint32_t(content.size()));
@@ -39,8 +39,8 @@ std::string_view textOf(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// What the filter Paeth predicts: that of left, above and both which is nearest to left + above -
-/// both.
+/// The prediction of the filter Paeth: whichever of left, above and both is nearest to left + above
+/// - both.
 int paeth(int left, int above, int both) {
     const int toLeft = std::abs(above - both), toAbove = std::abs(left - both),
               toBoth = std::abs(left + above - 2 * both);
@@ -48,7 +48,7 @@ int paeth(int left, int above, int both) {
     return toAbove <= toBoth ? above : both;
 }
 
-/// A row after the filter of that number (0 none, 1 left, 2 above, 4 Paeth), its number in front.
+/// Writes the filter's number (0 none, 1 left, 2 above, 4 Paeth) and the filtered row to `to`.
 /// `above`: the row above, zeros for the first.
 void filter(int number, const std::uint8_t* row, const std::uint8_t* above, std::size_t size,
             std::size_t pixel, Bytes& to) {
@@ -63,14 +63,15 @@ void filter(int number, const std::uint8_t* row, const std::uint8_t* above, std:
     }
 }
 
-/// The usual guess which filter compresses best: that whose differences are least.
+/// The usual heuristic for the filter that compresses best: the smallest sum of absolute
+/// differences.
 std::uint64_t roughness(const Bytes& filtered) {
     std::uint64_t sum = 0;
     for (const std::uint8_t v : filtered) sum += std::uint64_t(std::abs(int(std::int8_t(v))));
     return sum;
 }
 
-/// Rows, deflated, as chunks IDAT.
+/// Compresses rows with deflate and writes them as IDAT chunks.
 class Deflater {
   public:
     explicit Deflater(AtomicFile& file) : file_(file) {
@@ -137,7 +138,7 @@ void writePngBytes(const std::string& path, int width, int height, const Bytes& 
     Bytes head;
     append(head, std::uint32_t(width));
     append(head, std::uint32_t(height));
-    // 2: red, green, blue; 6: and alpha
+    // Colour type 2: red, green, blue; 6: with alpha.
     head.insert(head.end(), {std::uint8_t(bits), std::uint8_t(withAlpha ? 6 : 2), 0, 0, 0});
     for (const Bytes& bytes :
          {chunk("IHDR", textOf(head.data(), head.size())), chunk("tEXt", kSoftware)}) {

@@ -17,15 +17,15 @@ constexpr int kGap = 12;
 
 /// Channels of one layer: three of them as a colour or a vector, or one alone.
 struct Layer {
-    std::string name;  ///< as the channels have it: "" is the picture
+    std::string name;  ///< as in the channels' names: "" is the picture
     std::vector<const std::vector<float>*> planes;
 };
 
-/// Of one image, by name.
+/// The layers of one image, sorted by name.
 std::vector<Layer> layersByName(const LayeredImage& image) {
     std::vector<Layer> layers;
     for (const auto& [channel, plane] : image.channels()) {
-        if (channel.starts_with("covariance.")) continue;  // no pictures: signs, and many of them
+        if (channel.starts_with("covariance.")) continue;  // not pictures: signed, and many
         const std::size_t dot = channel.rfind('.');
         const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
         const std::string part = dot == std::string::npos ? channel : channel.substr(dot + 1);
@@ -46,7 +46,7 @@ std::vector<Layer> layersByName(const LayeredImage& image) {
     return layers;
 }
 
-/// In the order of the sheet. `ids`: those of Cryptomatte as pictures.
+/// All layers in the order of the sheet. `ids`: the Cryptomattes as pictures.
 std::vector<Layer> layersOf(const LayeredImage& image, const LayeredImage& ids) {
     std::vector<Layer> layers = layersByName(image);
     for (Layer& layer : layersByName(ids)) layers.push_back(std::move(layer));
@@ -63,7 +63,8 @@ std::vector<Layer> layersOf(const LayeredImage& image, const LayeredImage& ids) 
     return layers;
 }
 
-/// Size of the small pictures: means of pixels where these are more, whole copies where fewer.
+/// Size of the small pictures. Their pixels are means over the picture's pixels, or copies where
+/// the picture has fewer.
 struct Raster {
     int fromWidth, fromHeight, width, height;
 
@@ -78,7 +79,8 @@ struct Raster {
         }
     }
 
-    /// The mean over what lies under a small picture's pixel; what is not finite has no say.
+    /// The mean over the picture's pixels under a pixel of the small picture, without values that
+    /// are not finite.
     float mean(const std::vector<float>& plane, int x, int y) const {
         const auto range = [](int i, int from, int to) {
             const int begin = int(std::int64_t(i) * from / to);
@@ -131,7 +133,7 @@ std::string text(const char* format, double a, double b = 0.0) {
     return buffer;
 }
 
-/// Lowest and highest of what is above 0; 0 and 0 where nothing is.
+/// Smallest and largest of the values above 0; (0, 0) if there are none.
 std::pair<float, float> rangeOf(const Image& small) {
     float low = 0.0f, high = 0.0f;
     for (const Rgb& p : small.pixels) {
@@ -142,7 +144,8 @@ std::pair<float, float> rangeOf(const Image& small) {
     return {low, high};
 }
 
-/// Where the things of a picture are: of what is not the origin, which stands for nothing.
+/// Bounding box of the positions in a picture, without the origin, which means that nothing is
+/// there.
 struct Box {
     Rgb low, high;
 
@@ -165,10 +168,10 @@ Box boxOf(const Image& positions) {
     return box;
 }
 
-/// How layers are shown, given the picture's.
+/// Turns layers into visible colours; it needs the picture itself for exposure and noise.
 class Show {
   public:
-    /// `picture`: the small one.
+    /// `picture`: the small version of the picture.
     Show(const Image& picture, Tone tone, double stops)
         : picture_(picture), tone_(tone), stops_(stops) {
         double sum = 0.0;
@@ -176,7 +179,7 @@ class Show {
         floor_ = 0.01 * sum / double(picture.pixels.size());
     }
 
-    /// Colours of a layer's small picture; what there is to say of them is added to `label`.
+    /// Colours of a layer's small picture. Adds an explanation of them to `label`.
     std::vector<Colour8> colours(const Layer& layer, const Image& small, std::string& label) const {
         const auto is = [&](const char* start) { return layer.name.starts_with(start); };
         const auto each = [&](auto&& colour) {
@@ -240,7 +243,7 @@ Canvas layerSheet(const LayeredImage& image, const PngStyle& style) {
     const Image picture = shrunk({"", {image.find("R"), image.find("G"), image.find("B")}}, raster);
     const Show show(picture, style.tone, style.stopsFor(image.rgb()));
 
-    // Near 16:9, each with a line of text below.
+    // The sheet is close to 16:9; each cell has a line of text below.
     const int cellWidth = std::max(raster.width, 200) + kGap;
     const int cellHeight = raster.height + Canvas::lineHeight() + kGap;
     const double wanted = std::sqrt(count * 16.0 / 9.0 * cellHeight / cellWidth);

@@ -1,4 +1,4 @@
-// A page that shows every layer of a picture, small and with its name.
+// A contact sheet: every layer of a picture, small and with its name.
 #pragma once
 
 #include "libcore/image/image.h"
@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-/// The picture first, then the layers that belong to it, by name; layers of radiance have the
-/// picture's exposure and tone. Variances are shown as noise, in the colours of error maps: their
-/// root against the picture. Of Z near is white; of position red, green and blue say how far along x, y
-/// and z of what is seen; of Cryptomatte each name has a colour of its own. Throws std::invalid_argument where there is no picture (R, G, B).
+/// Shows the picture first, then its layers by name. Layers of radiance have the picture's exposure and tone. Variances
+/// are shown as noise in the colours of error maps: their root relative to the picture. In Z, near is white. In
+/// position, red, green and blue are x, y and z relative to the visible extent. In Cryptomattes each name has its own
+/// colour. Throws std::invalid_argument if there is no picture (R, G, B).
 Canvas layerSheet(const LayeredImage& image, const PngStyle& style);
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Pictures whose pixels know of those around them: what is dark by chance is no dark place.
+// Smoothed pictures, in which a pixel that is dark by chance does not count as a dark place.
 // (theory.md, "auto", "Effort behind glass")
 #pragma once
 
@@ -9,7 +9,8 @@
 
 namespace lacuna {
 
-/// The mean over the 5 x 5 pixels around each, as many of them as there are. `picture` is row-major and not empty.
+/// The mean over the 5 x 5 pixels around each pixel, as far as they lie in the picture. `picture` is row-major and not
+/// empty.
 template <class Pixel>
 std::vector<Pixel> smoothed(std::span<const Pixel> picture, int width) {
     constexpr int kReach = 2;

@@ -12,16 +12,16 @@ namespace {
 constexpr double kMidGrey = 0.18;
 constexpr double kWhite = 16.0;    // 6.5 stops above mid-grey
 constexpr double kContrast = 1.2;  // slope of the dark end in stops
-/// Of a channel that its neighbours get: bright colours come closer to white, as on film, in place
-/// of ending at a pure red, green or blue.
+/// Share of grey that is mixed into each channel: bright colours approach white, as on film,
+/// instead of ending at a pure red, green or blue.
 constexpr double kCrosstalk = 0.05;
 
 double luminance(const Rgb& v) {
     return 0.2126 * double(v.r) + 0.7152 * double(v.g) + 0.0722 * double(v.b);
 }
 
-/// A power of the exposure that saturates: u (1 + k) / (u + k), u = (v / white)^contrast; k is such
-/// that mid-grey stays where it is.
+/// A saturating power of the exposure: u (1 + k) / (u + k), u = (v / white)^contrast. k is such
+/// that mid-grey is unchanged.
 double filmic(double v) {
     static const double grey = std::pow(kMidGrey / kWhite, kContrast);
     static const double k = (1.0 - kMidGrey) * grey / (kMidGrey - grey);
@@ -57,8 +57,8 @@ double PngStyle::stopsFor(const Image& image) const {
 }
 
 double automaticExposure(const Image& image) {
-    // Of cells, not of pixels: where few paths find the light most pixels of a noisy picture are
-    // black, and the others too bright.
+    // Means over cells, not single pixels: where few paths find the light, most pixels of a noisy
+    // picture are black and the others too bright.
     constexpr int kCellsAcross = 48;
     const int side = std::max(1, std::max(image.width, image.height) / kCellsAcross);
     std::vector<double> logs;
@@ -87,7 +87,7 @@ double automaticExposure(const Image& image) {
 
 std::array<double, 3> toned(const Rgb& radiance, double scale, Tone tone) {
     const double grey = luminance(radiance);
-    // Infinity less infinity: where a channel is not finite each is white or black by itself.
+    // If a channel is not finite, channels are not mixed: infinity - infinity would be NaN.
     const double mixed = tone == Tone::Filmic && std::isfinite(grey) ? kCrosstalk : 0.0;
     const auto shown = [&](double v) {
         if (mixed > 0.0) v += mixed * (grey - v);

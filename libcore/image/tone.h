@@ -1,4 +1,4 @@
-// From linear radiance to what a screen shows.
+// Tone mapping: from linear radiance to the values that a screen shows.
 #pragma once
 
 #include <array>
@@ -11,45 +11,47 @@
 
 namespace lacuna {
 
-/// How values beyond what a screen shows are brought into its range.
+/// The curve that maps values to the range of a screen.
 enum class Tone {
-    Standard,  ///< none: what is above 1 is white
-    Filmic     ///< mid-grey stays, contrast rises a little, highlights fade to white at 16
+    Standard,  ///< no curve: values above 1 are clamped
+    Filmic     ///< keeps mid-grey, raises contrast a little; highlights fade to white at 16
 };
 
-/// "standard", "filmic".
+/// "standard" or "filmic".
 const char* nameOf(Tone tone);
-/// Throws UsageError that names `option`.
+/// The tone of that name. Throws UsageError, which names `option`.
 Tone parseTone(const std::string& option, const std::string& text);
 
-/// How a picture becomes a .png.
+/// Settings of the conversion of a picture to a .png.
 struct PngStyle {
-    std::optional<double> exposure = 0.0;  ///< stops; none: automaticExposure
+    std::optional<double> exposure = 0.0;  ///< in stops; empty: automaticExposure
     Tone tone = Tone::Standard;
     int bits = 8;  ///< per channel: 8 or 16
 
     double stopsFor(const Image& image) const;
 };
 
-/// "auto" is none; else stops from -1000 to 1000. Throws UsageError that names `option`.
+/// Parses "auto" (returned as empty) or stops from -1000 to 1000. Throws UsageError, which names
+/// `option`.
 std::optional<double> parseExposure(const std::string& option, const std::string& text);
 
-/// Stops that bring what there is to see to mid-grey (0.18): the mean of log luminance, without the
-/// darkest and the brightest tenth. A lamp, a window or a firefly is among the latter, so that a
-/// noisy picture gets what a clean one gets; what is black has no say. 0 for a black picture.
+/// The exposure in stops that brings the picture to mid-grey (0.18). It uses the mean of log
+/// luminance without the darkest and the brightest tenth. Lamps, windows and fireflies are in the
+/// latter, so that a noisy picture gets the same exposure as a clean one. Black parts do not count.
+/// 0 for a black picture.
 double automaticExposure(const Image& image);
 
-/// What a screen is to show of a radiance times `scale` (2^stops): shares of its full output, linear,
-/// 0 to 1. Below 0 and NaN are 0.
+/// The screen's linear output, each channel in [0, 1], for a radiance times `scale` (2^stops). Values below 0 and NaN
+/// become 0.
 std::array<double, 3> toned(const Rgb& radiance, double scale, Tone tone);
 
-/// IEC 61966-2-1, both ways, on [0, 1].
+/// The sRGB transfer functions of IEC 61966-2-1 on [0, 1].
 double srgbToLinear(double v);
 double linearToSrgb(double v);
 
-/// The picture as a .png holds it, top row first, three channels of one byte or (16 bits) of two,
-/// the high one first. With `alpha` (may be null) there are four, and colours are divided by it, which
-/// the picture's are not: none where it is 0.
+/// The bytes of a .png: top row first, three channels of one byte or (16 bits) two, high byte first. With `alpha` (may
+/// be null) there are four channels. The picture's colours are premultiplied by alpha, and a .png's are not: they are
+/// divided by it, and black where it is 0.
 std::vector<std::uint8_t> developed(const Image& image, const PngStyle& style,
                                     const std::vector<float>* alpha = nullptr);
 

@@ -20,19 +20,19 @@ constexpr int kRadial = 14;
 constexpr int kAngular = 8;
 constexpr std::size_t kPoints = std::size_t(kRadial) * kAngular;
 
-/// Points of the unit disk and their weights, in the shape that the vectoriser wants.
+/// Points of the unit disk and their weights, as separate arrays for vectorisation.
 struct DiskRule {
     std::array<double, kPoints> x, y, sqrtOneMinusX2, weight;
 };
 
-/// Product rule for the mean over the unit disk of a function even in x: midpoints in the angle
-/// (spectral for smooth periodic functions), Gauss-Legendre in t where r^2 = 1 - (1 - t)^2: dense
-/// at the rim, which holds GGX's tail.
+/// Product rule for the mean over the unit disk of a function even in x. It uses midpoints in the
+/// angle (spectral convergence for smooth periodic functions) and Gauss-Legendre in t, where r^2 =
+/// 1 - (1 - t)^2. This is dense at the rim, which holds the tail of GGX.
 DiskRule makeDiskRule() {
     DiskRule rule{};
     std::size_t out = 0;
     for (int i = 0; i < kRadial; ++i) {
-        // Newton on the Legendre polynomial P_n from Tricomi's first guess.
+        // Newton's method on the Legendre polynomial P_n from Tricomi's initial guess.
         double x = std::cos(std::numbers::pi * (i + 0.75) / (kRadial + 0.5));
         double derivative = 1;
         for (int step = 0; step < 20; ++step) {
@@ -59,9 +59,9 @@ DiskRule makeDiskRule() {
     return rule;
 }
 
-/// E = mean over visible normals of F(i.h) G2 / G1(i), the reflected direction above the horizon.
-/// The normals are those of ggx::visibleNormal [Heitz18] for a view in the plane x = 0; written out
-/// without branches, which makes it three times as fast.
+/// E = mean over visible normals of F(i.h) G2 / G1(i), with the reflected direction above the
+/// horizon. The normals are those of ggx::visibleNormal [Heitz18] for a view in the plane x = 0.
+/// The code is written out without branches, which makes it three times as fast.
 double directionalAlbedo(const DiskRule& rule, double mu, double alpha, double ior) {
     mu = std::max(mu, 1e-7);
     const double alpha2 = alpha * alpha;
@@ -143,7 +143,8 @@ AlbedoTable::AlbedoTable(float ior)
 }
 
 const AlbedoTable& clearcoatTable() {
-    // Isolated: a thread that makes it must not begin other work, which might ask for it.
+    // Isolated: the thread that makes the table must not begin other work, which might need the
+    // table.
     static const AlbedoTable table =
         tbb::this_task_arena::isolate([] { return AlbedoTable(Bsdf::kClearcoatIor); });
     return table;

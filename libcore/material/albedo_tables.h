@@ -1,13 +1,14 @@
 // E(mu, alpha): the directional albedo of a rough dielectric layer (GGX x exact Fresnel), and its
-// cosine-weighted mean. What the layer does not reflect is what the diffuse base below it gets:
+// cosine-weighted mean E_avg. The diffuse base below gets the light that the layer does not
+// reflect:
 //     f_diffuse = rho / pi (1 - s E(mu_i)) (1 - s E(mu_o)) / (1 - s E_avg),   s the specular factor
-// (reciprocal; its albedo is rho (1 - s E(mu_i)) if E_avg is the mean of the very E that is used).
-// So E is bilinear between nodes and E_avg is the exact integral of that bilinear function: what
-// the layer and a white base reflect together differs from 1 by the interpolation error of E alone
-// (kTableError).
+// This is reciprocal, and its albedo is rho (1 - s E(mu_i)) if E_avg is the mean of the same E.
+// Therefore E is bilinear between nodes, and E_avg is the exact integral of that bilinear function.
+// The albedo of the layer and a white base together differs from 1 only by the interpolation error
+// of E (kTableError).
 //
-// Both axes take index and fraction from the bits of a float: piecewise linear, a fixed number of
-// nodes per octave, no logarithm or root at look-up.
+// On both axes, index and fraction come from the bits of a float: nodes are equidistant within each
+// octave, and a look-up needs no logarithm or root.
 #pragma once
 
 #include <bit>
@@ -17,18 +18,18 @@
 
 namespace lacuna {
 
-/// Bound of |E - its table| for ior in [1.01, 3], angles up to the horizon, alpha in [1e-4, 1];
-/// tests measure it.
+/// Bound of the error of the table of E for ior in [1.01, 3], all angles up to the horizon and
+/// alpha in [1e-4, 1]; tests measure it.
 inline constexpr float kTableError = 1.5e-3f;
 
 /// The table of one index of refraction.
 class AlbedoTable {
   public:
-    /// Where alpha lies between two rows; quantised so that it fits in every Bsdf. E and E_avg must
-    /// be read with the same one.
+    /// Position of alpha between two rows, quantised so that it fits into every Bsdf. E and E_avg
+    /// must be read with the same position.
     struct Row {
         std::uint8_t index = 0;
-        std::uint16_t fraction = 0;  ///< of 65536
+        std::uint16_t fraction = 0;  ///< in units of 1 / 65536
     };
 
     explicit AlbedoTable(float ior);
@@ -50,12 +51,12 @@ class AlbedoTable {
     }
 
   private:
-    // mu: x = shift + mu (1 - shift) from 2^-13 to 1, 16 nodes per octave of x; the last is
-    // repeated so that mu one rounding error above 1 is no special case.
+    // mu: x = shift + mu (1 - shift) from 2^-13 to 1, 16 nodes per octave of x. The last node is
+    // repeated, so that mu one rounding error above 1 is no special case.
     static constexpr float kMuShift = 0x1p-13f;
     static constexpr int kMuBits = 23 - 4;
     static constexpr int kMuNodes = 13 * 16 + 2;
-    // alpha: 2^-14 to 1, 8 nodes per octave, the last repeated.
+    // alpha: 2^-14 to 1, 8 nodes per octave; the last is repeated.
     static constexpr float kAlphaMin = 0x1p-14f;
     static constexpr int kAlphaBits = 23 - 3;
     static constexpr int kAlphaNodes = 14 * 8 + 2;
@@ -71,25 +72,27 @@ class AlbedoTable {
     std::vector<float> averages_;  // [alpha]
 };
 
-/// The table of every clearcoat, Bsdf::kClearcoatIor. Made when it is first asked for.
+/// The table of all clearcoats, whose index is Bsdf::kClearcoatIor. The first call makes it.
 const AlbedoTable& clearcoatTable();
 
-/// One table per distinct index of refraction; immutable, read by all threads. Bsdfs point into it.
+/// One table per distinct index of refraction. Immutable and read by all threads. Bsdfs point into
+/// it.
 class AlbedoTables {
   public:
     AlbedoTables() = default;
-    /// `iors`: those of the scene's materials that have a diffuse base under a dielectric layer;
-    /// repetitions are fine. About 50 ms of one core for each distinct one, in parallel.
+    /// `iors`: the indices of the scene's materials with a diffuse base under a dielectric layer;
+    /// they may repeat. Each distinct index takes about 50 ms of one core; they run in parallel.
     explicit AlbedoTables(std::span<const float> iors);
 
     /// The table of exactly this index, or null.
     const AlbedoTable* find(float ior) const;
-    /// The table of the smallest index that is not below `ior`, or else of the largest one: a base
-    /// gets no more under it than the layer leaves. Null only where there is none at all.
+    /// The table of the smallest index that is not below `ior`, or else of the largest one. Its
+    /// layer reflects at least as much, so that the base gets no more light than the layer leaves.
+    /// Null only if there are no tables.
     const AlbedoTable* covering(float ior) const;
 
   private:
-    std::vector<AlbedoTable> tables_;  // by index
+    std::vector<AlbedoTable> tables_;  // sorted by index
 };
 
 }  // namespace lacuna

@@ -1,5 +1,5 @@
-// The material: what a Bsdf is made of, what its lobes are chosen with, and what the integrators
-// ask about it as a whole. Values and densities: bsdf_evaluate.cpp; directions: bsdf_sample.cpp.
+// Construction of a Bsdf from material parameters, and its overall properties, such as its albedo.
+// Values and densities: bsdf_evaluate.cpp; directions: bsdf_sample.cpp.
 //
 //     f = (1 - metallic) [ (1 - transmission) plastic + transmission glass ] + metallic metal
 //
@@ -19,13 +19,14 @@
 namespace lacuna {
 namespace {
 
-/// Rough refraction spreads light by about alpha (ior - 1) radians. Below this spread (where the
-/// half vector could not be computed either) glass counts as smooth: ior 1 is pure straight
+/// Rough refraction spreads light by about alpha (ior - 1) radians. Below this spread, where the
+/// half vector could not be computed either, glass counts as smooth. ior 1 is pure straight
 /// transmission.
 constexpr float kMinRefractionSpread = 1e-5f;
-/// Far beyond any dielectric; keeps 1 - F_avg representable.
+/// Far above the index of any dielectric; keeps 1 - F_avg representable.
 constexpr float kMaxIor = 1e4f;
-/// A path is never ended with more than 95 % (the inverse multiplies what survives).
+/// A path ends with at most 95 % probability: the inverse of the survival probability multiplies
+/// its throughput.
 constexpr float kMinSurvival = 0.05f;
 
 float unit(float x) {
@@ -36,7 +37,7 @@ Rgb unit(const Rgb& c) {
     return {unit(c.r), unit(c.g), unit(c.b)};
 }
 
-/// 0: smooth.
+/// alpha of GGX; 0: smooth.
 float alphaOf(float roughness) {
     const float alpha = unit(roughness) * unit(roughness);
     return alpha < kMinAlpha ? 0.0f : alpha;
@@ -46,13 +47,13 @@ float legalIor(float ior) {
     return ior > 1.0f ? std::min(ior, kMaxIor) : 1.0f;
 }
 
-/// Fresnel's reflectance along the normal.
+/// Fresnel reflectance at normal incidence.
 float normalReflectance(float ior) {
     const float r = (ior - 1.0f) / (ior + 1.0f);
     return r * r;
 }
 
-/// Of each channel of the coat.
+/// Reflectance of the coat at normal incidence, by channel.
 Rgb coatReflectance(float ior, const Rgb& color) {
     const float f0 = normalReflectance(ior), most = normalReflectance(kMaxIor);
     const auto channel = [&](float c) { return c > 0.0f ? std::min(f0 * c, most) : 0.0f; };
@@ -72,7 +73,7 @@ float Bsdf::roughnessOf(float roughness, float anisotropy) {
 
 float Bsdf::layerIor(float ior, const Rgb& specularColor) {
     if (maxComponent(specularColor) == 1.0f) {
-        return legalIor(ior);  // as it is, without rounding
+        return legalIor(ior);  // exactly, without rounding
     }
     const float r = std::sqrt(maxComponent(coatReflectance(legalIor(ior), specularColor)));
     return (1.0f + r) / (1.0f - r);
@@ -146,7 +147,8 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
     if (transmission > 0.0f && glass() > 0.0f && !without.has(glassKind) &&
         !(lacuna::isBlack(baseColor_) && ior_ == 1.0f)) {
         flags |= kGlass;
-        // What does not bend light lets it go straight on, whatever the normal, as a sheet does.
+        // Smooth glass of index 1 does not bend light. Whatever the normal, light passes it
+        // straight, like a sheet.
         const bool straight = thin || (!roughGlass && ior_ == 1.0f);
         flags |= straight ? unsigned(kThin) : 0u;
         flags |= roughGlass ? unsigned(kRoughGlass) : 0u;
@@ -185,12 +187,12 @@ Bsdf Bsdf::at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const {
     return b;
 }
 
-/// Cosine-weighted mean of what the coats about ns leave to the diffuse base.
+/// Cosine-weighted mean of the share that the coats about ns leave to the diffuse base.
 float Bsdf::openAverage(float coatAverage) const {
     if (!(clearcoat_ > 0.0f) || has(kOwnCoatNormal)) {
         return 1.0f - specular_ * coatAverage;
     }
-    // Gauss-Legendre in mu: nodes and weights about the middle of [-1, 1].
+    // Gauss-Legendre in mu: the positive nodes on [-1, 1] and their weights.
     constexpr float kNode[] = {0.18343464f, 0.52553241f, 0.79666648f, 0.96028986f};
     constexpr float kWeight[] = {0.36268378f, 0.31370665f, 0.22238103f, 0.10122854f};
     const bool coated = coatAverage > 0.0f;
@@ -217,14 +219,14 @@ float Bsdf::survivalAlbedo() const {
     const float dark = 1.0f - color;
     const float diffuse = maxComponent(reflectedColor()) + maxComponent(throughColor());
     float albedo = metal_ * (color + dark * (1.0f / 21.0f)) + plastic_ * diffuse;
-    // Hemispherical means of Fresnel's reflectance.
+    // Hemispherical mean of the reflectance.
     const auto average = [](float ior) {
         const float f0 = normalReflectance(ior);
         return f0 + (1.0f - f0) * (1.0f / 21.0f);
     };
     if (has(kCoat | kGlass)) {
-        // Glass from its inside, where total internal reflection makes it largest:
-        // 1 - (1 - F_avg) / ior^2.
+        // For glass, the mean seen from inside, which is larger because of total internal
+        // reflection: 1 - (1 - F_avg) / ior^2.
         albedo += has(kCoat) ? plastic_ * (1.0f - diffuse) * specular_ * average(coatIor_) : 0.0f;
         const float outside = average(ior_);
         const float inside = has(kThin) ? outside : 1.0f - (1.0f - outside) / (ior_ * ior_);

@@ -1,5 +1,5 @@
-// The scattering function at one surface point: a value type, evaluated once from a Material and
-// its textures, small enough to be stored in every path vertex.
+// The scattering function at one surface point. It is a value type, made once from a Material and
+// its textures, and small enough to be stored in every path vertex.
 //
 // Conventions (theory.md, "BSDFs"; tests/doc/numerics.md, "BSDFs")
 //
@@ -9,33 +9,33 @@
 //   asymmetries (refraction's eta^2, shading normals) need no transport mode.
 // * f is taken against the PROJECTED SOLID ANGLE ABOUT THE GEOMETRIC NORMAL:
 //       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach97 5.3.2]
-//   with f_ns the BSDF about the shading normal, in the radiance convention: refraction carries
+//   with f_ns the BSDF about the shading normal, in the radiance convention: refraction contains
 //   (eta_eye / eta_light)^2 of the radiance on the eye's side.
 //   A step of either walk multiplies its throughput by f |to . ng| / pdfW(to).
 // * A clearcoat with a normal of its own is a second Bsdf over the rest (bsdf_coat.cpp).
-// * Delta events (mirror, smooth glass, a smooth coat) are written with the same formulas after the
-//   common delta distribution has been dropped on both sides; this is the narrow-lobe limit, so the
-//   balance heuristic over generalised densities is the limit of the balance heuristic:
+// * Delta events (mirror, smooth glass, a smooth coat) use the same formulas after the common delta
+//   distribution has been dropped on both sides. This is the narrow-lobe limit, so that the balance
+//   heuristic over generalised densities is the limit of the balance heuristic:
 //       pdfW = pmf eta_to^2 |to . ns|,    f_ns = coefficient eta_eye^2,
-//   where eta_to (eta_eye) is the index of refraction on the side `to` (the eye) lies on; for a
-//   reflection both indices are left out (1). coefficient: reflectance, or transmittance (no eta).
-// * ng is the geometric normal by the winding (front side = outside of a solid).
-//   ns lies on the same side as ng.
-//   Nothing is one-sided: back faces reflect like front faces; a solid's inside
-//   is the back.
-// * ng alone says on which side of the surface a direction lies. Lobes about ns have nothing for an
-//   eye whose mirror direction about ns lies inside the surface: silhouettes under a normal map
-//   would be black. There the lobes turn about ng instead:
+//   where eta_to (eta_eye) is the index of refraction on the side of `to` (of the eye); both are 1
+//   for a reflection. coefficient: reflectance, or transmittance without eta.
+// * ng is the geometric normal by the winding (front side = outside of a solid). ns lies on the
+//   same side as ng. Nothing is one-sided: back faces reflect like front faces. The inside of a
+//   solid is the back.
+// * ng alone decides on which side of the surface a direction lies. Lobes about ns reflect nothing
+//   to an eye whose mirror direction about ns lies inside the surface: silhouettes under a normal
+//   map would be black. There, lobes about ng replace them:
 //       f = (1 - w) f_ns + w f_ng,   w = clamp(5 - 8 (ns . ng) (toEye . ns) / (toEye . ng), 0, 1),
-//   which is 0 where ns = ng, and 1 from where that mirror direction touches the surface. w is of
-//   toEye alone: seen from anywhere, the mixture reflects no more than its parts. A diffuse base
-//   does not ask where the eye is: it keeps ns, and is equally bright from everywhere above ng.
-// * A walk picks one of the two normals, then a lobe about it: an eye walk ng with probability w, a
-//   light walk by what it knows of toLight (lightShare). What the light walk draws about a normal
-//   that the eye there does not see at all is thrown away, and not in its density.
+//   which is 0 where ns = ng, and 1 once that mirror direction touches the surface. w depends on
+//   toEye alone, so that the mixture reflects to no eye more than its parts. A diffuse base keeps
+//   ns, whatever toEye is, and is equally bright from everywhere above ng.
+// * A walk picks one of the two normals, then a lobe about it. An eye walk picks ng with
+//   probability w, a light walk with a probability that depends on toLight (lightShare). If the
+//   light walk draws toEye about a normal that this eye does not see at all, the sample is
+//   discarded; the density does not count it.
 // * Directions with |to . ng| below kMinCosine scatter nothing and have density zero, in evaluate
-//   and sample alike; so do toLight with |toLight . ns| below it, or on different sides of ng and
-//   ns, in everything but the lobes about ng.
+//   and sample alike. The same holds, except in lobes about ng, for toLight with |toLight . ns|
+//   below kMinCosine or with ng and ns on different sides of it.
 #pragma once
 
 #include <cmath>
@@ -58,9 +58,9 @@ inline constexpr float kMinCosine = 1e-6f;
 /// GGX alpha below this is a true delta: float half vectors cannot resolve such a lobe.
 inline constexpr float kMinAlpha = 1e-4f;
 
-/// What happened at a vertex; part of the path, like its position.
+/// The scattering event at a vertex. It is part of the path, like the vertex's position.
 enum class ScatterEvent : std::uint8_t {
-    Smooth,  ///< through the lobes that have a density (diffuse, rough): the vertex is connectable
+    Smooth,  ///< by lobes that have a density (diffuse, rough): the vertex is connectable
     DeltaReflection,
     DeltaTransmission,
 };
@@ -68,71 +68,71 @@ inline bool isDelta(ScatterEvent e) {
     return e != ScatterEvent::Smooth;
 }
 
-/// One evaluation: value and both densities, from the same half vector.
+/// One evaluation: the value and both densities, from the same half vector.
 struct BsdfEvaluation {
-    Rgb f;                  ///< see above; generalised (delta dropped) for delta events
-    float pdfWToLight = 0;  ///< density of toLight when the eye's walk samples it, given toEye
-    float pdfWToEye = 0;    ///< density of toEye when the light's walk samples it, given toLight
+    Rgb f;                  ///< see above; without the delta for delta events
+    float pdfWToLight = 0;  ///< density of toLight given toEye, in an eye walk
+    float pdfWToEye = 0;    ///< density of toEye given toLight, in a light walk
 };
 
 struct BsdfSample {
     Vec3 to;  ///< unit
     ScatterEvent event;
-    BsdfEvaluation evaluation;  ///< evaluate(...) of exactly this pair and event
+    BsdfEvaluation evaluation;  ///< evaluate(..) of this pair and event
 };
 
-/// Whose walk samples: an eye walk knows toEye and samples toLight; a light walk the other way
-/// round.
+/// The walk that samples: an eye walk knows toEye and samples toLight; a light walk knows toLight
+/// and samples toEye.
 enum class Side : std::uint8_t { Light, Eye };
 
 class Bsdf {
   public:
-    /// What textures and factors gave at this point. All in [0, 1] but ior (>= 1) and
-    /// specularColor (>= 0).
+    /// Material parameters at this point, from textures and factors. All are in [0, 1] except ior
+    /// (>= 1) and specularColor (>= 0).
     struct Parameters {
         Rgb baseColor{0.0f};
         float metallic = 0.0f;
-        float roughness = 1.0f;  ///< alpha = roughness^2; alpha < kMinAlpha counts as 0 (delta)
-        float specular =
-            1.0f;  ///< factor on the dielectric layer's reflectance; 0: exactly Lambert
-        Rgb specularColor{1.0f};  ///< factor on its reflectance along the normal, up to 1
+        float roughness = 1.0f;   ///< alpha = roughness^2; alpha < kMinAlpha counts as 0 (delta)
+        float specular = 1.0f;    ///< factor of the dielectric layer's reflectance; 0: Lambertian
+        Rgb specularColor{1.0f};  ///< factor of its reflectance at normal incidence, up to 1
         float ior = 1.5f;
         float transmission = 0.0f;
         bool thin = true;
-        /// Rays pass it straight, and what is left is of those that stop; only smooth thin glass alone.
+        /// A pane: some rays pass it straight, and the lobes describe only those that stop. Only smooth thin glass
+        /// without other lobes can be a pane.
         bool pane = false;
         float clearcoat = 0.0f;  ///< weight of a layer of index kClearcoatIor over everything else
         float clearcoatRoughness = 0.0f;
-        /// The clearcoat's own shading normal, unit, on ng's side; zero: the one of what is under it.
+        /// The clearcoat's own unit shading normal on ng's side; zero: that of the layers under it.
         Vec3 clearcoatNormal{};
-        /// Rougher along `tangent`: alpha there is mix(alpha, 1, anisotropy^2). Of metal, coat and
-        /// glass. [KHR_materials_anisotropy]
+        /// Roughness along `tangent`: alpha there is mix(alpha, 1, anisotropy^2). For metal, coat
+        /// and glass. [KHR_materials_anisotropy]
         float anisotropy = 0.0f;
-        Vec3 tangent{};        ///< of any length, also off the surface; zero: any
-        Rgb sheenColor{0.0f};  ///< of cloth's fibres above everything but the clearcoat
+        Vec3 tangent{};        ///< of any length, need not lie in the surface; zero: any
+        Rgb sheenColor{0.0f};  ///< of the fibres of cloth; only the clearcoat is above
         float sheenRoughness = 0.0f;
-        /// What the diffuse base sends to the other side, and in which colour; the rest stays.
+        /// Share of the diffuse base's light that goes to the other side, and its colour.
         float diffuseTransmission = 0.0f;
         Rgb diffuseTransmissionColor{1.0f};
-        /// Lobes that are not there: a layer leaves its light to what is under it, the others'
-        /// light is absorbed.
+        /// Lobes to leave out. The light of a layer goes to what is under it; that of other lobes
+        /// is absorbed.
         LobeSet without = {};
     };
     static constexpr float kClearcoatIor = 1.5f;  // KHR_materials_clearcoat
-    /// A brushed surface (anisotropy above 0) is nowhere smoother: alpha .001.
+    /// The smallest roughness of a brushed surface (anisotropy above 0): alpha .001.
     static constexpr float kMinBrushedRoughness = 0.0316228f;
 
     Bsdf() = default;
-    /// `tables` must outlive the Bsdf; it is read only where a dielectric layer lies over a diffuse
-    /// base (a smooth layer merely gets its mean reflectance faster from it). A layer without a
-    /// table of its own takes that of a larger index. Throws nothing.
+    /// ng, ns: unit normals. `tables` must outlive the Bsdf. It is used only for a dielectric layer
+    /// over a diffuse base (a smooth layer only gets its mean reflectance faster from it). A layer
+    /// without a table of its index uses that of a larger one. Throws nothing.
     Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& tables);
     /// Whether lobes of this roughness are narrow.
     static bool isNarrow(float roughness) { return roughness * roughness < kNarrowAlpha; }
-    /// The roughness that a surface has across its grain, where it is smoothest.
+    /// The roughness of a surface across its grain, where it is smoothest.
     static float roughnessOf(float roughness, float anisotropy);
-    /// Index of the layer that reflects, along the normal, what `ior` does times the largest
-    /// channel of `specularColor`: the one whose table the constructor looks for.
+    /// The index of refraction whose reflectance at normal incidence is that of `ior` times the
+    /// largest channel of `specularColor`. The constructor looks for the table of this index.
     static float layerIor(float ior, const Rgb& specularColor);
     /// The same material at another point.
     Bsdf at(Vec3 ng, Vec3 ns) const {
@@ -141,10 +141,10 @@ class Bsdf {
         b.ns_ = ns;
         return b;
     }
-    /// The same in another colour. Neither of the two may be black.
+    /// The same with another base colour. Neither colour may be black.
     Bsdf at(Vec3 ng, Vec3 ns, const Rgb& baseColor) const;
 
-    /// Value and densities of the Smooth event (all lobes with a density together).
+    /// Value and densities of the Smooth event: the sum over all lobes with a density.
     BsdfEvaluation evaluate(const Vec3& toEye, const Vec3& toLight) const {
         return isLambert() ? lambert(toEye, toLight) : evaluateLobes(toEye, toLight);
     }
@@ -157,69 +157,69 @@ class Bsdf {
                                              : evaluateDelta(toEye, toLight, event);
     }
 
-    /// Samples the direction of `side`'s walk, given `from` (toEye for Side::Eye, toLight for
-    /// Side::Light). uLobe, u1, u2 in [0, 1). Empty where the draw scatters nothing.
+    /// Samples the next direction of the walk, given `from` (toEye for Side::Eye, toLight for
+    /// Side::Light). uLobe, u1 and u2 are in [0, 1). Empty if the sample scatters nothing.
     std::optional<BsdfSample> sample(Side side, const Vec3& from, float uLobe, float u1,
                                      float u2) const;
 
-    /// Whether any lobe has a density: only then may a path be connected here.
+    /// Whether any lobe has a density; only then can a path be connected here.
     bool connectable() const {
         return has(kWide | kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f;
     }
     /// Whether it has delta events of this kind.
     bool has(ScatterEvent event) const;
-    /// w: of what this eye sees, how much is of the lobes about ng.
+    /// w: weight of the lobes about ng for this eye.
     float shareAboutNg(const Vec3& toEye) const;
-    /// Whether it is two layers about two normals: a clearcoat with one of its own and the rest. f is that of
-    /// clearcoatAlone() and, times underOwnClearcoat(), that of withoutClearcoat().
+    /// Whether the clearcoat has a normal of its own. Then f is that of clearcoatAlone() plus underOwnClearcoat() times
+    /// that of withoutClearcoat().
     bool hasOwnClearcoat() const { return has(kOwnCoatNormal); }
     Bsdf clearcoatAlone() const;
     Bsdf withoutClearcoat() const;
-    /// What the clearcoat leaves to the rest, 1 where it has no normal of its own.
+    /// Share of light that such a clearcoat leaves to the rest; 1 where it has no normal of its
+    /// own.
     float underOwnClearcoat(const Vec3& toEye, const Vec3& toLight) const;
-    /// Whether smooth transmission bends rays; those through a sheet go straight on.
+    /// Whether smooth transmission bends rays. It does not in a thin sheet.
     bool bends() const { return !has(kThin); }
-    /// Index of refraction on a side; a sheet has the same on both.
+    /// Index of refraction on a side; 1 on both sides of a sheet.
     float indexOn(bool front) const { return front || has(kThin) ? 1.0f : ior_; }
-    /// Transmitted over incident index for light that arrives from this side.
+    /// Transmitted over incident index of refraction for light that arrives from this side.
     float relativeIndex(bool front) const { return front || has(kThin) ? ior_ : 1.0f / ior_; }
-    /// Share of the rays along `direction` (of any length) that go on straight as if nothing were there,
-    /// a pane's; the same from both sides. What scatters is of the others. (theory.md, "Panes")
+    /// Share of the rays along `direction` (of any length) that pass a pane straight, as if it were not there; the same
+    /// from both sides. The lobes describe the other rays. (theory.md, "Panes")
     float passing(const Vec3& direction) const;
     /// Whether light may pass through.
     bool transmits() const { return has(kGlass | kThrough); }
-    /// What reflects in the Smooth event: a diffuse base or sheen, rough lobes, or both.
+    /// Whether the Smooth event reflects by a diffuse base or sheen, and by rough lobes.
     bool isDiffuse() const { return has(kDiffuse | kSheen); }
     bool isGlossy() const { return has(kRoughLayers | kRoughGlass) || clearcoatAlpha_ > 0.0f; }
-    /// What goes to the other side in the Smooth event: likewise.
+    /// The same for transmission in the Smooth event.
     bool transmitsDiffusely() const { return has(kThrough); }
     bool transmitsGlossily() const { return has(kRoughGlass); }
-    /// Of evaluate().f what the diffuse base and the sheen scatter; the rest is glossy.
+    /// The part of evaluate().f that the diffuse base and the sheen scatter. The rest is glossy.
     Rgb diffusePart(const Vec3& toEye, const Vec3& toLight) const;
-    /// Whether there is no lobe that is wide beside others of the same surface.
+    /// Whether all lobes are narrow.
     bool isNarrow() const { return !has(kWide) && alpha_ < kNarrowAlpha; }
-    /// Whether it is nearly smooth glass: what it transmits goes through one narrow lobe, the same all around
-    /// the normal.
+    /// Whether it is nearly smooth glass: it transmits by one narrow isotropic lobe.
     bool refractsNarrowly() const {
         return isNarrow() && has(kRoughGlass) && !has(kBrushed | kOwnCoatNormal);
     }
     /// alpha of that lobe.
     float narrowAlpha() const { return alpha_; }
     bool isBlack() const { return !has(kWide | kLayers | kGlass) && !(clearcoat_ > 0.0f); }
-    /// Upper estimate of the albedo, the same from both sides: drives Russian roulette.
+    /// Upper estimate of the albedo, the same from both sides, for Russian roulette.
     float survivalAlbedo() const;
-    /// Diffuse and specular colour together, for the albedo.* image layer.
+    /// Sum of diffuse and specular colour, for the image layer albedo.*.
     Rgb layerAlbedo() const;
 
     Vec3 ng() const { return ng_; }
     Vec3 ns() const { return ns_; }
-    /// Whether the delta event that has these directions is one about ng and not about ns; those that go straight
-    /// on are about either, and not so called.
+    /// Whether the delta event with these directions is about ng and not about ns. False for straight transmission,
+    /// which belongs to both.
     bool isAboutNg(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const;
 
   private:
     static constexpr float kNarrowAlpha = 0.1f;
-    // Which lobes exist. Layers: coat and metal share alpha, half vector and density.
+    // Which lobes exist. Layers are coat and metal, which share alpha, half vector and density.
     enum Flag : std::uint16_t {
         kDiffuse = 1,
         kCoat = 2,
@@ -229,47 +229,48 @@ class Bsdf {
         kThin = 16,
         kRoughLayers = 32,  ///< coat and metal have a density
         kRoughGlass = 64,
-        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass, no other: nothing to choose
-        kThrough = 256,  ///< the diffuse base scatters to the other side too
+        kOneLobe = 128,  ///< exactly one of diffuse, layers, glass, and nothing else: no choice
+        kThrough = 256,  ///< the diffuse base also transmits
         kSheen = 512,
         kBrushed = 1024,        ///< alpha depends on the direction
-        kOwnCoatNormal = 2048,  ///< the clearcoat's normal is not ns
+        kOwnCoatNormal = 2048,  ///< the clearcoat has its own normal
         kWide = kDiffuse | kThrough | kSheen,
     };
 
-    /// Probabilities of the lobes given the one known direction, and what the coats leave to what
-    /// is under them.
+    /// Probabilities of the lobes given the one known direction, and the shares of light that
+    /// layers leave to what is under them.
     struct Choice {
-        float diffuse = 0;  ///< cosine-distributed, on the same side: base and sheen
-        float through = 0;  ///< likewise, on the other side
+        float diffuse = 0;  ///< base and sheen: cosine-distributed on the same side
+        float through = 0;  ///< cosine-distributed on the other side
         float layers = 0, glass = 0, clearcoat = 0;
         float open = 1;   ///< 1 - specular E(mu)
         float sheen = 0;  ///< E(mu) of a white sheen
-        float bare = 1;   ///< what the sheen leaves
+        float bare = 1;   ///< share that the sheen leaves
         float under = 1;  ///< 1 - clearcoat E(mu) of the clearcoat
     };
-    /// What the clearcoat lets through, both ways, to anything but a diffuse base: the less open of
-    /// the two, so that no base returns more than reaches it, and a mirror all of that.
+    /// Share that the clearcoat lets through to any base that is not diffuse, for both directions
+    /// together. It is the minimum over the two: no base returns more than reaches it, and a mirror
+    /// returns all of it.
     static float underCoat(const Choice& eye, const Choice& light) {
         return eye.under < light.under ? eye.under : light.under;
     }
-    /// Likewise the sheen, to any base.
+    /// The same for the sheen over any base.
     static float underSheen(const Choice& eye, const Choice& light) {
         return eye.bare < light.bare ? eye.bare : light.bare;
     }
     static float through(const Choice& eye, const Choice& light) {
         return underCoat(eye, light) * underSheen(eye, light);
     }
-    /// A pair of directions: signed cosines about both normals.
+    /// The signed cosines of a pair of directions about both normals.
     struct Cosines {
         float eyeG, lightG, eyeS, lightS;
         bool reflects() const { return (eyeG > 0) == (lightG > 0); }
-        /// Whether ns sees light here: not grazing, and on the side that ng says.
+        /// Whether the light is not grazing about ns and on the same side as about ng.
         bool lightSeen() const {
             return (std::abs(lightS) >= kMinCosine) & (lightG * lightS > 0.0f);
         }
     };
-    /// A pair of directions as lobes about the normal n see it.
+    /// A pair of directions in relation to the normal n, for the lobes about n.
     struct Pair {
         Vec3 n;
         float eye, light;  ///< signed cosines about n
@@ -285,20 +286,20 @@ class Bsdf {
     bool hasDeltaGlass() const { return has(kGlass) && !has(kRoughGlass); }
     bool hasDeltaClearcoat() const { return clearcoat_ > 0.0f && !(clearcoatAlpha_ > 0.0f); }
     bool isTilted() const { return (ns_.x != ng_.x) | (ns_.y != ng_.y) | (ns_.z != ng_.z); }
-    /// Diffuse and nothing else: there are no lobes to turn about ng.
+    /// Whether it is diffuse only: it has no lobes about ng.
     bool isLambert() const { return has(kDiffuse) && has(kOneLobe); }
-    /// False where the pair scatters nothing, because it is grazing.
+    /// False if the pair is grazing and scatters nothing.
     bool makeCosines(const Vec3& toEye, const Vec3& toLight, Cosines& c) const {
         c.eyeG = dot(toEye, ng_);
         c.lightG = dot(toLight, ng_);
-        // By the difference of the normals: exactly the same where they are.
+        // Computed from the difference of the normals: exactly equal where the normals are.
         const Vec3 tilt = ns_ - ng_;
         c.eyeS = c.eyeG + dot(toEye, tilt);
         c.lightS = c.lightG + dot(toLight, tilt);
-        // Bitwise: one branch. NaN fails every comparison.
+        // Bitwise for a single branch. NaN fails every comparison.
         return (std::abs(c.eyeG) >= kMinCosine) & (std::abs(c.lightG) >= kMinCosine);
     }
-    /// evaluate() of a diffuse lobe alone, where most of the time goes: inline.
+    /// evaluate() of a diffuse lobe alone. Inline, because most of the time is spent here.
     BsdfEvaluation lambert(const Vec3& toEye, const Vec3& toLight) const {
         BsdfEvaluation out;
         Cosines c;
@@ -317,7 +318,7 @@ class Bsdf {
     BsdfEvaluation evaluateTilted(const Vec3& toEye, const Vec3& toLight, const Cosines& c) const;
     BsdfEvaluation lobesAbout(const Pair& pair, const Vec3& toEye, const Vec3& toLight,
                               const Cosines& c) const;
-    /// Of a diffuse base of this colour.
+    /// f of a diffuse base of this colour.
     Rgb diffuseValue(const Rgb& color, const Choice& eye, const Choice& base,
                      const Cosines& c) const {
         return color * (diffuseScale_ * eye.open * eye.under * base.open * base.under *
@@ -331,10 +332,10 @@ class Bsdf {
                    const Choice& light) const;
     struct Facets;
     Facets facets(Vec3 h, float hn, const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
-    /// The reflecting lobe of layers and glass.
+    /// The reflection lobe of layers and glass.
     struct Lobe;
     Lobe baseLobe(const Vec3& toEye, const Vec3& toLight, const Pair& pair) const;
-    /// How the surface is brushed as lobes about the normal n see it.
+    /// The grain of a brushed surface for lobes about the normal n.
     ggx::Grain grainAbout(const Vec3& n) const;
 
     // A clearcoat with a normal of its own: two BSDFs, one over the other (bsdf_coat.cpp).
@@ -354,13 +355,13 @@ class Bsdf {
     Rgb layersReflectance(float cosine) const;
     float glass() const { return 1.0f - plastic_ - metal_; }
 
-    /// What an event at smooth glass is: a pane's of the rays that stop.
+    /// Reflection and transmission of smooth glass; for a pane, of the rays that stop.
     struct Interface {
         float reflected;  ///< reflectance
-        Rgb transmitted;  ///< transmittance, a pane's alone
-        float pmf;        ///< of a reflection
+        Rgb transmitted;  ///< transmittance, for panes only
+        float pmf;        ///< probability of a reflection
     };
-    /// Seen at this cosine from a side with this relative index.
+    /// For this cosine on a side with this relative index.
     Interface interfaceAt(float cosine, float relativeIndex) const;
 
     void addRoughReflection(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
@@ -373,24 +374,24 @@ class Bsdf {
     void addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                             const Choice& eye, const Choice& light, BsdfEvaluation& out) const;
 
-    // 128 bytes: it lives in every path vertex.
-    const AlbedoTable* table_ = nullptr;  ///< only where the coat is rough and the base diffuse
+    // At most 128 bytes, because every path vertex holds a Bsdf.
+    const AlbedoTable* table_ = nullptr;  ///< only for a rough coat over a diffuse base
     Vec3 ng_, ns_;
     Rgb baseColor_;
     float alpha_ = 0;
     float ior_ = 1;      ///< of the glass
     float coatIor_ = 1;  ///< of the coat's brightest channel
-    /// (F0 - that of the channel) / (1 - F0): the coat reflects F - tintLoss (1 - F).
+    /// By channel, (F0 - F0 of the channel) / (1 - F0): the coat reflects F - tintLoss (1 - F).
     Rgb tintLoss_;
-    float plastic_ = 0, metal_ = 0;  ///< mixture weights; glass is the rest
+    float plastic_ = 0, metal_ = 0;  ///< mixture weights; glass has the rest
     float specular_ = 0;
-    float diffuseScale_ = 0;  ///< plastic / (pi times the mean of what all coats leave)
+    float diffuseScale_ = 0;  ///< plastic / (pi times the mean share that all coats leave)
     float clearcoat_ = 0, clearcoatAlpha_ = 0;
     std::uint16_t flags_ = 0;
     std::uint8_t rowIndex_ : 7 = 0;  ///< AlbedoTable::Row
     std::uint8_t isPane_ : 1 = 0;
     std::uint16_t rowFraction_ = 0;
-    float diffuseThrough_ = 0;  ///< share of the diffuse base
+    float diffuseThrough_ = 0;  ///< share of the diffuse base's light that is transmitted
     PackedColor throughColor_, sheenColor_;
     PackedUnit sheenRoughness_;
     PackedUnit alphaAlong_;  ///< along the tangent; across it alpha_

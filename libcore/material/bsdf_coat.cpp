@@ -1,10 +1,11 @@
-// A clearcoat with a normal of its own: a layer of lacquer over a bumpy base, or a bumpy one over a flat
-// base. Coat and base are two BSDFs about two normals:
+// A clearcoat with a normal of its own: a layer of lacquer over a bumpy base, or a bumpy layer over a flat base. Coat
+// and base are two BSDFs about two normals:
 //
 //     f = f_coat + f_base min(u(toEye), u(toLight)),   u(d) = 1 - clearcoat E(d)
 //
-// E(d) about the normals that an eye in d sees the coat by. A walk first chooses between coat and base
-// by the direction that it knows (coatShare), then goes as that one alone would. (theory.md, "BSDFs")
+// E(d) is taken about the normals by which an eye in direction d sees the coat. A walk first chooses between coat and
+// base by the direction that it knows (coatShare), then samples that one alone.
+// (theory.md, "BSDFs")
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +28,7 @@ Bsdf Bsdf::withoutClearcoat() const {
     return base;
 }
 
-/// Of a coat alone: what it reflects of the light that comes from this direction.
+/// For a coat alone: the share that it reflects of light from this direction.
 float Bsdf::coatShare(const Vec3& direction) const {
     const float g = dot(direction, ng_), s = g + dot(direction, ns_ - ng_);
     const float byNg = eyeShare(s, g);
@@ -45,12 +46,12 @@ float Bsdf::underOwnClearcoat(const Vec3& toEye, const Vec3& toLight) const {
 
 namespace {
 
-/// What a coat and its base get of a walk.
+/// Probabilities that a walk chooses the coat or the base.
 struct Shares {
     float coat, base;
 };
 
-/// From what the coat reflects there; `albedo` of the base.
+/// `reflected`: share that the coat reflects. `albedo`: that of the base.
 Shares sharesOf(float reflected, float albedo) {
     const float coat = reflected / (reflected + (1.0f - reflected) * albedo);
     return {coat, 1.0f - coat};
@@ -63,8 +64,8 @@ BsdfEvaluation Bsdf::evaluateUnderCoat(const Vec3& toEye, const Vec3& toLight,
     const Bsdf coat = clearcoatAlone(), base = withoutClearcoat();
     BsdfEvaluation onCoat, onBase;
     if (event == ScatterEvent::DeltaReflection) {
-        // Up to three mirrors: the half vector says which of them this is, or which two, where
-        // normals are as good as equal.
+        // There are up to three mirror directions. The half vector tells to which normal this one
+        // belongs, or to which two if they are nearly equal.
         const Vec3 h = toEye + toLight;
         const auto off = [&h](const Vec3& n) { return lengthSquared(cross(h, n)); };
         const float nearest = std::min({off(coat.ns_), off(base.ns_), off(ng_)});

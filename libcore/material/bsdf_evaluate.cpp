@@ -2,14 +2,14 @@
 // S(c) = c sqrt(1 + a^2 tan^2):
 //
 //     G1 / c = 2 / (c + S),   G2 / (c_e c_l) = 2 / (S_e c_l + S_l c_e)        (microfacet.h)
-//     K = D(h) |dw_h / dw_to| |v.h| without the index of the side `to` lies on:
+//     K = D(h) |dw_h / dw_to| |v.h| without the index on the side of `to`:
 //         reflection  D / 4,   refraction  D |e.h| |l.h| / |H|^2,   H = eta_e e + eta_l l
 //     f_n    = R eta_eye^2 K G2 / (c_e c_l)             [Walter07 eq 20, 21]
 //     pdfW   = pmf eta_to^2 K G1(from) / c_from         [Heitz18; Walter07 eq 14, 17]
 //
 // R: reflectance or transmittance at h; pmf: probability of the lobe given `from`, times F or 1 - F
-// for glass; eta: 1 for reflections. Dropping K and the G's common limit leaves the delta events'
-// formulas. (theory.md, "BSDFs")
+// for glass; eta: 1 for reflections. The formulas of delta events follow by dropping K and the
+// common limit of the G terms. (theory.md, "BSDFs")
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +21,7 @@
 
 namespace lacuna {
 
-/// What the roughness makes of a half vector and of both directions.
+/// The terms that depend on roughness, for a half vector and both directions.
 struct Bsdf::Facets {
     float d;       ///< D(h)
     float se, sl;  ///< S of e and l
@@ -32,7 +32,8 @@ struct Bsdf::Facets {
     }
 };
 
-/// A GGX lobe at the half vector of two directions on one side (or one of them mirrored there).
+/// A GGX lobe at the half vector of two directions on one side (one of them may have been mirrored
+/// to it).
 struct Bsdf::Lobe {
     float cosine;          ///< e.h = l.h
     float k;               ///< D / 4
@@ -56,8 +57,8 @@ ggx::Grain Bsdf::grainAbout(const Vec3& n) const {
     return {t, cross(n, t), alphaAlong_.value(), alpha_};
 }
 
-/// Of layers and glass, for H of any length. The mirrored one of two directions through a sheet differs from
-/// it only along n, which a grain does not see.
+/// Terms of layers and glass, for H of any length. For transmission through a sheet, the mirrored direction differs
+/// from the given one only along n, which does not affect the grain's terms.
 inline Bsdf::Facets Bsdf::facets(Vec3 h, float hn, const Vec3& toEye, const Vec3& toLight,
                                  const Pair& pair) const {
     const float ce = pair.eyeAbs(), cl = pair.lightAbs();
@@ -73,7 +74,7 @@ inline Bsdf::Lobe Bsdf::baseLobe(const Vec3& toEye, const Vec3& toLight, const P
     return {h, pair.n, ce, cl, facets(h, ce + cl, toEye, toLight, pair)};
 }
 
-/// Without the light that the surface's own normal does not see.
+/// f of the sheen. The caller excludes light that ns does not see.
 Rgb Bsdf::sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, const Choice& eye,
                      const Choice& light) const {
     const float ce = pair.eyeAbs(), cl = pair.lightAbs();
@@ -82,14 +83,14 @@ Rgb Bsdf::sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, c
     const sheen::Shadowing<float> shadowing(alpha);
     const float d = sheen::distribution(alpha, across2 / (across2 + (ce + cl) * (ce + cl)));
     const float v = 0.25f / ((1.0f + shadowing.lambda(ce) + shadowing.lambda(cl)) * ce * cl);
-    // A white sheen returns no more than arrives, wherever it is seen from.
+    // The bound keeps the albedo of a white sheen at or below 1 for every direction.
     const float bound = 1.0f / std::max(1.0f, std::max(eye.sheen, light.sheen));
     return sheenColor_.value() * (d * v * bound * pair.adjoint * underCoat(eye, light));
 }
 
-/// All lobes that have a density, those of layers and glass about pair.n. The diffuse base keeps ns
-/// for the light, and ng for the eye.
-// One result variable per function, filled in place: a copy of it would wait for its parts' stores.
+/// All lobes that have a density; those of layers and glass are about pair.n. The diffuse base uses
+/// ns for the light and ng for the eye.
+// One result variable per function, filled in place: a copy would stall on the stores to its parts.
 [[gnu::always_inline]] inline BsdfEvaluation Bsdf::lobesAbout(const Pair& pair, const Vec3& toEye,
                                                               const Vec3& toLight,
                                                               const Cosines& c) const {
@@ -99,7 +100,8 @@ Rgb Bsdf::sheenValue(const Vec3& toEye, const Vec3& toLight, const Pair& pair, c
     const Choice eye = choose(pair.eyeAbs());
     const Choice light = choose(pair.lightAbs());
     if (reflects ? has(kDiffuse | kSheen) : has(kThrough)) {
-        // Light that ns does not see is scattered into nothing, but a walk from there may draw it.
+        // Light that ns does not see is not scattered, but a light walk from it may still draw this
+        // lobe.
         out.pdfWToEye = (reflects ? light.diffuse : light.through) * std::abs(c.eyeG) * kInvPi;
         if (c.lightSeen()) {
             const float lightS = std::abs(c.lightS);
@@ -159,7 +161,7 @@ Rgb Bsdf::diffusePart(const Vec3& toEye, const Vec3& toLight) const {
     return part;
 }
 
-/// Diffuse base and sheen. `base`: as the surface's own normal sees the light, whatever the pair's is.
+/// f of diffuse base and sheen. `base`: the choice for the light about ns, whatever the pair's normal is.
 inline Rgb Bsdf::widePart(const Vec3& toEye, const Vec3& toLight, const Pair& pair,
                           const Choice& eye, const Choice& light, const Choice& base,
                           const Cosines& c) const {
@@ -172,7 +174,8 @@ inline Rgb Bsdf::widePart(const Vec3& toEye, const Vec3& toLight, const Pair& pa
     return value;
 }
 
-/// The mixture of both normals' parts, partAbout(pair) each; `byNs`, `byNg`: which of them have one.
+/// The mixture of the parts about both normals, which partAbout(pair) computes. `byNs`, `byNg`:
+/// whether there is a part about that normal.
 template <class PartAbout>
 inline BsdfEvaluation Bsdf::mixture(const Cosines& c, float eyeNg, bool byNs, bool byNg,
                                     const PartAbout& partAbout) const {
@@ -259,7 +262,7 @@ void Bsdf::addRoughRefraction(const Vec3& toEye, const Vec3& toLight, const Pair
     const float oh = -(1.0f + ior_ * cosineIO);  // o.H
     const float ih = -(cosineIO + ior_);         // i.H
     if (!(hn > 0.0f && oh > 0.0f && ih < 0.0f)) {
-        return;  // no microfacet refracts one into the other
+        return;  // no microfacet refracts one to the other
     }
     const Vec3 h = o + i * ior_;
     const float cross2 = lengthSquared(cross(h, pair.n));
@@ -290,7 +293,7 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
         return deltaAbout(aboutNg(c), c, event);
     }
     const float eyeNg = eyeShare(c.eyeS, c.eyeG);
-    // Each normal has an event of its own, but where rays go straight on: the directions say which this is.
+    // Each normal has its own event, which the directions identify. Straight transmission belongs to both.
     const bool straight = event == ScatterEvent::DeltaTransmission && has(kThin);
     const bool byNg = straight ? eyeNg > 0.0f : isAboutNg(toEye, toLight, event);
     const bool byNs = straight ? eyeNg < 1.0f : !byNg;
@@ -299,7 +302,7 @@ BsdfEvaluation Bsdf::evaluateDelta(const Vec3& toEye, const Vec3& toLight,
 }
 
 bool Bsdf::isAboutNg(const Vec3& toEye, const Vec3& toLight, ScatterEvent event) const {
-    // By the shares first: between normals that differ in their last bits alone, the directions cannot tell.
+    // First by the shares: for normals that differ only in their last bits, the directions cannot tell them apart.
     const float share = shareAboutNg(toEye);
     if (share <= 0.0f || (event == ScatterEvent::DeltaTransmission && has(kThin))) return false;
     if (share >= 1.0f) return true;
@@ -349,11 +352,13 @@ BsdfEvaluation Bsdf::deltaAbout(const Pair& pair, const Cosines& c, ScatterEvent
             out.pdfWToEye = (1.0f - pane.pmf) * std::abs(c.eyeG);
             return out;
         }
-        // From the outside, where there is no total internal reflection; thin: both sides are.
+        // Computed from the outside, where there is no total internal reflection. Both sides of a
+        // thin sheet are outside.
         const float transmit = 1.0f - fresnelDielectric(front || has(kThin) ? ce : cl, ior_);
         const Rgb coefficient = baseColor_ * (glass() * transmit * through(eye, light));
         if (has(kThin)) {
-            // Straight on whatever the normal: both normals' parts drop one delta, that about ng.
+            // Straight transmission for every normal: both parts drop the same delta, that about
+            // ng.
             out.f = coefficient;
             out.pdfWToLight = eye.glass * transmit * std::abs(c.lightG);
             out.pdfWToEye = light.glass * transmit * std::abs(c.eyeG);

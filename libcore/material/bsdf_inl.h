@@ -1,4 +1,4 @@
-// Shared by the Bsdf's source files only: small pieces of every evaluation and of every sample.
+// Small inline functions that the Bsdf's source files share, used in evaluation and sampling.
 // (theory.md, "Panes", "BSDFs")
 #pragma once
 
@@ -36,18 +36,19 @@ inline float Bsdf::meanSheen() const {
     return std::min(1.0f, sheenAlbedo(0.5f));
 }
 
-/// w: how much of what an eye sees is of the lobes about ng (bsdf.h). With m the cosine between ng
-/// and the eye's mirror direction about ns, it is 1 - 4 m / |toEye . ng|.
+/// w: weight of the lobes about ng for an eye (bsdf.h). With m the cosine between ng and the eye's
+/// mirror direction about ns, it is 1 - 4 m / |toEye . ng|, clamped.
 inline float Bsdf::eyeShare(float eyeS, float eyeG) const {
     // Exactly 1 where the normals are equal.
     const float cosine = 1.0f - 0.5f * lengthSquared(ns_ - ng_);
     return std::clamp(5.0f - 8.0f * cosine * (eyeS / eyeG), 0.0f, 1.0f);
 }
 
-/// The probability that a light walk picks ng: always where ns sees no light; as often as not where
-/// the mirror direction about ng leads to an eye that sees lobes about it; else seldom. Such eyes
-/// then fill about the square of the normals' angle: a walk that picked ng no more often than that
-/// would carry its inverse there.
+/// The probability that a light walk picks ng. It is 1 where ns sees no light, half of the eye's w
+/// where the mirror direction about ng leads to an eye that sees lobes about ng, and small but
+/// positive elsewhere. Elsewhere, the eyes that see such lobes fill a share of directions of about
+/// the square of the angle between the normals. If the walk picked ng as rarely as that, its
+/// throughput would contain the inverse.
 inline float Bsdf::lightShare(float lightS, float lightG) const {
     if (!(lightS * lightG > 0.0f)) return 1.0f;
     const float tilt2 = lengthSquared(ns_ - ng_);
@@ -55,9 +56,9 @@ inline float Bsdf::lightShare(float lightS, float lightG) const {
     return std::max(std::min(0.125f, 0.5f * std::sqrt(tilt2)), 0.5f * eyeShare(mirroredS, lightG));
 }
 
-/// Lobe probabilities: the lobes' albedos, channels averaged, as far as they are known without
-/// effort. A function of the material and of the one known direction: sampling and density use this
-/// and nothing else.
+/// Lobe probabilities: proportional to the lobes' albedos, averaged over channels, as far as they
+/// are known cheaply. They depend on the material and the one known direction. Sampling and
+/// densities use no other probabilities.
 inline Bsdf::Choice Bsdf::choose(float mu) const {
     Choice c;
     if (has(kDiffuse | kThrough) && has(kCoat)) {
@@ -80,7 +81,7 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
         c.layers = plastic_ * (1.0f - c.open);
     }
     if (has(kMetal)) {
-        // A floor: dark metal still reflects where the half vector is grazing.
+        // A lower bound: dark metal still reflects at grazing half vectors.
         const float f0 = mean(baseColor_);
         c.layers += metal_ * std::max(0.02f, f0 + (1.0f - f0) * schlickWeight(mu));
     }
@@ -112,8 +113,8 @@ inline Bsdf::Choice Bsdf::choose(float mu) const {
     return c;
 }
 
-/// Of a pane's rays that stop: Fresnel's reflection, and what the colour lets through beyond what all
-/// channels do.
+/// For a pane, the rays that stop are reflected by Fresnel's law or transmitted with the part of the colour that
+/// exceeds its smallest channel.
 inline Bsdf::Interface Bsdf::interfaceAt(float cosine, float relativeIndex) const {
     const float fresnel = fresnelDielectric(cosine, relativeIndex);
     if (!isPane_) return {fresnel, Rgb{}, fresnel};
@@ -126,14 +127,14 @@ inline Bsdf::Interface Bsdf::interfaceAt(float cosine, float relativeIndex) cons
     return {reflected, transmitted, sum > 0.0f ? reflected / sum : 0.0f};
 }
 
-/// Coat and metal together, seen from outside. The coat's colour is that of its reflectance along
-/// the normal; towards grazing angles it becomes white, as Fresnel's does.
+/// Reflectance of coat and metal together, seen from outside. The coat is tinted at normal
+/// incidence and becomes white towards grazing angles, as in Fresnel's law.
 inline Rgb Bsdf::layersReflectance(float cosine) const {
     Rgb r;
     if (has(kCoat)) {
         const float f = fresnelDielectric(cosine, coatIor_);
         const Rgb tinted = Rgb(f) - tintLoss_ * (1.0f - f);
-        // Below 0 only for indices above 3.7, whose reflectance dips before it rises.
+        // Negative only for indices above 3.7, whose reflectance dips before it rises.
         r = Rgb(std::max(0.0f, tinted.r), std::max(0.0f, tinted.g), std::max(0.0f, tinted.b)) *
             (plastic_ * specular_);
     }

@@ -1,5 +1,6 @@
-// Sampling: a lobe by Bsdf::choose, a direction by that lobe, then the evaluation of the whole
-// event. Both walks use the same density of `to` given `from`; only the roles differ.
+// Sampling: Bsdf::choose gives the probabilities of the lobes, the chosen lobe samples a direction,
+// and the whole event is evaluated. Both walks use the same density of `to` given `from`; only the
+// roles differ.
 #include <algorithm>
 #include <cmath>
 
@@ -12,13 +13,13 @@
 namespace lacuna {
 namespace {
 
-/// `n` on the side of `from`; cosine = from.n.
+/// The mirror direction. `n` is on the side of `from`; cosine = from.n.
 Vec3 reflected(Vec3 from, Vec3 n, float cosine) {
     return n * (2.0f * cosine) - from;
 }
 
-/// Refraction; eta = transmitted over incident index. Call it only where Fresnel's reflectance is
-/// < 1.
+/// The refracted direction; eta = transmitted over incident index. To be called only if the Fresnel
+/// reflectance is < 1.
 Vec3 refracted(Vec3 from, Vec3 n, float cosine, float eta) {
     const float inverse = 1.0f / eta;
     const float sine2 = std::max(0.0f, 1.0f - cosine * cosine) * inverse * inverse;
@@ -30,7 +31,8 @@ Vec3 refracted(Vec3 from, Vec3 n, float cosine, float eta) {
 Vec3 visibleNormal(Vec3 from, Vec3 n, float cosine, float alpha, float u1, float u2) {
     const Vec3 tangential = from - n * cosine;
     const float sine2 = lengthSquared(tangential);
-    // Nearly along n any tangent will do: the lobe's asymmetry there is of the order of the sine.
+    // If `from` is nearly along n, any tangent will do: the lobe's asymmetry is then of the order
+    // of the sine.
     const bool tilted = sine2 > 1e-6f;
     const float sine = tilted ? std::sqrt(sine2) : 0.0f;
     const Vec3 s = tilted ? tangential * (1.0f / sine) : Frame(n).s;
@@ -48,7 +50,7 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
         return result;
     }
     if (has(kOwnCoatNormal)) return sampleUnderCoat(side, from, uLobe, u1, u2);
-    // The normal, by uLobe, which is uniform again then.
+    // uLobe picks the normal and is rescaled to be uniform again.
     const bool tilted = isTilted() && !isLambert();
     float shareNg = 0.0f, u = uLobe;
     if (tilted) {
@@ -71,7 +73,7 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
     Vec3 to;
     ScatterEvent event = ScatterEvent::Smooth;
     bool transmits = false;
-    // The probabilities add up to 1 but for rounding: the last lobe that exists takes the rest.
+    // The probabilities add up to 1 but for rounding: the last existing lobe takes the rest.
     const bool clearcoat = u < choice.clearcoat;
     const float uBase = u - choice.clearcoat;
     const float wide = choice.diffuse + choice.through;
@@ -95,9 +97,9 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
             return result;
         }
         if (glass) {
-            // What is left of uBase decides between reflection (F) and transmission.
+            // The rescaled rest of uBase decides between reflection (F) and transmission.
             const float uGlass = (uBase - wide - choice.layers) / choice.glass;
-            // Never transmission where F is 1, though rounding may bring uGlass up to 1.
+            // Never transmission if F is 1, although rounding may raise uGlass to 1.
             const float reflects = interfaceAt(hCosine, relativeIndex(front)).pmf;
             transmits = !(uGlass < reflects) && reflects < 1.0f;
         }
@@ -121,19 +123,19 @@ std::optional<BsdfSample> Bsdf::sample(Side side, const Vec3& from, float uLobe,
     if (tilted) {
         const float toG = dot(to, ng_);
         if (transmits != (toG * sign < 0.0f)) {
-            return result;  // on another side of the surface than the lobe about ns sent it to
+            return result;  // on the wrong side of the surface
         }
         if (side == Side::Light) {
             const float eyeNg = eyeShare(toG + dot(to, ns_ - ng_), toG);
             if (byNg ? !(eyeNg > 0.0f) : !(eyeNg < 1.0f)) {
-                return result;  // no eye there sees lobes about this normal
+                return result;  // the eye there does not see lobes about this normal
             }
         }
     }
     BsdfSample& s = result.emplace();
     s.to = to;
     s.event = event;
-    // By reference: a copy would wait for its parts' stores.
+    // By reference: a copy would stall on the stores to its parts.
     const Vec3& toEye = side == Side::Eye ? from : s.to;
     const Vec3& toLight = side == Side::Eye ? s.to : from;
     s.evaluation = evaluate(toEye, toLight, event);

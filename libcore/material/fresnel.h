@@ -1,5 +1,4 @@
-// Reflectance of a smooth interface. Templated on the scalar: float for rendering, double for
-// tables.
+// Reflectance of a smooth interface, for float (rendering) and double (tables).
 #pragma once
 
 #include <cmath>
@@ -8,8 +7,8 @@
 
 namespace lacuna {
 
-/// Exact unpolarised Fresnel reflectance, [Walter07 eq 22]; `cosine` >= 0 on the incident side,
-/// `eta` the transmitted over the incident index. 1 for total internal reflection.
+/// Exact unpolarised Fresnel reflectance [Walter07 eq 22]. `cosine` >= 0 is on the incident side;
+/// `eta` is the transmitted over the incident index. 1 for total internal reflection.
 template <class T>
 T fresnelDielectric(T cosine, T eta) {
     const T k = (eta - T(1)) * (eta + T(1));
@@ -18,14 +17,14 @@ T fresnelDielectric(T cosine, T eta) {
         return eta == T(1) ? T(0) : T(1);
     }
     const T sum = std::sqrt(g2) + cosine;
-    const T difference = k / sum;  // g - c without its cancellation for eta near 1
+    const T difference = k / sum;  // g - c, without cancellation for eta near 1
     const T x = cosine * sum - T(1);
     const T y = cosine * difference + T(1);
     const T denominator = sum * y;
     return T(0.5) * difference * difference * (x * x + y * y) / (denominator * denominator);
 }
 
-/// Schlick's weight of white: F = F0 + (1 - F0) w.
+/// Schlick's weight w of white: F = F0 + (1 - F0) w.
 inline float schlickWeight(float cosine) {
     const float m = 1.0f - cosine;
     const float m2 = m * m;
@@ -40,7 +39,7 @@ inline Rgb schlick(const Rgb& f0, float cosine) {
 inline double fresnelAverage(double n) {
     const double d = n - 1;
     if (d < 1e-6) {
-        return 0;  // below 2e-6; the closed form cancels there
+        return 0;  // the true value is below 2e-6; the closed form cancels
     }
     const double n2 = n * n;
     const double n4 = n2 * n2;

@@ -1,5 +1,5 @@
-// The kinds of lobes that materials are made of, by the names that --effects prints, so that some
-// can be left out.
+// The kinds of lobes of materials, with the names that --effects prints, so that users can leave
+// some out.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace lacuna {
 enum class LobeKind : std::uint8_t {
     Diffuse,
     Glossy,           ///< rough reflection by metal, coat or clearcoat
-    Mirror,           ///< the same, perfectly smooth
-    RoughRefraction,  ///< of solid glass, with what the glass reflects; so are the next three
+    Mirror,           ///< smooth reflection by metal, coat or clearcoat
+    RoughRefraction,  ///< of solid glass, including its reflection; likewise the next three
     SmoothRefraction,
     RoughThinTransmission,
     SmoothThinTransmission,

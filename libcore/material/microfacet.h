@@ -1,6 +1,6 @@
-// GGX with Smith's height-correlated masking and shadowing, written so that nothing
-// cancels: D from the unnormalised half vector H and H x n (never 1 - cos^2), G already divided by
-// the cosines. (theory.md, "BSDFs")
+// GGX with Smith's height-correlated masking and shadowing, written without cancellation: D is
+// computed from the unnormalised half vector H and H x n (never 1 - cos^2), and G is already
+// divided by the cosines. (theory.md, "BSDFs")
 #pragma once
 
 #include <algorithm>
@@ -34,11 +34,11 @@ T distribution(T alpha, T hDotN, T crossSquared) {
     return k * k * T(kInvPi);
 }
 
-/// The visible normal that a point of the unit disk stands for [Heitz18], seen from v = (sine, 0,
-/// cosine) with cosine > 0 (isotropy lets the frame follow the view). Its density over solid angle
-/// is G1(v) (v.h) D(h) / v.z.
+/// Maps a point of the unit disk to a visible normal [Heitz18], seen from v = (sine, 0, cosine)
+/// with cosine > 0 (by isotropy the frame can follow the view). Its density over solid angle is
+/// G1(v) (v.h) D(h) / v.z.
 inline Vec3 visibleNormal(float sine, float cosine, float alpha, Vec2 disk) {
-    // The view in the space where the lobe is a hemisphere; t1 = y, t2 = vh x y.
+    // vh: the view in the stretched space, where the lobe is a hemisphere; t1 = y, t2 = vh x y.
     const float inverse = 1.0f / std::sqrt(alpha * alpha * sine * sine + cosine * cosine);
     const float vx = alpha * sine * inverse;
     const float vz = cosine * inverse;
@@ -46,12 +46,14 @@ inline Vec3 visibleNormal(float sine, float cosine, float alpha, Vec2 disk) {
     const float chord = std::sqrt(std::max(0.0f, 1.0f - disk.x * disk.x));
     const float y = (1.0f - s) * chord + s * disk.y;
     const float z = std::sqrt(std::max(0.0f, chord * chord - y * y));
-    // A floor on the height keeps h off the tangent plane, where it would be the zero vector.
+    // The lower bound of the height keeps h off the tangent plane, where it could be the zero
+    // vector.
     return normalize(
         Vec3{alpha * (z * vx - y * vz), alpha * disk.x, std::max(1e-7f, z * vz + y * vx)});
 }
 
-/// A brushed surface: alpha along t and along b, which are unit and perpendicular to the normal.
+/// The grain of a brushed surface: alpha along t and along b, which are unit vectors perpendicular
+/// to the normal.
 struct Grain {
     Vec3 t, b;
     float alphaT, alphaB;
@@ -70,7 +72,7 @@ inline float distribution(const Vec3& h, float hDotN, const Grain& grain) {
     return k * k * kInvPi / (grain.alphaT * grain.alphaB);
 }
 
-/// As above, seen from the unit v with |cosine| > 0; `n` is on its side.
+/// As above, seen from the unit vector v with |cosine| > 0; `n` is on the side of v.
 inline Vec3 visibleNormal(const Vec3& v, const Vec3& n, float cosine, const Grain& grain,
                           Vec2 disk) {
     const Vec3 vh =

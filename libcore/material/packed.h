@@ -1,4 +1,5 @@
-// Numbers of [0, 1] and directions in 16 bits each, for what every path vertex holds and few need.
+// Numbers in [0, 1] and directions, packed into 16 bits per number. Every path vertex stores them
+// although few need them.
 #pragma once
 
 #include <cmath>
@@ -9,7 +10,7 @@
 
 namespace lacuna {
 
-/// A number of [0, 1], to 1 / 131070.
+/// A number in [0, 1], accurate to 1 / 131070.
 class PackedUnit {
   public:
     PackedUnit() = default;
@@ -22,7 +23,7 @@ class PackedUnit {
     std::uint16_t bits_ = 0;
 };
 
-/// A colour of [0, 1]^3.
+/// A colour in [0, 1]^3.
 struct PackedColor {
     PackedUnit r, g, b;
 
@@ -31,7 +32,7 @@ struct PackedColor {
     Rgb value() const { return {r.value(), g.value(), b.value()}; }
 };
 
-/// A unit direction, to 5e-5.
+/// A unit direction, accurate to 5e-5.
 class PackedDirection {
   public:
     PackedDirection() = default;

@@ -11,8 +11,8 @@
 namespace lacuna {
 namespace {
 
-/// int D V |cos| of all directions above the surface, by midpoints: of the azimuth, and of the root of
-/// the cosine, which is dense where light grazes.
+/// int D V |cos| over all directions above the surface, by the midpoint rule in the azimuth and in the root of the
+/// cosine, which is dense at grazing angles.
 double directionalAlbedo(double roughness, double mu) {
     constexpr int kAzimuths = 20, kSteps = 64;
     static const auto kCosineOfAzimuth = [] {
@@ -66,7 +66,8 @@ float SheenTable::directional(float roughness, float mu) const {
 }
 
 const SheenTable& sheenTable() {
-    // Isolated: a thread that makes it must not begin other work, which might ask for it.
+    // Isolated: the thread that makes the table must not begin other work, which might need the
+    // table.
     static const SheenTable table = tbb::this_task_arena::isolate([] { return SheenTable(); });
     return table;
 }

@@ -1,5 +1,5 @@
-// The sheen of cloth: microfibres that stand up [Estevez17], as KHR_materials_sheen has it. It is
-// brightest where light grazes. (theory.md, "BSDFs")
+// The sheen of cloth by upright microfibres [Estevez17], as in KHR_materials_sheen. It is brightest
+// at grazing angles. (theory.md, "BSDFs")
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace lacuna {
 
 namespace sheen {
 
-/// Of a roughness in [0, 1]. Below a tenth or so a sheen is a rim that floats cannot sample.
+/// alpha of a roughness in [0, 1], with a lower bound: below it, a sheen is a rim too thin for
+/// floats to sample.
 template <class T>
 T alphaOf(T roughness) {
     const T r = std::max(T(0.07), roughness);
@@ -25,7 +26,7 @@ T distribution(T alpha, T sine2) {
     return (T(2) + inverse) * std::pow(std::max(T(0), sine2), T(0.5) * inverse) * kInvTwoPi;
 }
 
-/// Smith's Lambda as it was fitted [Estevez17 eq 3].
+/// The fit of Smith's Lambda [Estevez17 eq 3].
 template <class T>
 class Shadowing {
   public:
@@ -53,13 +54,13 @@ class Shadowing {
 
 }  // namespace sheen
 
-/// E(mu) of a white sheen, from 0 to somewhat above 1: below a roughness of .25 the model returns more than
-/// arrives where it is seen at grazing angles. Made once for all scenes.
+/// E(mu) of a white sheen, from 0 to somewhat above 1: for roughness below .25, the model reflects more than it
+/// receives at grazing angles. Made once for all scenes.
 class SheenTable {
   public:
     SheenTable();
 
-    /// mu and roughness in [0, 1].
+    /// E(mu), for mu and roughness in [0, 1].
     float directional(float roughness, float mu) const;
 
   private:
@@ -68,7 +69,7 @@ class SheenTable {
     std::vector<float> values_;  // [roughness][root of mu]
 };
 
-/// Made when it is first asked for.
+/// The table; the first call makes it.
 const SheenTable& sheenTable();
 
 }  // namespace lacuna
