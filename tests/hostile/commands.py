@@ -12,7 +12,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 OLD = b"what was there before"
 LONGEST = 10.0  # seconds that a tool may take, on a machine that does nothing else
 EXITS = {0, 1, 2, 3, 130}
@@ -89,8 +90,9 @@ class Outcome:
 class Attack:
     """Folders with everything the commands need, and a judge of what is left in them."""
 
-    def __init__(self, build: Path):
-        self.build = build.resolve()
+    def __init__(self, build: Path, shim: Path):
+        """`shim`: faults.c, compiled."""
+        self.build, self.shim = build.resolve(), shim.resolve()
         self.home = Path(tempfile.mkdtemp(prefix="hostile-"))
         self.template = self.home / "template"
         self.template.mkdir()
@@ -100,9 +102,10 @@ class Attack:
         shutil.rmtree(self.home, ignore_errors=True)
 
     def program(self, tool: str) -> str:
-        for folder in ("render", "preprocess"):
-            if (self.build / folder / tool).exists():
-                return str(self.build / folder / tool)
+        """The path of a tool, or of a script beside this file."""
+        for folder in (self.build / "render", self.build / "preprocess", HERE):
+            if (folder / tool).exists():
+                return str(folder / tool)
         raise SystemExit(f"{self.build}: expected {tool} to be built, found none; build it first")
 
     def _fill(self) -> None:
@@ -131,12 +134,17 @@ class Attack:
             (folder / name).write_bytes(OLD)
         return folder
 
-    def start(self, command: Command, folder: Path, *, wrap: list[str] = [], more: list[str] = [], **how) -> subprocess.Popen:
+    def faults(self, **variables: str) -> dict[str, str]:
+        """The environment in which faults.c does what these variables ask for."""
+        return {"LD_PRELOAD": str(self.shim), **variables}
+
+    def start(self, command: Command, folder: Path, *, more: list[str] = [], quiet: bool = True, **how) -> subprocess.Popen:
         how.setdefault("stdin", subprocess.DEVNULL)
         how.setdefault("stdout", subprocess.DEVNULL)
         how.setdefault("stderr", subprocess.PIPE)
         how["env"] = os.environ | how.get("env", {})
-        return subprocess.Popen([*wrap, self.program(command.tool), *command.arguments, "--quiet", *more], cwd=folder, **how)
+        words = [self.program(command.tool), *command.arguments, *(["--quiet"] if quiet else []), *more]
+        return subprocess.Popen(words, cwd=folder, **how)
 
     def run(self, command: Command, folder: Path, **how) -> Outcome:
         begin = time.monotonic()

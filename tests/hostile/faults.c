@@ -2,15 +2,18 @@
 
      LACUNA_FAULT=NAME:N[+]      the N-th call of that name (1: the first) fails; with + all later ones too
      LACUNA_FAULT_FIRED=FILE     made when it does, so that who counts on knows where the calls end
+     LACUNA_FULL=DIR             every write to a file below this directory, a real path, fails (disk full)
 
    Names: write (disk full), fsync (input/output error), open (too many files), rename, read (input/output
-   error), mkdir (no permission), memory (allocations of 64 KiB and more), thread, clock (the time of day
-   leaps forward by a year from that look on). Files are those that are named relative to the working
-   directory, as the tests name theirs, or that were opened so. Standard streams never fail here. */
+   error), mkdir (no permission), memory (allocations of 64 KiB and more), thread, clock (the time of day is
+   six hours ahead or behind, in turn; the monotonic clock goes on as it is). Files are those that are named
+   relative to the working directory, as the tests name theirs, or that were opened so. Standard streams never
+   fail here. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -20,18 +23,22 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
-enum { LARGE = 64 * 1024 };
+enum { LARGE = 64 * 1024, LEAP = 6 * 60 * 60 };
 
 static const char* fault;  /* NAME:N */
 static size_t fault_name;  /* length of NAME */
 static long first;         /* N */
 static int and_later;
 static atomic_long calls;
+static const char* full; /* a directory's real path, or null */
 
 __attribute__((constructor)) static void read_fault(void) {
+    full = getenv("LACUNA_FULL");
     const char* text = getenv("LACUNA_FAULT");
     const char* colon = text ? strchr(text, ':') : NULL;
     if (!colon) return;
@@ -64,6 +71,18 @@ static int is_file(int fd) {
     return fd > STDERR_FILENO && fstat(fd, &of) == 0 && S_ISREG(of.st_mode);
 }
 
+static int has_no_room(int fd) {
+    char link[32], name[PATH_MAX] = "";
+    if (!full) return 0;
+    snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+    const ssize_t length = readlink(link, name, sizeof name - 1);
+    return length > 0 && strncmp(name, full, strlen(full)) == 0 && name[strlen(full)] == '/';
+}
+
+static int write_fails(int fd) {
+    return is_file(fd) && (has_no_room(fd) || fails("write"));
+}
+
 static int is_ours(const char* path) {
     return path[0] != '/';
 }
@@ -71,12 +90,12 @@ static int is_ours(const char* path) {
 #define NEXT(type, name) ((type)dlsym(RTLD_NEXT, name))
 
 ssize_t write(int fd, const void* data, size_t size) {
-    if (is_file(fd) && fails("write")) return refuse(ENOSPC);
+    if (write_fails(fd)) return refuse(ENOSPC);
     return syscall(SYS_write, fd, data, size);
 }
 
 ssize_t writev(int fd, const struct iovec* parts, int count) {
-    if (is_file(fd) && fails("write")) return refuse(ENOSPC);
+    if (write_fails(fd)) return refuse(ENOSPC);
     return syscall(SYS_writev, fd, parts, count);
 }
 
@@ -179,4 +198,30 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
     if (fails("thread")) return EAGAIN;
     return NEXT(int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*),
                 "pthread_create")(thread, attributes, body, with);
+}
+
+/* Seconds by which the time of day is wrong on this look. */
+static time_t leap(void) {
+    static atomic_uint leaps;
+    if (!fails("clock")) return 0;
+    return atomic_fetch_add(&leaps, 1) % 2 == 0 ? LEAP : -LEAP;
+}
+
+int clock_gettime(clockid_t clock, struct timespec* now) {
+    const int done = (int)syscall(SYS_clock_gettime, clock, now);
+    if (done == 0 && (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE)) now->tv_sec += leap();
+    return done;
+}
+
+int gettimeofday(struct timeval* now, void* zone) {
+    const int done = (int)syscall(SYS_gettimeofday, now, zone);
+    if (done == 0) now->tv_sec += leap();
+    return done;
+}
+
+time_t time(time_t* result) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    if (result) *result = now.tv_sec;
+    return now.tv_sec;
 }

@@ -22,12 +22,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path)
     parser.add_argument("shim", type=Path)
-    parser.add_argument("--quick", action="store_true", help="a few of each")
+    parser.add_argument("--quick", action="store_true", help="a few calls of two commands")
     arguments = parser.parse_args()
-    attack = Attack(arguments.build)
+    attack = Attack(arguments.build, arguments.shim)
     wrong: list[str] = []
     try:
-        attacks = [lambda: refusals.run(attack, arguments.shim.resolve(), quick=arguments.quick)]
+        attacks = [lambda: refusals.run(attack, quick=arguments.quick)]
         if not arguments.quick:
             attacks += [lambda: moments.run(attack, moments=10, races=3), lambda: surroundings.run(attack)]
         for run in attacks:

@@ -1,20 +1,26 @@
-"""Surroundings that a tool does not expect: limits, locales, names, streams that are closed, folders that vanish."""
+"""Surroundings that a tool does not expect: limits, locales, names, streams that are closed or whose readers leave, folders that
+vanish or are full, a clock that leaps."""
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import shutil
+import signal
+import socketserver
 import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from commands import COMMANDS, OLD, Attack, Command, Outcome, named
+from commands import COMMANDS, LONGEST, OLD, SIZE, Attack, Command, Outcome, named
 
 RENDER, CACHED = named("render"), named("render cached")
+LIBRARY = Command("library", "in_memory.py", [], [])
 Finding = tuple[str, list[str]]  # what was tried, what was wrong
 
 
@@ -51,7 +57,7 @@ def threads(attack: Attack) -> Iterator[Finding]:
     for command in COMMANDS:
         if command.tool == "lacuna-study":
             continue
-        for number in ("1", "64"):
+        for number in ("1", "64", "256"):
             options = [number if before == "--threads" else option
                        for before, option in zip(["", *command.arguments], command.arguments)]
             yield tried(attack, f"{number} threads", replace(command, arguments=options), exits={0})
@@ -76,7 +82,39 @@ def streams(attack: Attack) -> Iterator[Finding]:
                         preexec_fn=lambda closed=closed: os.close(closed))
         with open("/dev/full", "w") as full:
             yield tried(attack, "stdout full", command, exits={0, 1}, stdout=full)
-            yield tried(attack, "stderr full", command, exits={0}, stderr=full)
+            yield tried(attack, "stderr full", command, exits={0}, stderr=full, quiet=False)
+
+
+@contextmanager
+def left_after(size: int) -> Iterator[int]:
+    """The writing end of a pipe whose reader leaves after at most `size` bytes."""
+    reading, writing = os.pipe()
+
+    def read() -> None:
+        os.read(reading, size)
+        os.close(reading)
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    try:
+        yield writing
+    finally:
+        os.close(writing)
+        reader.join()
+
+
+def readers(attack: Attack) -> Iterator[Finding]:
+    """The reader of a stream leaves before the tool writes to it, or after the first byte (SIGPIPE)."""
+    for command in COMMANDS:
+        for size in (0, 1):
+            with left_after(size) as stream:
+                yield tried(attack, f"stdout left after {size} bytes", command, exits={0, 1} if size else {1},
+                            stdout=stream)
+            with left_after(size) as stream:
+                yield tried(attack, f"stderr left after {size} bytes", command, exits={0}, stderr=stream, quiet=False)
+    for tool in sorted({command.tool for command in COMMANDS}):
+        with left_after(0) as stream:
+            yield tried(attack, "stdout left", Command(f"{tool} --help", tool, ["--help"], []), exits={1}, stdout=stream)
 
 
 def names(attack: Attack) -> Iterator[Finding]:
@@ -91,6 +129,23 @@ def names(attack: Attack) -> Iterator[Finding]:
     options = list(CACHED.arguments)
     options[options.index("-o") + 1] = long
     yield tried(attack, "a name of 5 kB", replace(CACHED, arguments=options, outputs=[]), exits={1})
+
+
+def temporary_folders(attack: Attack) -> Iterator[Finding]:
+    """TMPDIR lies on a full disk. Only the library writes there: caches of a scene that lies nowhere, where there is no home."""
+    env = {"HOME": "", "XDG_CACHE_HOME": "", "PYTHONPATH": str(attack.build / "python")}
+    commands = list(COMMANDS)
+    if subprocess.run(["/usr/bin/python3", "-c", "import lacuna"], env=env, capture_output=True).returncode == 0:
+        commands.append(LIBRARY)
+    else:
+        print("full temporary folder: library skipped, the Python package is not built")
+    for command in commands:
+        folder = attack.home / "full"
+        folder.mkdir()
+        env |= attack.faults(LACUNA_FULL=str(folder.resolve()), TMPDIR=str(folder))
+        what, wrong = tried(attack, "full temporary folder", command, exits={1} if command is LIBRARY else {0}, env=env)
+        yield what, wrong + [f"{what}: left {path.name}" for path in folder.rglob("*") if path.is_file()]
+        shutil.rmtree(folder)
 
 
 def as_nobody(attack: Attack) -> Iterator[Finding]:
@@ -154,11 +209,61 @@ def changes(attack: Attack) -> Iterator[Finding]:
                 yield meanwhile(attack, what, command, act, after)
 
 
+class Viewer(socketserver.BaseRequestHandler):
+    """Takes what it is sent, as tev does, and counts the bytes."""
+
+    def handle(self) -> None:
+        while data := self.request.recv(1 << 16):
+            self.server.taken += len(data)
+
+
+@contextmanager
+def viewer() -> Iterator[socketserver.TCPServer]:
+    with socketserver.TCPServer(("127.0.0.1", 0), Viewer) as server:
+        server.taken = 0
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield server
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def clocks(attack: Attack) -> Iterator[Finding]:
+    """The time of day leaps back and forth. A render ends by time nevertheless, saves its checkpoint, goes on from it, and is seen."""
+    what = "a clock that leaps, render for two seconds"
+    env = attack.faults(LACUNA_FAULT="clock:1+")
+    with viewer() as server:
+        command = Command("", "lacuna-render",
+                          ["scene.glb", "--method", "bpt", *SIZE, "--time", "2s", "--checkpoint", "saved",
+                           "--checkpoint-every", "0.1s", "--write-every", "0.1s", "-o", "out.exr", "--json", "out.json",
+                           "--display-server", "%s:%d" % server.server_address], ["out.exr", "out.json"])
+        folder = attack.folder(command)
+        begin = time.monotonic()
+        process = attack.start(command, folder, env=env)
+        while not (folder / "saved").exists() and process.poll() is None:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        first = attack.outcome(process, begin)
+        second = attack.run(command, folder, env=env)
+    wrong = attack.judge(command, folder, first, speaks=False) + attack.judge(command, folder, second)
+    if (first.exit, second.exit) != (130, 0):
+        wrong.append(f"exit codes {first.exit} and {second.exit}, expected 130 and 0")
+    else:
+        report = json.loads((folder / "out.json").read_text())
+        if report["stopped"] != "time" or not 1 < report["seconds"] < LONGEST:
+            wrong.append(f"stopped by {report['stopped']} after {report['seconds']} s")
+    if server.taken < 24 * 24 * 3 * 4:
+        wrong.append(f"sent {server.taken} bytes of pictures")
+    yield what, [f"{what}: {w} [{first.message}] [{second.message}]" for w in wrong]
+
+
 def run(attack: Attack) -> tuple[dict[str, int], list[str]]:
     """Number of cases by kind, and what was wrong."""
     counts: dict[str, int] = {}
     wrong: list[str] = []
-    for kind in (limits, threads, locales, streams, names, as_nobody, changes):
+    for kind in (limits, threads, locales, streams, readers, names, temporary_folders, as_nobody, changes, clocks):
         counts[kind.__name__.replace("_", " ")] = 0
         for _, found in kind(attack):
             counts[kind.__name__.replace("_", " ")] += 1
