@@ -13,7 +13,7 @@ void CachePmfs::Builder::add(std::span<const WeightedVertex> row) {
         float before = 0.0f;
         for (const WeightedVertex& v : row) {
             sum += v.weight;
-            // Steps that floats do not show are picks that never happen: not stored.
+            // Steps too small for floats are picks that never happen. They are not stored.
             const float now = std::min(float(sum / total), 1.0f);
             if (now <= before) continue;
             indices_.push_back(v.index);

@@ -1,5 +1,5 @@
-// What light vertices are worth at one cache point, and the pmfs made from that. (theory.md, "Cache
-// points")
+// Weights of light vertices at one cache point, and the pmfs built from them. (theory.md,
+// "Cache points")
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// What a pmf is proportional to.
+/// The target that the pmf at a cache point is proportional to.
 enum class CacheTarget {
     Flow,        ///< mean(beta rho) G V                             [Nabata20a eq 15]
     FlowThrough  ///< mean(beta rho rho_c) G V, rho_c the cache point's BSDF  [Popov15]
@@ -30,7 +30,8 @@ class CachePmfs {
         double pmf;
     };
 
-    /// Row after row. Weights may have any sum, zero included; indices ascend.
+    /// Takes pmfs row by row. The weights of a row may have any sum, zero included; its
+    /// indices must ascend.
     class Builder {
       public:
         void add(std::span<const WeightedVertex> row);
@@ -47,7 +48,7 @@ class CachePmfs {
 
     std::size_t rows() const { return begin_.size() - 1; }
     bool empty(std::uint32_t row) const { return begin_[row] == begin_[row + 1]; }
-    /// u in [0, 1); the row must not be empty.
+    /// Draws an index of the row by u in [0, 1). The row must not be empty.
     Pick pick(std::uint32_t row, double u) const;
     /// Realised probability of that light vertex; zero where it is not in the row.
     double pmf(std::uint32_t row, std::uint32_t index) const;

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kPathsPerChunk = 64;
 constexpr std::size_t kPointsPerChunk = 256;
 
-/// body(i) for i in [0, n), in tasks of kPointsPerChunk.
+/// Calls body(i) for i in [0, n), in tasks of kPointsPerChunk.
 template <class Body>
 void forEachPoint(const ThreadPool& threads, std::size_t n, const Body& body) {
     threads.forEach((n + kPointsPerChunk - 1) / kPointsPerChunk, [&](std::size_t chunk) {
@@ -24,7 +24,8 @@ void forEachPoint(const ThreadPool& threads, std::size_t n, const Body& body) {
     });
 }
 
-/// Squared distance that points so many in a box like theirs have about, were they on a surface.
+/// About the squared distance of neighbours, if the points were spread over a surface of
+/// their box's size.
 double typicalSpacing2(std::span<const Vec3> positions) {
     if (positions.empty()) return 0.0;
     Vec3 low = positions[0], high = positions[0];
@@ -68,7 +69,8 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
         }
     }
     const double spacing2 = typicalSpacing2(positions);
-    // Turned away counts as twice the spacing: points behind a thin wall are passed over.
+    // Points that face away count as twice the spacing off: those behind a thin wall
+    // are passed over.
     nearest_ = NearestPoints(std::move(positions), std::move(sides), float(std::sqrt(spacing2)));
 
     // One neighbour beyond N_c says how far the point's region reaches where N_c is 1.
@@ -79,7 +81,7 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
     forEachPoint(context.threads, size(), [&](std::uint32_t i) {
         std::vector<std::uint32_t> found(asked);
         nearest_.find(position(i), side(i), found);
-        // Of coincident points another one may come first.
+        // Where points coincide, another one may come first.
         const auto self = std::find(found.begin(), found.end(), i);
         std::rotate(found.begin(), self == found.end() ? self - 1 : self,
                     self == found.end() ? self : self + 1);
@@ -89,8 +91,8 @@ CachePoints::CachePoints(IterationContext& context, double density, int neighbou
         for (const std::uint32_t j : found) {
             d2 = std::max(d2, lengthSquared(Vec3d(position(j)) - Vec3d(position(i))));
         }
-        // Where all neighbours coincide they say nothing; where all points do, finite is all that
-        // can be asked.
+        // Where all neighbours coincide, the mean spacing stands in. Where all points do, any
+        // finite limit will do.
         if (!(d2 > 0.0)) d2 = spacing2;
         limit_[i] = d2 > 0.0 ? 1.0 / d2 : double(std::numeric_limits<float>::max());
     });

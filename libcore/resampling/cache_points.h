@@ -3,8 +3,8 @@
 // "Cache points")
 //
 // A new set is traced for every iteration, before its light paths, so a set is frozen data for the
-// weights. An eye vertex is served by the N_c points nearest to the point that is nearest to it:
-// one query per vertex, and what belongs together lies together.
+// weights. The point nearest to an eye vertex serves it, together with that point's own nearest
+// neighbours, N_c points in all. So a vertex takes one query.
 #pragma once
 
 #include <algorithm>
@@ -20,10 +20,10 @@ namespace lacuna {
 
 class CachePoints {
   public:
-    /// No points: everything is served by nobody.
+    /// No points: no vertex is served.
     CachePoints() = default;
-    /// Vertices of `density` x (pixels of the film) eye subpaths, at least one path.
-    /// `neighbours`: N_c. `generation` addresses the random numbers.
+    /// The connectable vertices of `density` x (pixels of the film) eye subpaths, at least one
+    /// path. `neighbours` is N_c. `generation` addresses the random numbers.
     CachePoints(IterationContext& context, double density, int neighbours,
                 std::uint32_t generation);
 
@@ -36,7 +36,7 @@ class CachePoints {
     Vec3 side(std::uint32_t point) const { return scatteringSide(vertices_[points_[point]]); }
 
     /// The point that serves an eye vertex, which is also the vertex's label; kNone where there are
-    /// no points. `label`: the vertex's, where it is known.
+    /// no points. `label` is the vertex's, or kNone where it is not known.
     std::uint32_t serving(const PathVertex& eye, Label label) const {
         return label != kNone ? label : nearest(eye);
     }
@@ -50,7 +50,7 @@ class CachePoints {
 
     /// Upper limit of 1 / d^2 in everything that is kept at a point: a light vertex closer than the
     /// point's neighbours are says little about the vertices that it serves, and may be infinitely
-    /// close. Never a limit on what is carried.
+    /// close. It never limits a contribution.
     double inverseSquareLimit(std::uint32_t point) const { return limit_[point]; }
     /// G, or `share` of that limit where G is larger. At infinity G is a cosine: there is no
     /// distance to limit.
@@ -58,10 +58,10 @@ class CachePoints {
                    double share = 1.0) const {
         return light.infinite() ? geometry : std::min(geometry, share * limit_[point]);
     }
-    /// G between an eye vertex and a light vertex as weights may trust it: no larger than what the
-    /// pmf at the point knows of it. Where the light vertex is near the eye vertex and not near
-    /// the point, or behind the point's surface, which scatters nothing of it, it is picked rarely,
-    /// and no weight must count on it.
+    /// The G between an eye vertex and a light vertex that weights may trust. `geometry` is the
+    /// true one; the result is no larger than the G that the pmf at the point knows. A light vertex
+    /// is picked rarely if it is near the eye vertex and not near the point, or lies behind the
+    /// point's surface, which scatters nothing of it. No weight must count on such picks.
     double trustedGeometry(std::uint32_t point, const PathVertex& light, double geometry) const;
 
     std::uint64_t bytes() const;
@@ -80,15 +80,16 @@ class CachePoints {
     NearestPoints nearest_;
 };
 
-/// What earlier iterations found at their cache points, to be read at new ones: the frozen
+/// Values that earlier iterations found at their cache points, to be read at new ones: the frozen
 /// normalisers Q. Holds the last `sets` sets.
 class EarlierValues {
   public:
-    /// `columns` values per point; `count`: N_q.
+    /// `columns` values per point. `count` is N_q.
     EarlierValues(int columns, int sets, int count)
         : columns_(std::size_t(columns)), sets_(std::size_t(sets)), count_(std::size_t(count)) {}
 
-    /// Forgets the oldest set where there are too many. An empty set is not one.
+    /// Adds a set, and drops the oldest one where there are too many. A set without
+    /// points is not added.
     void add(CachePoints points, std::vector<double> values);
     /// For each new point the mean over all sets of the mean over the N_q points nearest to it:
     /// columns values each. Zero without sets.

@@ -64,8 +64,7 @@ class CacheResampling final : public Method {
           density_(options),
           earlier_(1, options.earlierIterations, kEarlierPoints) {}
 
-    // The first finds out how many vertices there are and leaves cache points, the second fills
-    // them.
+    // The first warm-up counts vertices and leaves cache points, the second finds their Q.
     int warmupIterations() const override { return 2; }
     PoolRequest pool() const override { return {options_.subpaths}; }
     Merging merging() const override { return options_.merging.merging(); }

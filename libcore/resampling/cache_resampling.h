@@ -8,8 +8,8 @@
 //                 h(y) / (M N Pbar(y)),   Pbar = (sum_c P_c + 1/|Y|) / (n' + 1),
 //             over the n' points whose pmf is not empty       (theory.md, "Cache points")
 //   Q(c)      (1/M) sum over Y of q*(y, c); an iteration's weights see the mean Q of the
-//             earlier ones at the new cache points (as printed: of the one before). Read off Y
-//             itself (risbpt-current) it makes w depend on what it weighs: E[w h] is not E[w] h
+//             earlier ones at the new cache points (as printed: of the one before). Q of Y
+//             itself (risbpt-current) makes w depend on what it weighs: E[w h] is not E[w] h
 //   MIS       plain: r = 1 [Popov15]; ris: the mean over the N_c + 1 choices of
 //                 [ 1/M + (1/N) (1 - 1/M) p/q ]^-1,   p/q = max(clamp, Q(c) / q*(y, z)),
 //             with V = 1, and N M / Vbar for the virtual point     [Nabata20a eq 14 and 5.2]
@@ -36,7 +36,7 @@ struct CacheResamplingOptions {
     bool nextEvent = true;
     Lamps lamps = Lamps::Seen;
     MergeOptions merging = {};
-    Weights weights = Weights::Plain;  ///< the rest is read where they are Ris
+    Weights weights = Weights::Plain;  ///< the options below are read where they are Ris
     int earlierIterations = 16;        ///< whose Q are averaged
     double clamp = 1e-3;
     double eyeShare = 0.1;
@@ -45,9 +45,9 @@ struct CacheResamplingOptions {
 
 std::unique_ptr<Method> makeCacheResampling(const CacheResamplingOptions& options);
 
-/// The options that all its rows have.
+/// The options that all these rows have.
 OptionTable<CacheResamplingOptions> cacheResamplingOptions(const CacheResamplingOptions& defaults);
-/// With those of weights that are aware of the resampling.
+/// Likewise, with the options of weights that are aware of the resampling.
 OptionTable<CacheResamplingOptions> awareResamplingOptions(const CacheResamplingOptions& defaults);
 
 /// `cache_density` and `cache_points`, of every row with cache points.
@@ -62,14 +62,14 @@ template <class Record, class Field>
 void addClamp(OptionTable<Record>& table, Field field) {
     table.real("clamp", field, 0, 1, "", "lower limit of p/q in the weights");
 }
-/// `q_iterations`, of those whose Q is that of earlier iterations.
+/// `q_iterations`, of every row whose Q comes from earlier iterations.
 template <class Record, class Field>
 void addEarlierIterations(OptionTable<Record>& table, Field iterations) {
     table.integer("q_iterations", iterations, 1, 256, "earlier iterations",
                   "whose Q are averaged; the paper: 1");
 }
 
-/// N_q: cache points of an earlier iteration that tell a new one their Q [Nabata20a 5.2].
+/// N_q: cache points of an earlier iteration whose Q a new point reads [Nabata20a 5.2].
 inline constexpr int kEarlierPoints = 3;
 
 }  // namespace lacuna

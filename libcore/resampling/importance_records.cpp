@@ -12,12 +12,12 @@ namespace {
 /// G falls with the square of the distance: four times as far is a sixteenth.
 constexpr double kBoundedShare = 1.0 / 16.0;
 
-/// What weights read of a record and a length, in this order: Q of the four, and Z.
+/// The columns that weights read of a record and a length: Q of the four distributions, then Z.
 constexpr std::uint32_t kMaxima = ImportanceRecords::kDistributions;
 constexpr int kColumns = ImportanceRecords::kDistributions + 1;
-/// Of the earlier iteration, that tell a record its sums: N_q, as for cache points.
+/// N_q: records of the earlier iteration whose sums a new record reads, as for cache points.
 constexpr int kEarlierRecords = 3;
-/// Longer light subpaths are believed to be what those of this length are.
+/// Lengths with means of their own. Longer light subpaths share those of the last one.
 constexpr int kLengths = 8;
 
 }  // namespace

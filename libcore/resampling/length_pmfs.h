@@ -1,5 +1,5 @@
-// Light vertices of a pool by the length of their prefix, and pmfs over those of one length that
-// are combined from several: what skelbpt and icbpt have in common. (theory.md, "Lengths")
+// Light vertices of a pool by the length of their prefix, and pmfs over one length that combine
+// several pmfs: what skelbpt and icbpt have in common. (theory.md, "Lengths")
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace lacuna {
 
-/// What picks choose from in a pool (takePickable), those of one s together.
+/// The vertices of a pool that picks choose from (takePickable), sorted by s.
 class VerticesByLength {
   public:
-    /// `direct`: with those on the lights themselves (s = 1).
+    /// With `direct`, vertices on the lights themselves (s = 1) are among them.
     void assign(const LightPool& pool, bool direct);
 
-    /// Every s in [1, lengths()]; some may have no vertices.
+    /// The largest s. Some smaller ones may have no vertices.
     int lengths() const { return int(begin_.size()) - 2; }
     std::size_t size() const { return entries_.size(); }
     std::size_t begin(int s) const { return begin_[std::size_t(s)]; }
@@ -36,19 +36,20 @@ class VerticesByLength {
 /// For which s an eye vertex picks light vertices.
 enum class Lengths { Every, Share };
 
-/// How many picks an eye vertex gets for each s: N, as in the papers, or for s > 2 so many on
-/// average as follows from the share of light subpaths that had a y_{s-1} in earlier iterations:
-/// what carries less is asked less often (in bpt the path itself decides).
+/// How many picks an eye vertex gets for each s: N, as in the papers. With Lengths::Share and s
+/// > 2 it gets fewer on average, by the share of light subpaths that had a y_{s-1} in earlier
+/// iterations. So lengths that carry less are picked less often (in bpt the light subpath
+/// itself decides).
 class LengthPicks {
   public:
     LengthPicks(Lengths lengths, const Picks& picks) : lengths_(lengths), picks_(picks) {}
 
     /// n: the picks of length s that an eye vertex gets on average, by its Connection::order;
-    /// positive. chance x repeats.
+    /// positive. It is chance x repeats.
     double at(int s, int order) const { return picks_.at(order) * share(s); }
-    /// The probability that there is one.
+    /// The probability that there is a pick.
     double chance(int s, int order) const { return std::min(1.0, at(s, order)); }
-    /// How many there are if there is one, on average.
+    /// How many picks there are on average, if there is one.
     double repeats(int s, int order) const { return std::max(1.0, at(s, order)); }
 
     /// Calls visit(s, u, n) for every pick of an eye vertex, with u in [0, 1) for it.
@@ -65,7 +66,7 @@ class LengthPicks {
         }
     }
 
-    /// What later iterations may know of these.
+    /// Counts the vertices by length, for later iterations.
     void learn(const VerticesByLength& vertices) {
         seen_.resize(std::max(seen_.size(), std::size_t(vertices.lengths()) + 1));
         for (int s = 1; s <= vertices.lengths(); ++s) seen_[std::size_t(s)] += vertices.count(s);
@@ -74,11 +75,11 @@ class LengthPicks {
   private:
     static constexpr double kPicksForTheShare = 2.0;  // among light subpaths with a y_1
 
-    /// Of N; in (0, 1].
+    /// n over N, in (0, 1].
     double share(int s) const {
         const auto i = std::size_t(s);
         if (lengths_ == Lengths::Every || s <= 2 || i >= seen_.size() || seen_[i] == 0)
-            return 1.0;  // or never seen
+            return 1.0;  // also for a length that was never seen
         return std::min(1.0, kPicksForTheShare * double(seen_[i]) / double(seen_[2]));
     }
 
@@ -99,7 +100,7 @@ void addLengths(OptionTable<Record>& table, Field field) {
 /// What the weights believe of a connection.
 enum class Believed {
     Credit,  ///< M samples: the papers' constant
-    Aware,   ///< what the resampling makes of it
+    Aware,   ///< the samples that the resampling is worth
 };
 
 /// `weights`: which of the two.
@@ -110,15 +111,16 @@ void addBelieved(OptionTable<Record>& table, Field field) {
         "what the weights believe: M samples per connection (the paper), or the resampling");
 }
 
-/// One pmf out of several over the same outcomes, by the maximum heuristic [Veach97 9.2.3]
-/// multiplied in: an outcome belongs to the pmf that gives it the highest probability (ties: to the
-/// first), is taken out of the others, and each is made to sum to one again. One of those that hold
-/// outcomes is chosen, all alike [Noel15 eq 9]; choosing and then drawing is the same as one pmf
+/// One pmf made of several over the same outcomes, with the maximum heuristic [Veach97 9.2.3]
+/// multiplied in. An outcome belongs to the pmf that gives it the highest probability (ties: to the
+/// first), and the others drop it. Each pmf is normalised anew, and one of those that hold outcomes
+/// is chosen evenly [Noel15 eq 9]. Choosing and then drawing is the same as drawing from one pmf
 /// over all outcomes.
 class CombinedPmf {
   public:
     CombinedPmf() = default;
-    /// Weights of any sum, over as many outcomes each; those that sum to zero are left out.
+    /// `targets` are weights of any sum, all over the same outcomes. Targets that sum to
+    /// zero are left out.
     explicit CombinedPmf(std::span<const std::span<const double>> targets);
 
     bool empty() const { return pmf_.empty(); }

@@ -47,7 +47,8 @@ void LightTree::build(std::vector<Leaf>& leaves, std::uint32_t begin, std::uint3
     struct Task {
         std::uint32_t node, begin, end;
     };
-    // The top level by level, large nodes in parallel; then whole subtrees in parallel.
+    // The top of the tree is built level by level, large nodes in parallel. Then whole subtrees are
+    // built in parallel.
     std::vector<Task> level{{2 * begin, begin, end}}, subtrees;
     std::vector<std::vector<Task>> levels;
     const auto split = [&](const Task& t) {
@@ -82,7 +83,8 @@ void LightTree::build(std::vector<Leaf>& leaves, std::uint32_t begin, std::uint3
     }
 }
 
-/// Box of the leaves; sorts them so that the lower half along the longest axis comes first.
+/// Sets the box of the leaves, and sorts them so that the lower half along its longest
+/// axis comes first.
 void LightTree::fillNode(std::uint32_t node, std::span<Leaf> leaves, std::uint32_t begin) {
     Node& n = nodes_[node];
     n.begin = begin;
@@ -110,7 +112,7 @@ void LightTree::fillNode(std::uint32_t node, std::span<Leaf> leaves, std::uint32
                      });
 }
 
-/// Power and cone from the children's.
+/// Sets power and cone from those of the children.
 void LightTree::joinChildren(std::uint32_t node) {
     Node& n = nodes_[node];
     const Node &a = nodes_[node + 1], &b = nodes_[rightOf(node)];
@@ -167,7 +169,8 @@ double LightTree::bound(const Node& node, const PathVertex& eye, Vec3 eyeNormal)
     const Vec3 to = eye.position - centre;
     const float d2 = dot(to, to);
     const float d = std::sqrt(d2), radius = std::sqrt(radius2);
-    // From the box itself, but not so near that one cluster around the point takes all splits.
+    // Distance to the box itself, but at least half its radius: else one cluster around the point
+    // would take all splits.
     const Vec3 out = max(max(node.low - eye.position, eye.position - node.high), Vec3{});
     const float near = std::max(length(out), 0.5f * radius);
     const double power = node.power / std::max(1e-30, double(near) * double(near));

@@ -24,14 +24,15 @@ class LightTree {
     };
 
     LightTree() = default;
-    /// Over the candidates with power; the others are in no cluster.
+    /// Builds the trees over the candidates with power. The others are in no cluster.
     LightTree(const LightPool& pool, std::span<const LightPool::Entry> candidates,
               const ThreadPool& threads);
 
     std::size_t size() const { return order_.size(); }
     /// Sum of mean(beta) over a cluster.
     double power(Cluster c) const { return nodes_[c].power; }
-    /// u in [0, 1). A walk down the tree: exact for any range of powers.
+    /// Draws a vertex of the cluster by u in [0, 1). A walk down the tree is exact for any
+    /// range of powers.
     Draw draw(Cluster c, double u) const;
     /// Indices of the cluster's candidates.
     std::span<const std::uint32_t> candidates(Cluster c) const {

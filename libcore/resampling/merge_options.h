@@ -17,7 +17,7 @@ void addMergeRadius(OptionTable<Record>& table, Field field) {
         .standardText("of two pixels");
 }
 
-/// Merging of rows with a pool, for what their connections cannot make.
+/// Merging of rows with a pool, for paths that their connections cannot make.
 struct MergeOptions {
     bool on = false;
     double radius = 0;

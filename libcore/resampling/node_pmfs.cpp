@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kCountingPaths = 16384, kCountingPathsPerTask = 256;
 constexpr std::size_t kVerticesPerTask = 512;
-constexpr double kNearest = 0.1;  // of the ball's radius: the closest a light vertex counts as
+constexpr double kNearest = 0.1;  // least distance of a light vertex, in radii of the ball
 
 }  // namespace
 
@@ -70,7 +70,7 @@ void NodePmfs::prepare(const VerticesByLength& vertices, IterationContext& conte
     context.statistics.hold("nodes with distributions", accepted_.size());
 }
 
-/// seen_ and unseen_ of all vertices.
+/// Fills seen_ and unseen_ for all vertices.
 void NodePmfs::weigh(const VerticesByLength& vertices, IterationContext& context) {
     PhaseTimer timer(context.statistics, "node visibility");
     const std::size_t n = vertices.size();
@@ -97,7 +97,7 @@ void NodePmfs::weigh(const VerticesByLength& vertices, IterationContext& context
     for (const RayTally& t : tallies) context.statistics.add(t);
 }
 
-/// Which nodes are worth pmfs: those that many eye vertices are mapped to.
+/// Finds the nodes that are worth pmfs: those that many eye vertices are mapped to.
 void NodePmfs::accept(IterationContext& context) {
     slot_.assign(nodes(), kNone);
     if (nodes() == 0) return;
@@ -136,7 +136,7 @@ std::vector<std::uint64_t> NodePmfs::countEyeVertices(IterationContext& context)
     return hits;
 }
 
-/// What the accepted nodes see; the same for the whole render.
+/// Makes the sight maps of the accepted nodes, which stay the same for the whole render.
 void NodePmfs::lookAround(IterationContext& context) {
     PhaseTimer timer(context.statistics, "node sight");
     sight_.resize(accepted_.size());

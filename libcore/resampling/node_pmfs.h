@@ -1,5 +1,5 @@
-// Light vertices weighed at the nodes of the empty space's skeleton, and the pmfs made from that
-// [Noel15 4]. What skelbpt is made of. (theory.md, "Nodes")
+// Weights of light vertices at the nodes of the empty space's skeleton, and the pmfs built from
+// them [Noel15 4]. skelbpt is made of them. (theory.md, "Nodes")
 //
 //   node      n(z): nearest node by geodesic distance (node_map.h), on the side the eye path is on
 //   weight    w_n(y) = mean(beta(y)) / max(|P_n - y|, d)^2, at infinity mean(beta(y))   [eq 5]
@@ -7,11 +7,10 @@
 //   pmfs      over L_s, per node and s:  V ∝ w_n V(n, y) [eq 6],  U ∝ w_n [eq 7],
 //             C = 1 / |L_s| [eq 8]
 //             combined by the maximum heuristic, one of them chosen evenly            [4.3]
-//   accepted  nodes that more than `acceptance` times the mean of all
-//             nodes' eye vertices are mapped
-//             to [4.4]; the others have no pmfs. Counted by eye subpaths of their own over the
-//             whole film before the first iteration, not by those of earlier iterations: a crop
-//             sees the same nodes, and the first iteration has pmfs as well
+//   accepted  nodes that more eye vertices are mapped to than `acceptance` times the mean of all
+//             nodes [4.4]; the others have no pmfs. Eye subpaths of their own, over the whole film
+//             and before the first iteration, count them, not those of earlier iterations: a crop
+//             has the same nodes, and the first iteration has pmfs as well
 #pragma once
 
 #include <cstdint>
@@ -53,10 +52,10 @@ class NodePmfs {
     std::span<const std::uint32_t> accepted() const { return accepted_; }
     /// w_n(y), beta = mean(beta(y)).
     double weight(std::uint32_t node, const PathVertex& y, double beta) const;
-    /// V(n, y) as far as the node's map of distances can tell: for what weights believe.
+    /// V(n, y) as far as the node's map of distances can tell. For beliefs alone.
     bool sees(std::uint32_t slot, const PathVertex& y) const { return sight_[slot].sees(y); }
 
-    /// This iteration's pmfs. The first call finds out which nodes are accepted.
+    /// Makes this iteration's pmfs. The first call finds out which nodes are accepted.
     void prepare(const VerticesByLength& vertices, IterationContext& context);
     const CombinedPmf& pmf(std::uint32_t slot, int s) const {
         return pmfs_[slot * lengths_ + std::size_t(s)];

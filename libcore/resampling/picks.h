@@ -15,7 +15,7 @@ namespace lacuna {
 struct Picks {
     static constexpr int kMost = 64;
 
-    int first;  ///< the pixel determines it: nothing but the light subpath is random
+    int first;  ///< the pixel determines this vertex: only the light subpath is random
     int second;
     int later;
 
@@ -23,7 +23,7 @@ struct Picks {
     bool alike() const { return first == second && second == later; }
 };
 
-/// N as people set it.
+/// N as the user sets it.
 struct PickOptions {
     int connections = 1;
     int first = 0;  ///< 0: connections
@@ -66,18 +66,19 @@ void addEyeShare(OptionTable<Record>& table, Field field) {
         "of all but the first eye vertex; 0: none (the paper)");
 }
 
-/// n r where picks differ in their light subpath alone: a share of a connection's variance is that
-/// of its eye subpath, which all of them have in common [Grittmann21]. `samples` are what light
-/// subpaths count as; one stays one, and any number counts as 1 / share at most. Not so at the
-/// first eye vertex (Connection::order), which the pixel determines. (theory.md, "Eye subpaths")
+/// n r of picks that differ in their light subpath alone. `share` of a connection's variance is
+/// that of the eye subpath, which all picks have in common [Grittmann21]. `samples` is n r
+/// without this: one stays one, and any number counts as 1 / share at most. The first eye
+/// vertex (Connection::order) keeps `samples`, because the pixel determines it. (theory.md,
+/// "Eye subpaths")
 double withEyeShare(double samples, int order, double share);
 
 /// Replaces `entries` by what picks choose from: the pool's connectable vertices, with those on the
 /// lights themselves (s = 1) where `direct`.
 void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Entry>& entries);
 
-/// A choice among n outcomes alike, and a number in [0, 1) to choose on with: the i-th of an eye
-/// vertex's `picks`.
+/// A choice among n equally likely outcomes, the i-th of an eye vertex's `picks`. `u` in [0, 1) is
+/// left for further choices.
 struct Choice {
     std::uint32_t index;
     double u;

@@ -9,9 +9,8 @@
 namespace lacuna {
 
 /// Distances to the first surface from a point in empty space, along directions on a grid in the
-/// octahedron's parametrisation: visibility that needs no ray, once the map is there, and is the
-/// same whoever asks and whenever. Near silhouettes it errs by about a cell, so that it may serve
-/// what weights believe, and no estimate.
+/// octahedron's parametrisation: it gives visibility without a ray, and always the same answer.
+/// Near silhouettes it errs by about a cell, so it may serve beliefs of weights, but no estimate.
 class SightMap {
   public:
     SightMap() = default;

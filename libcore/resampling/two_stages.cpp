@@ -15,7 +15,8 @@ void LightCell::makeTable() {
 
 void pickInTwoStages(std::span<const double> numbers, const AliasTable& column,
                      std::span<const LightCell> cells, double picksTimesPaths, ProposalSink& sink) {
-    // Every look into memory waits for the one before it, so the picks go side by side.
+    // In a pick every access to memory waits for the one before, so the picks are
+    // made side by side.
     struct Pick {
         double u, subspacePmf, pmf;
         const LightCell* cell;
