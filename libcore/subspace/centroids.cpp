@@ -29,8 +29,8 @@ float Centroids::distance(std::size_t index, const SubpathEnd& end) const {
 }
 
 std::uint32_t Centroids::nearest(const SubpathEnd& end) const {
-    // Blocks of distances first: that loop has no branch and becomes vector instructions, as long
-    // as the index cannot wrap around (std::size_t).
+    // Distances are computed in blocks: that loop has no branch and becomes vector instructions, as
+    // long as the index cannot wrap around (std::size_t).
     constexpr std::size_t kBlock = 64;
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t found = 0;
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> Centroids::nearest(const SubpathEnd& end, std::size_t
 float spatialVariance(std::span<const SubpathEnd> ends) {
     if (ends.empty()) return 0.0f;
     double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0};
-    // About the first one: no cancellation far from the origin.
+    // Moments are about the first end: no cancellation far from the origin.
     for (const SubpathEnd& e : ends) {
         for (std::size_t a = 0; a < 3; ++a) {
             const double d = double(e.value[a]) - double(ends[0].value[a]);

@@ -1,5 +1,5 @@
-// Centroids of subspaces and the distance that a subpath's subspace is the nearest one by.
-// (theory.md, "Subspaces")
+// Centroids of subspaces. A subpath belongs to the subspace whose centroid is nearest by this
+// distance. (theory.md, "Subspaces")
 //
 //     kappa(y) = argmin_i d(C_i, y)                                                [Su22 eq 17]
 //     d = d_s^2 + sigma^2 (1 - cos theta_n) + k_d sigma^2 (1 - cos theta_d)        [Su22 eq 18]
@@ -21,7 +21,7 @@ class Centroids {
   public:
     /// No centroid: nearest() is 0 for everything.
     Centroids() = default;
-    /// `directionWeight`: k_d.
+    /// `directionWeight` is k_d.
     Centroids(std::span<const SubpathEnd> centres, float sigma2, float directionWeight = 0.05f);
 
     std::size_t size() const { return size_; }
@@ -35,15 +35,15 @@ class Centroids {
   private:
     std::size_t size_ = 0;
     float sigma2_ = 0.0f, directionWeight_ = 0.0f;
-    std::vector<float> value_;  // attribute by attribute, so that a loop over centroids is a vector
+    std::vector<float> value_;  // attribute by attribute, so that loops over centroids vectorise
 };
 
 /// Largest of the three variances of the ends' coordinates; 0 for none.
 float spatialVariance(std::span<const SubpathEnd> ends);
 
-/// Up to `count` different ones of `ends`, drawn with a probability proportional to the weight:
-/// the end of a subpath stands for the contribution of the paths that it is part of [Su22 7.2.2].
-/// One draw out of each `count`-th of the sum of weights; weights that are not positive and finite
+/// Draws up to `count` different ones of `ends` in proportion to their weights. The weight of a
+/// subpath's end is the contribution of the paths that it is part of [Su22 7.2.2]. There is one
+/// draw out of each `count`-th of the sum of weights. Weights that are not positive and finite
 /// count as zero.
 std::vector<SubpathEnd> drawCentroids(std::span<const SubpathEnd> ends,
                                       std::span<const float> weights, std::size_t count, Rng& rng);

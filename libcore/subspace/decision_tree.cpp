@@ -32,7 +32,7 @@ DecisionTree::DecisionTree(std::vector<Node> nodes, std::uint32_t labels)
 }
 
 void DecisionTree::arrange() {
-    // A pair that has no place yet, and where its parent lies.
+    // A pair of siblings that has no place yet, and where its parent lies.
     struct Pair {
         std::uint32_t first;
         Node* parent;
@@ -41,7 +41,7 @@ void DecisionTree::arrange() {
     root_ = nodes_[0];
     std::vector<Pair> begins;  // pairs that begin a line, unless there is room in one
     if (!root_.isLeaf()) begins.push_back({root_.index(), &root_});
-    std::deque<Pair> next;  // on the way down from those of this line, nearest first
+    std::deque<Pair> next;  // pairs below those of this line, nearest first
     for (std::uint32_t place = 0; !begins.empty() || !next.empty(); place += 2) {
         if (place % kLine == 0) {
             begins.insert(begins.end(), next.rbegin(), next.rend());

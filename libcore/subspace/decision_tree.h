@@ -1,11 +1,11 @@
 // A decision tree from a subpath's end to its subspace: the practical kappa [Su22 6.4, 7.2.2],
 // which stands in for the search of the nearest centroid. (theory.md, "Subspaces")
 //
-// A node asks one attribute (a coordinate of position, normal or incident direction) for one
-// threshold; children lie side by side in one array, 8 bytes per node. Splits as in the paper:
-// while less than 99 % of a node's samples bear its most frequent label, at the centre of the
-// bounds of what it contains. Which attribute: the one that leaves the labels purest by Gini's
-// measure (the paper draws it at random).
+// A node compares one attribute (a coordinate of position, normal or incident direction) with one
+// threshold. Children lie side by side in one array, 8 bytes per node. Nodes are split as in the
+// paper: as long as less than 99 % of a node's samples have its most frequent label, at the centre
+// of the samples' bounds. The attribute is the one that leaves the labels purest by Gini's measure
+// (the paper draws it at random).
 #pragma once
 
 #include <cstdint>
@@ -51,12 +51,12 @@ class DecisionTree {
 
   private:
     static constexpr std::uint32_t kLine = 8;
-    /// What the processor fetches at once: four pairs of siblings.
+    /// A cache line, which the processor fetches at once: four pairs of siblings.
     struct alignas(64) Line {
         Node node[kLine];
     };
 
-    /// Where `end` goes on to from a node of the lines that is no leaf.
+    /// The child that `end` goes on to from a node of the lines. The node must be no leaf.
     static Node childOf(const Node& n, const Line* lines, const SubpathEnd& end) {
         const std::uint32_t second = end.value[n.code & kLeaf] < n.threshold ? 0u : 1u;
         const std::uint32_t i = n.index() + second;
@@ -71,11 +71,11 @@ class DecisionTree {
     std::vector<Line> lines_;
 };
 
-/// A look-up, step by step. Each step waits for memory, so that many of them, in whatever trees,
+/// A look-up, step by step. Each step waits for memory, so steps of many look-ups, in any trees,
 /// are best taken in turn: finish(). The tree must outlive it.
 class DecisionTree::Descent {
   public:
-    /// One that has come to a leaf already.
+    /// A look-up that has come to a leaf already.
     explicit Descent(std::uint32_t label = 0) : node_{0.0f, label << 4 | kLeaf} {}
     Descent(const DecisionTree& tree, const SubpathEnd& end)
         : lines_(tree.lines_.data()), node_(tree.root_), end_(end) {}
@@ -86,7 +86,7 @@ class DecisionTree::Descent {
         node_ = childOf(node_, lines_, end_);
         return true;
     }
-    /// Of the leaf that it has come to.
+    /// The label of the leaf that it has come to.
     std::uint32_t label() const { return node_.index(); }
 
   private:
@@ -95,7 +95,7 @@ class DecisionTree::Descent {
     SubpathEnd end_;
 };
 
-/// A step of each in turn, until all have come to their leaves.
+/// Takes a step of each in turn, until all have come to their leaves.
 inline void finish(std::span<DecisionTree::Descent> descents) {
     for (bool going = true; going;) {
         going = false;

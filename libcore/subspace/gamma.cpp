@@ -39,8 +39,8 @@ std::span<const std::uint32_t> nearest(const std::vector<std::uint32_t>& neighbo
     return std::span(neighbours).first(std::min(most, neighbours.size()));
 }
 
-/// a^l: the columns of the `most` nearest eye subspaces together, by their paths; light subspaces
-/// share with the nearest of theirs what they have beyond or below m^0.
+/// a^l: the columns of the `most` nearest eye subspaces together, weighted by their paths. Light
+/// subspaces have the ratio to m^0 in common with the nearest of theirs.
 GammaColumns neighbourhoods(const FullGamma& full, const SubspaceNeighbours& neighbours,
                             std::size_t most, const ThreadPool& pool) {
     const std::size_t rows = full.mean.size();
@@ -162,7 +162,7 @@ SubspaceMatrix drawnTo(const SubspaceMatrix& prior, const GammaColumns& columns,
     return q;
 }
 
-/// m: what every column is drawn to.
+/// m: the prior that every column is drawn to.
 SubspaceMatrix priorOf(const FullGamma& full, double virtualPaths) {
     SubspaceMatrix m(full.q.size());
     for (std::size_t n = 0; n < m.size(); ++n) m[n] = full.mean[n % full.mean.size()];
@@ -184,7 +184,7 @@ class Penalty {
         }
     }
 
-    /// Its value; adds its derivative.
+    /// Returns its value, and adds its derivative to `derivative`.
     double addTo(SubspaceMatrix& derivative, const SubspaceMatrix& e) const {
         double value = 0.0;
         for (std::size_t n = 0; n < e.size(); ++n) {

@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-/// The upper half of a float, rounded to nearest; never zero for what is not.
+/// The upper half of a float, rounded to nearest; zero only where g is zero.
 std::uint16_t upperHalf(float g) {
     if (!(g > 0.0f)) return 0;
     return std::uint16_t(std::max(1u, (std::bit_cast<std::uint32_t>(g) + 0x8000u) >> 16));

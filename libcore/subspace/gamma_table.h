@@ -1,4 +1,4 @@
-// Gamma made ready to draw light subspaces from, and for weights to ask. (theory.md, "spcbpt")
+// Gamma in tables: to draw light subspaces from, and for weights to look up. (theory.md, "spcbpt")
 #pragma once
 
 #include <bit>
@@ -14,10 +14,10 @@ class GammaTable {
   public:
     explicit GammaTable(const Subspaces& subspaces);
 
-    /// To draw a light subspace from.
+    /// The column of an eye subspace, to draw a light subspace from.
     const AliasTable& column(std::uint32_t eye) const { return columns_[eye]; }
-    /// What the weights believe a light subspace's probability to be: within 0.4 %, never zero for
-    /// what is not.
+    /// The probability of a light subspace that the weights believe: within 0.4 % of Gamma, and
+    /// zero only where Gamma is zero.
     double believed(std::uint32_t light, std::uint32_t eye) const {
         const std::uint32_t high = believed_[std::size_t(eye) * lightCount_ + light];
         return double(std::bit_cast<float>(high << 16));
@@ -26,8 +26,8 @@ class GammaTable {
   private:
     std::uint32_t lightCount_;
     std::vector<AliasTable> columns_;  // by eye subspace
-    // In half the memory. Weights look it up for every technique of every path, at random, and may
-    // believe what they like.
+    // 16 bits take half the memory. Weights look up entries for every technique of every path, at
+    // random places, and any belief is unbiased.
     std::vector<std::uint16_t> believed_;
 };
 

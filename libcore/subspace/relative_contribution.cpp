@@ -32,7 +32,7 @@ PixelScale::PixelScale(std::span<const Rgb> image, int width, int block)
 
 float outlierLimit(std::span<const float> contributions) {
     std::vector<double> squares;
-    double rest = 0.0;  // of the sum: those that are not lowered
+    double rest = 0.0;  // sum of those that are not lowered
     for (const float c : contributions) {
         squares.push_back(double(c) * double(c));
         rest += squares.back();
@@ -46,7 +46,7 @@ float outlierLimit(std::span<const float> contributions) {
         if (squares[lowered] <= limit) return float(std::sqrt(limit));
         rest -= squares[lowered];
     }
-    // So few paths that each is a large share.
+    // There are so few paths that each has a large share.
     return squares.empty() ? 0.0f : float(std::sqrt(squares[0]));
 }
 

@@ -1,5 +1,5 @@
-// Contributions of training's paths as training weighs them: relative to what their pixels show, and
-// without outliers [Su22 7.1]. (theory.md, "Subspaces")
+// Contributions of training paths, relative to what their pixels show, and without outliers [Su22 7.1].
+// (theory.md, "Subspaces")
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class PixelScale {
     std::vector<double> blocks_;
 };
 
-/// The contribution whose square is a thousandth of the sum of squares once all that are larger
-/// have been lowered to it: a loss on finitely many paths would follow those few alone.
+/// The contribution whose square is a thousandth of the sum of squares, once all larger ones have
+/// been lowered to it. Otherwise a loss on finitely many paths would follow those few alone.
 float outlierLimit(std::span<const float> contributions);
 
 }  // namespace lacuna

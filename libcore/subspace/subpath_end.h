@@ -1,9 +1,9 @@
-// What a subpath is told from others by: its last vertex's position, normal and incident direction
-// [Su22 6.4], the three that f_yz depends on. (theory.md, "Subspaces", "Beliefs")
+// The end of a subpath, which subpaths are classified by: its last vertex's position, normal and
+// incident direction [Su22 6.4]. f_yz depends on these three. (theory.md, "Subspaces", "Beliefs")
 //
-// A function of positions and normals of the path alone, computed in one way for both walks, so
-// that a vertex has the same subspace whichever strategy made the path: a direction that a walk
-// drew and one that two positions give differ in the last bits, and a tree asks for the last bit.
+// It is a function of positions and normals of the path alone, computed in one way for both walks.
+// So a vertex has the same subspace whichever strategy made the path. A direction that a walk drew
+// and the one that two positions give differ in the last bits, and a tree compares the last bit.
 #pragma once
 
 #include <array>

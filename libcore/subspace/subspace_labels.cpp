@@ -64,8 +64,8 @@ void SubspaceLabels::labelEnds(std::span<OpenConnection> connections) const {
     }
 }
 
-/// Both labels of the vertices [begin, end) of a walk. The last one's in the other role waits for
-/// the vertex that it is connected with.
+/// Sets both labels of the vertices [begin, end) of a walk. The walk's last vertex gets its label
+/// in the other role when it is connected.
 void SubspaceLabels::labelTogether(std::span<PathVertex> walk, std::size_t begin,
                                    std::size_t end) const {
     const bool eye = walk.front().kind == VertexKind::Lens;
@@ -82,7 +82,8 @@ void SubspaceLabels::labelTogether(std::span<PathVertex> walk, std::size_t begin
     searches.finish();
 }
 
-/// Ends that no strategy has in their other role are left out: y_0, and what the lens sees.
+/// Ends that no strategy has in their other role are left out: y_0, and the vertex that
+/// the lens sees.
 void SubspaceLabels::labelEndsTogether(std::span<OpenConnection> connections) const {
     Searches searches;
     for (OpenConnection& c : connections) {

@@ -18,18 +18,18 @@ class SubspaceLabels {
     explicit SubspaceLabels(std::shared_ptr<const Subspaces> subspaces)
         : subspaces_(std::move(subspaces)) {}
 
-    /// The subspace of a light vertex, and that of an eye vertex: its label in that role, where it
-    /// is known.
+    /// The subspace of a light vertex, and that of an eye vertex. `label` is the vertex's in that
+    /// role, or kNone where it is not known.
     std::uint32_t lightOf(const PathVertex& y, const PathVertex* predecessor, Label label) const {
         return label != kNone ? label : subspaces_->lightSubspace(y, predecessor);
     }
     std::uint32_t eyeOf(const PathVertex& z, const PathVertex& predecessor, Label label) const {
         return label != kNone ? label : subspaces_->eyeSubspace(z, predecessor);
     }
-    /// By entry of LightPool::connectable().
+    /// Light subspaces by entry of LightPool::connectable().
     std::vector<std::uint32_t> lightOf(const LightPool& pool, const ThreadPool& threads) const;
 
-    /// ConnectionDensity's, for all densities that keep these labels.
+    /// ConnectionDensity::labelWalk and labelEnds of all densities that keep these labels.
     void labelWalk(std::span<PathVertex> walk) const;
     void labelEnds(std::span<OpenConnection> connections) const;
 

@@ -11,7 +11,7 @@ namespace lacuna {
 
 namespace {
 
-/// Column sums differ from one by rounding only.
+/// Largest difference of a column's sum from one. Only rounding causes it.
 constexpr double kColumnTolerance = 1e-3;
 
 void require(bool condition, const char* what) {

@@ -1,6 +1,6 @@
 // Everything that SPCBPT knows before it renders: the classification of light and eye subpaths, Q
-// and Gamma [Su22 6]. What lacuna-train makes and the method `spcbpt` reads; frozen. (theory.md,
-// "Subspaces")
+// and Gamma [Su22 6]. lacuna-train makes it, the method `spcbpt` reads it, and it is frozen.
+// (theory.md, "Subspaces")
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace lacuna {
 
-/// Light subspaces: the cells of the lights (s = 1) first, then those of the light tree (s >= 2),
-/// whose labels count from there. Positions are the recentred scene's. By default one subspace on
-/// either side and Q unknown.
+/// Light subspaces are the cells of the lights (s = 1), and then those of the light tree (s >= 2),
+/// whose labels go on from there. Positions are the recentred scene's. By default there is one
+/// subspace on either side, and Q is unknown.
 struct Subspaces {
-    static constexpr std::uint32_t kMost = 0xfffe;  ///< subspaces of a side: vertices keep 16 bits
+    static constexpr std::uint32_t kMost = 0xfffe;  ///< largest number of subspaces of a side
 
     LightCells cells;
     DecisionTree lightTree, eyeTree;
@@ -28,14 +28,15 @@ struct Subspaces {
     /// Vertices in i per light subpath, measured with Q; as many as of Q.
     std::vector<double> population;
     std::uint64_t lightPaths = 0;  ///< M'
-    /// Gamma(i given j), the uniform part inside: eye subspace by eye subspace, each sums to one.
+    /// Gamma(i given j) with its uniform part, a column for each eye subspace. A
+    /// column sums to one.
     std::vector<float> gamma = {1.0f};
 
     /// kappa of y_0 .. y_{s-1} that ends with `vertex`; `predecessor` is null for s = 1.
     std::uint32_t lightSubspace(const PathVertex& vertex, const PathVertex* predecessor) const {
         return predecessor ? lightTree(subpathEnd(vertex, *predecessor)) : cells.cellOf(vertex);
     }
-    /// The same, on its way.
+    /// The same as a look-up that is still to be finished.
     DecisionTree::Descent toLightSubspace(const PathVertex& vertex,
                                           const PathVertex* predecessor) const {
         return predecessor ? DecisionTree::Descent(lightTree, subpathEnd(vertex, *predecessor))
@@ -50,12 +51,12 @@ struct Subspaces {
 
     /// Throws std::invalid_argument naming what does not fit together.
     void check() const;
-    /// Of everything above, as hexadecimal digits.
+    /// Hash of everything above, as hexadecimal digits.
     std::string contentHash() const;
 };
 
-/// What stands in for Q(i) where no light subpath was seen in i: as if one of average power had
-/// been. A positive number for any q.
+/// The value that stands in for Q(i) where no light subpath was seen in i: as if one of average
+/// power had come. Positive for any q.
 double unseenQ(std::span<const double> q, std::uint64_t lightPaths);
 
 }  // namespace lacuna

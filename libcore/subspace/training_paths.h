@@ -1,5 +1,5 @@
-// D: full paths with what classification and Gamma need of them [Su22 7.1]. (theory.md,
-// "Subspaces")
+// D: full paths, with the data that classification and Gamma need of them [Su22 7.1].
+// (theory.md, "Subspaces")
 //
 // Paths come from bidirectional path tracing (M = 1, r = 1) with all its strategies, each sampled
 // path once, under the density p_D = sum_i n_i p_i. The balance heuristic's weights are
@@ -54,7 +54,7 @@ class TrainingPaths {
     const Path& path(std::size_t index) const { return paths_[index]; }
     std::uint64_t bytes() const;
 
-    /// The path's connections: every s in [1, edges) with a strength.
+    /// The strength of the path's connection s, in [1, edges). Zero where there is none.
     float strength(const Path& path, int s) const { return vertex(path, s - 1).strength; }
     /// Ends of the two subpaths of connection s: x_{s-1} (s >= 2) and x_s.
     SubpathEnd lightEnd(const Path& path, int s) const;
@@ -69,7 +69,7 @@ class TrainingPaths {
     std::vector<Vertex> vertices_;
 };
 
-/// The paths for the loss, under the labels, Q and cells of `subspaces`; `picks`: N.
+/// The paths as the loss sees them, under the labels, Q and cells of `subspaces`. `picks` is N.
 GammaData gammaData(const TrainingPaths& paths, const Subspaces& subspaces, int picks,
                     const ThreadPool& pool);
 

@@ -1,6 +1,6 @@
 // How subspaces are trained: one table that lacuna-train, lacuna-render's spcbpt and the cache's
-// key share. Not the seed: what is trained with any is good for all renders. (theory.md,
-// "Subspaces")
+// key share. The seed is not among them: training with any seed serves all renders.
+// (theory.md, "Subspaces")
 #pragma once
 
 #include <cstdint>
