@@ -29,10 +29,10 @@ TABLE = HERE / "STABILITY.md"
 INTRODUCTION = """\
 # Hard cases
 
-Made by `python3 tests/stability_table.py --write`, which runs the tests named here; `--check` compares this table with the
-list of cases and with the tests. No sample may be invalid in any of them. A deviation is the largest over pixels, blocks of
-pixels and the mean, as a share of what the test allows: Student's t over iterations with one false alarm in 10^6
-comparisons of pictures. Where a test runs several times, for every method as a rule, the figure is the worst of them.
+`python3 tests/stability_table.py --write` makes this page by running the tests named here; `--check` compares it with the list
+of cases and with the tests. No sample may be invalid in any case. A deviation is the largest over pixels, blocks of pixels and
+the mean, as a share of what the test allows: Student's t over iterations, with one false alarm in 10^6 comparisons of pictures.
+If a test runs several times, usually once for every method, the figure is the worst.
 """
 MARK = re.compile(r'\bTEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)|\bstabilityCase\(\s*"([^"]*)"')
 
@@ -143,7 +143,7 @@ def main() -> int:
     measured = kept()
     if options.check and not complaints:
         if not TABLE.exists() or TABLE.read_text(encoding="utf-8") != table(tests, measured):
-            complaints.append("STABILITY.md: not what list and tests say; run tests/stability_table.py --write")
+            complaints.append("STABILITY.md: differs from list and tests; run tests/stability_table.py --write")
         complaints += [f"STABILITY.md: {case} by {test} has no figure; run tests/stability_table.py --write {case}"
                        for (case, test), text in measured.items() if not text]
     for unknown in set(options.write or []) - set(all_cases()):
