@@ -19,11 +19,11 @@ const char* name(RayKind kind) {
 }
 
 namespace {
-constexpr unsigned kAtLens = 1;  // an Embree ray's id, for the filter
+constexpr unsigned kAtLens = 1;  // id of an Embree ray, for the filter
 }
 
 struct Accel::Impl {
-    /// What a filter callback needs to find the object behind one Embree geometry.
+    /// Data by which a filter callback finds the object of an Embree geometry.
     struct FilterData {
         const Impl* impl;
         std::uint32_t object;
@@ -32,7 +32,7 @@ struct Accel::Impl {
 
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<RTCScene> meshScenes;  // per mesh, null where it is not instanced
+    std::vector<RTCScene> meshScenes;  // by mesh; null if it is not instanced
     std::vector<FilterData> filterData;
     HoleTest holeTest;
     RTCError errorCode = RTC_ERROR_NONE;  ///< the first one
@@ -46,7 +46,8 @@ struct Accel::Impl {
         if (device) rtcReleaseDevice(device);
     }
 
-    /// Embree knows its own lack of memory, but not always that of the threads that it starts.
+    /// Throws if Embree reported an error. Embree reports its own lack of memory, but not always
+    /// that of the threads that it starts.
     void require(RTCError code, const std::string& text) const {
         if (code == RTC_ERROR_NONE) return;
         if (code == RTC_ERROR_OUT_OF_MEMORY || text.empty()) throw std::bad_alloc();
@@ -88,7 +89,7 @@ struct Accel::Impl {
         }
     }
 
-    /// Only where there is something to ask: it slows rays down.
+    /// Attaches the filter only where it is needed: it slows rays down.
     void attachFilter(RTCGeometry g, const AccelObject& object, std::uint32_t index) {
         if (!object.hasHoles && !object.hiddenFromCamera) return;
         filterData.push_back({this, index, object.hasHoles, object.hiddenFromCamera});
@@ -99,7 +100,7 @@ struct Accel::Impl {
 
     RTCScene newScene() const {
         RTCScene s = rtcNewScene(device);
-        // Without ROBUST rays slip through edges shared by triangles (numerics.md, "Rays").
+        // Without ROBUST, rays slip through edges shared by triangles (numerics.md, "Rays").
         rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_MEDIUM);
         return s;
@@ -113,7 +114,7 @@ Accel::Accel(std::span<const AccelMesh> meshes, std::span<const AccelObject> obj
     a.holeTest = std::move(holeTest);
     a.filterData.reserve(objects.size());
     a.device = rtcNewDevice(nullptr);
-    if (!a.device) throw std::bad_alloc();  // it says "unknown error" then
+    if (!a.device) throw std::bad_alloc();  // Embree would say "unknown error"
     rtcSetDeviceErrorFunction(
         a.device,
         [](void* self, RTCError code, const char* text) {

@@ -22,7 +22,7 @@ bool mayHaveHoles(const Material& m, std::span<const Texture> textures, bool ver
     if (m.alphaMode == Material::Alpha::Opaque) return false;
     if (m.baseAlpha < 1.0f || m.alphaCutoff > 1.0f || vertexAlpha) return true;
     if (!m.baseColorTexture) return false;
-    // Exporters like to call everything BLEND that has an image with an alpha channel.
+    // Exporters tend to mark every image with an alpha channel as BLEND.
     const auto& texels = textures[std::size_t(m.baseColorTexture.value)].rgba;
     for (std::size_t i = 3; i < texels.size(); i += 4) {
         if (texels[i] != 255) return true;

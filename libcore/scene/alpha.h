@@ -1,4 +1,4 @@
-// Which points of a triangle are there: glTF's alpha coverage, MASK and BLEND.
+// glTF's alpha coverage, MASK and BLEND: which points of a triangle stop rays.
 #pragma once
 
 #include <array>
@@ -8,22 +8,22 @@
 
 namespace lacuna {
 
-/// What the opacity of one triangle's points is made of.
+/// The data that determine the opacity of a triangle's points.
 struct TriangleAlpha {
     const Material* material = nullptr;
-    const Texture* texture = nullptr;  ///< of the base colour, whose alpha counts; null: none
-    std::array<Vec2, 3> uvs{};         ///< the mesh's, of the set that the texture lies by
+    const Texture* texture = nullptr;  ///< base colour texture, whose alpha counts; null: none
+    std::array<Vec2, 3> uvs{};         ///< the triangle's coordinates of the texture's set
     std::array<float, 3> corners{1.0f, 1.0f, 1.0f};  ///< alpha of the vertex colours
 
-    /// The probability that a ray that comes by meets the point: alpha for BLEND, 0 or 1 for MASK,
-    /// 1 for OPAQUE. `barycentric`: weights of the second and the third corner.
+    /// The probability that the point stops a ray: alpha for BLEND, 0 or 1 for MASK, 1 for OPAQUE.
+    /// `barycentric`: weights of the second and the third corner.
     float opacity(Vec2 barycentric) const;
-    /// Whether points may differ.
+    /// Whether the opacity may vary over the triangle.
     bool varies() const { return texture || corners[0] != corners[1] || corners[1] != corners[2]; }
 };
 
-/// Whether rays can pass through some points of a material; `vertexAlpha`: some vertex colours are
-/// translucent.
+/// Whether rays can pass through some points of a material. `vertexAlpha`: whether some vertex
+/// colours are translucent.
 bool mayHaveHoles(const Material& material, std::span<const Texture> textures, bool vertexAlpha);
 
 }  // namespace lacuna

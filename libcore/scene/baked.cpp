@@ -46,8 +46,8 @@ Vec3d centreOf(const Mesh& mesh) {
     return box.centre();
 }
 
-/// Whether every corner's normal is its face's own, within `angle` (radians, small): then the face's
-/// is enough.
+/// Whether every corner's normal is that of its face within `angle` (a small angle in radians).
+/// Then the normal of the face suffices.
 bool isFlat(std::span<const Vec3> positions, std::span<const Vec3> normals,
             std::span<const std::array<std::uint32_t, 3>> triangles, float angle) {
     if (normals.empty()) return true;
@@ -70,8 +70,7 @@ std::vector<TextureUse> farTexturesOf(const Material& m, std::span<const Texture
     return uses;
 }
 
-/// What normals are multiplied with, up to scale: the cofactors, of unit size, on the winding's
-/// side.
+/// The transform of normals up to scale: the cofactor matrix, normalised, on the winding's side.
 Affine normalTransform(const Affine& a) {
     const Vec3d columns[3] = {a.normal({1, 0, 0}), a.normal({0, 1, 0}), a.normal({0, 0, 1})};
     double largest = 0.0;
@@ -80,8 +79,8 @@ Affine normalTransform(const Affine& a) {
     return {{columns[0] * scale, columns[1] * scale, columns[2] * scale, Vec3d{}}};
 }
 
-/// Whether rays can be taken into the mesh's space in float: not for a scale of zero (glTF allows
-/// it) nor for one whose determinant leaves float's range.
+/// Whether rays can be transformed to the mesh's space in float. They cannot for a scale of zero
+/// (which glTF allows) or for a determinant beyond the range of float.
 bool canBeInstanced(const Affine& a) {
     double largest = 0.0;
     for (int c = 0; c < 3; ++c) largest = std::max(largest, length(a.m[c]));
@@ -121,14 +120,14 @@ std::array<Vec3, 3> BakedScene::corners(const SceneObject& object, std::uint32_t
 
 namespace {
 
-/// How each mesh is used, and what its own vertices are moved by.
+/// How often a mesh is used, and the transform of its vertices.
 struct MeshUse {
     std::uint32_t instances = 0;
-    Affine transform;  ///< to world space where there is one instance, else to the mesh's middle
+    Affine transform;  ///< to world space for one instance, else to the mesh's centre
     bool mirrored = false;
 };
 
-/// By mesh. One that has several instances, some of which cannot be Embree's, is copied for those.
+/// The uses by mesh. A mesh with several instances is copied for those that Embree cannot instance.
 std::vector<MeshUse> countUses(SceneDescription& d) {
     std::vector<MeshUse> uses(d.meshes.size());
     for (const Instance& i : d.instances) ++uses[i.mesh].instances;
@@ -166,7 +165,7 @@ SceneObject place(const Instance& instance, const Mesh& mesh, const Vec3d& centr
     return object;
 }
 
-/// Positions, normals and tangents by the mesh's transform.
+/// Transforms positions, normals and tangents of the mesh.
 void moveVertices(const MeshUse& use, Mesh& from, BakedMesh& to) {
     to.positions.reserve(from.positions.size() + 1);
     for (const Vec3& p : from.positions) {
@@ -174,8 +173,8 @@ void moveVertices(const MeshUse& use, Mesh& from, BakedMesh& to) {
     }
     to.positions.push_back({});
     to.normals.reserve(from.normals.size());
-    // Unit before the transform and not after it: interpolated first, transformed then, as for an
-    // instance.
+    // Normalised before the transform and not after it, as for an instance: there, normals are
+    // interpolated first and then transformed.
     const Affine normals = normalTransform(use.transform);
     for (const Vec3& n : from.normals) {
         to.normals.push_back(Vec3(normals.vector(normalize(Vec3d(n)))));
@@ -183,15 +182,17 @@ void moveVertices(const MeshUse& use, Mesh& from, BakedMesh& to) {
     to.tangents = std::move(from.tangents);
     for (auto& t : to.tangents) {
         const Vec3 along(use.transform.vector(normalize(Vec3d{t[0], t[1], t[2]})));
-        // A mirror turns the image over, but not the cross product that stands for its up.
+        // A mirror flips the image but not the cross product that defines its up direction.
         t = {along.x, along.y, along.z, use.mirrored ? -t[3] : t[3]};
     }
 }
 
-/// How far normals may be from their faces', radians: rounding, and what nobody sees in a window.
+/// Tolerances, in radians, of vertex normals against their faces': rounding, and for panes what is
+/// invisible in a window.
 constexpr float kFlatness = 1e-6f, kPaneFlatness = 1e-3f;
 
-/// What is left of them faces the winding's side; degenerate ones go.
+/// Moves the triangles, reverses their winding if the transform mirrors, and drops degenerate ones.
+/// Drops vertex normals if the mesh is flat.
 void takeTriangles(const MeshUse& use, float flatness, Mesh& from, BakedMesh& to) {
     const auto normalOf = [&](const std::array<std::uint32_t, 3>& t) {
         return triangleNormal(to.positions[t[0]], to.positions[t[1]], to.positions[t[2]]);
@@ -208,8 +209,8 @@ void takeTriangles(const MeshUse& use, float flatness, Mesh& from, BakedMesh& to
     if (isFlat(to.positions, to.normals, to.triangles, flatness)) to.normals = {};
 }
 
-/// Flat meshes of thin smooth glass get a material of their own, which lets rays pass: the same one may
-/// be on curved meshes, where a reflection meets the shading normal at another angle than the face's.
+/// Gives flat meshes of thin smooth glass a material of their own that lets rays pass (a pane). Their original material
+/// may also be on curved meshes, where the angle to the shading normal differs from that to the face's normal.
 void findPanes(SceneDescription& d, std::vector<BakedMesh>& meshes) {
     std::map<std::uint32_t, std::uint32_t> paneOf;
     for (BakedMesh& mesh : meshes) {
@@ -262,7 +263,7 @@ BakedScene bake(SceneDescription& d, const ThreadPool& pool) {
     });
     findPanes(d, out.meshes);
 
-    // A mesh without triangles makes Embree objects of no use.
+    // Objects without triangles would be useless to Embree.
     std::erase_if(out.objects,
                   [&](const SceneObject& o) { return out.meshes[o.mesh].triangles.empty(); });
     for (const SceneObject& o : out.objects) out.triangles += out.meshes[o.mesh].triangles.size();

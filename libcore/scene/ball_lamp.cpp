@@ -13,15 +13,16 @@ namespace lacuna {
 
 namespace {
 
-/// A point on an edge lies in one of its two faces at least.
+/// Tolerance that puts a point on an edge into at least one of its two faces.
 constexpr float kRounding = 1e-5f;
 
-/// From inside the sphere there is no cone, and close to it the lamp is no ball.
+/// Smallest distance, in radii, for sampling the cone: inside the sphere there is none, and close
+/// to it the lamp does not look like a ball.
 constexpr double kOutside = 1.0001;
 
 }  // namespace
 
-/// It sends about the same to all sides: a quarter of its surface.
+/// It emits about equally to all sides: its projected area is a quarter of its surface.
 PlacedLight BallLamp::placed() const {
     const ShiningCone all{{0.0, 1.0, 0.0}, std::numbers::pi, false, false};
     return {lights_.front(), low_, high_, all, 0.25 * area_};
@@ -31,7 +32,7 @@ bool BallLamp::isOutside(const Vec3d& toMiddle) const {
     return lengthSquared(toMiddle) > kOutside * radius_ * radius_;
 }
 
-/// 1 - cos of half the angle that the sphere is seen under, without cancellation.
+/// 1 - cos of the half angle of the sphere's cone, without cancellation.
 double BallLamp::versineOfCone(const Vec3d& toMiddle) const {
     const double sine2 = radius_ * radius_ / lengthSquared(toMiddle);
     return sine2 / (1.0 + std::sqrt(1.0 - sine2));
@@ -43,7 +44,8 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
     if (!isOutside(toMiddle)) {
         return Point{lights_[byArea_.sample(u).index], uniformTriangle(u1, u2)};
     }
-    // Even over the disk is even over the cap, if 1 - cos goes by the square of the disk's radius.
+    // A uniform point of the disk becomes uniform over the cap if 1 - cos is proportional to the
+    // square of the radius on the disk.
     const double distance = length(toMiddle), versine = versineOfCone(toMiddle);
     const Vec2 onDisk = concentricDisk(u1, u2);
     const double off = versine * double(onDisk.x * onDisk.x + onDisk.y * onDisk.y);
@@ -70,7 +72,7 @@ double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal
     return cosine / (2.0 * std::numbers::pi * versineOfCone(toMiddle) * distance2);
 }
 
-/// Where a ray comes in. `closest`: its point that is closest to the middle.
+/// The point where a ray enters the lamp. `closest`: the ray's point closest to the centre.
 std::optional<BallLamp::Entry> BallLamp::enter(const Vec3& closest, const Vec3& direction) const {
     const float before = std::sqrt(std::max(0.0f, 1.0f - lengthSquared(closest)));
     const std::uint32_t near = startOf(closest - direction * before);
@@ -78,8 +80,8 @@ std::optional<BallLamp::Entry> BallLamp::enter(const Vec3& closest, const Vec3& 
     return enterFrom(startOf(-direction), closest, direction);
 }
 
-/// From a face whose plane the ray comes in by, over the edge that it passes outside of. The next plane
-/// is passed later, or it is one that the ray comes out by: then it has missed the lamp.
+/// Walks from a face through whose plane the ray enters, across the edge outside of which the ray passes, to the next
+/// face. The ray crosses each further plane later. If it leaves through the next plane, it has missed the lamp.
 std::optional<BallLamp::Entry> BallLamp::enterFrom(std::uint32_t face, const Vec3& closest,
                                                    const Vec3& direction) const {
     for (std::size_t steps = 0; steps < faces_.size(); ++steps) {
@@ -117,7 +119,7 @@ void BallLamp::makeStarts() {
             return (2.0f * float(cell) + 1.0f) / float(cells_) - 1.0f;
         };
         const Vec3 out = octahedronDirection({middle(i % cells_), middle(i / cells_)});
-        // Any face that looks that way; the one before mostly does.
+        // Any face that faces that way; the previous one mostly does.
         for (std::size_t n = 0; n < faces_.size() && dot(faces_[face].normal, out) <= 0.0f; ++n) {
             face = std::uint32_t((face + 1) % faces_.size());
         }

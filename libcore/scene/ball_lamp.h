@@ -1,6 +1,6 @@
-// A lamp that is about a ball: a closed convex surface of emissive triangles, as modellers make
-// spheres of. Next event draws its points evenly over the solid angle that the sphere through its
-// corners is seen under, and not triangle by triangle. (theory.md, "Lamps that are seen")
+// A lamp that is nearly a ball: a closed convex surface of emissive triangles, like a modeller's
+// sphere. Next-event estimation samples its points uniformly over the solid angle of the sphere
+// through its corners, and not triangle by triangle. (theory.md, "Lamps that are seen")
 #pragma once
 
 #include <array>
@@ -19,40 +19,40 @@ struct EmissiveTriangle;
 
 class BallLamp {
   public:
-    /// All that there are among `triangles`. Those of one have one material, no texture and no alpha,
-    /// share their corners, and come nowhere much nearer to the middle than these.
+    /// Finds all such lamps among `triangles`. The triangles of one lamp have one material, no texture and no alpha,
+    /// share their corners, and come nowhere much nearer to the centre than the corners.
     static std::vector<BallLamp> find(std::span<const EmissiveTriangle> triangles);
 
-    /// Its triangles, by index: the first one stands for all.
+    /// Indices of its triangles. The first one represents the lamp in the lamp tree.
     std::span<const std::uint32_t> lights() const { return lights_; }
-    /// What the lamp tree knows of it, of a radiance of 1.
+    /// The lamp's leaf for the lamp tree, for a radiance of 1.
     PlacedLight placed() const;
 
     struct Point {
         std::uint32_t light;
         Vec2 uv;  ///< barycentric
     };
-    /// Draws a point that `from` may see; u, u1, u2 in [0, 1). From outside of the sphere: a direction,
-    /// evenly out of the cone around it, and where that meets the lamp first. It may pass by the lamp,
-    /// which has corners: empty. From inside: evenly by area.
+    /// Samples a point that `from` may see; u, u1, u2 in [0, 1). Outside the sphere it samples a direction uniformly in
+    /// the sphere's cone and returns the first point of the lamp on it; empty if the direction misses the lamp, which
+    /// is smaller than the sphere. Inside the sphere it samples uniformly by area.
     std::optional<Point> sample(const Vec3& from, double u, float u1, float u2) const;
-    /// Its density, per area; from outside zero where the lamp is turned away. `position`: on the lamp;
-    /// `normal`: unit, of its triangle.
+    /// The density of such a point, per area. From outside, it is zero on faces turned away. `position`: a point on the
+    /// lamp; `normal`: unit normal of its triangle.
     double pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const;
 
   private:
-    /// In radii, from the middle.
+    /// A face, relative to the centre and in units of the radius.
     struct Face {
         Vec3 normal;                            // unit, outwards
-        Vec3 corner;                            // the first one
-        Vec3 along1, along2;                    // a point's barycentrics: its products with these
-        std::array<std::uint32_t, 3> across{};  // the face behind the edge opposite each corner
+        Vec3 corner;                            // the first corner
+        Vec3 along1, along2;                    // dot products with a point: its barycentrics
+        std::array<std::uint32_t, 3> across{};  // the face across the edge opposite each corner
     };
     struct Entry {
         std::uint32_t face;
         Vec2 uv;
     };
-    class Mesh;  // triangles that share corners, on their way here
+    class Mesh;  // connected triangles, while lamps are being found
 
     explicit BallLamp(const Mesh& mesh);
     void makeStarts();
@@ -70,8 +70,8 @@ class BallLamp {
     std::vector<std::uint32_t> lights_;  // by face
     std::vector<Face> faces_;
     DiscreteDistribution byArea_;
-    std::uint32_t cells_ = 1;            // along a side of the square of directions
-    std::vector<std::uint32_t> starts_;  // by its cells: the face that lies there
+    std::uint32_t cells_ = 1;            // cells along a side of the square of directions
+    std::vector<std::uint32_t> starts_;  // by cell: a face in that direction
 };
 
 }  // namespace lacuna

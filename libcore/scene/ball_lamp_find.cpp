@@ -1,4 +1,4 @@
-// Which emissive triangles make a ball (ball_lamp.h). (theory.md, "Balls")
+// Finds the emissive triangles that form a ball (ball_lamp.h). (theory.md, "Balls")
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,19 +18,20 @@ namespace {
 
 constexpr std::size_t kFewestFaces = 8, kMostFaces = 4096;
 
-/// How near faces may come to the middle, in radii: those of an icosahedron do to .79, of a cube to .58.
+/// How near faces may come to the centre, in radii. The faces of an icosahedron come to .79, those of a cube to .58.
 constexpr double kRoundness = 0.75;
 
-/// What a face may be dented by, in radii. Corners that are known less well make no ball.
+/// The largest dent between faces, in radii. If the corners' positions are less precise, the lamp
+/// is no ball.
 constexpr double kDent = 1e-4;
 
-/// Corners that are so close, in units of the largest coordinate, are one: where a sphere's seam meets,
-/// its makers' sines differ.
+/// Corners within this distance, relative to the largest coordinate, are merged: at a sphere's seam, modellers' sines
+/// differ by rounding.
 constexpr double kWeld = 0x1p-21;
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// The largest coordinate's step: what corners are known to.
+/// The precision of the corners: a step at the largest coordinate.
 double stepOf(std::span<const EmissiveTriangle> triangles) {
     double most = 0.0;
     for (const EmissiveTriangle& t : triangles) {
@@ -42,7 +43,8 @@ double stepOf(std::span<const EmissiveTriangle> triangles) {
     return most * kWeld;
 }
 
-/// A number for each corner, three of each triangle: the same where place and material are.
+/// A number for each corner of each triangle. Corners with the same position and material share a
+/// number.
 std::vector<Corners> numberedCorners(std::span<const EmissiveTriangle> triangles, double step) {
     using Place = std::tuple<std::uint32_t, long long, long long, long long>;
     std::vector<std::pair<Place, std::size_t>> places;
@@ -73,7 +75,7 @@ class BallLamp::Mesh {
         lights.push_back(light);
         corners_.push_back(corners);
     }
-    /// Measures it; false if it is no ball. `step`: what coordinates are known to.
+    /// Computes the faces; false if they form no ball. `step`: precision of coordinates.
     bool isBall(double step);
 
     std::vector<std::uint32_t> lights;
@@ -97,7 +99,8 @@ class BallLamp::Mesh {
     std::vector<Corners> corners_;
 };
 
-/// Convex at every edge, and seen from the middle each face from its back, over the sphere once.
+/// A ball is convex at every edge, and seen from its centre the backs of its faces cover the sphere
+/// once.
 bool BallLamp::Mesh::isBall(double step) {
     if (lights.size() < kFewestFaces || lights.size() > kMostFaces) return false;
     const Rgb radiance = all_[lights[0]].radiance;
@@ -136,7 +139,8 @@ void BallLamp::Mesh::measure() {
     }
 }
 
-/// Whether each edge has two faces, of which one runs along it and one back. Finds them.
+/// Whether each edge belongs to two faces, which run along it in opposite directions. Also finds
+/// these neighbours.
 bool BallLamp::Mesh::isClosed() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>> edges;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -153,7 +157,7 @@ bool BallLamp::Mesh::isClosed() {
     return true;
 }
 
-/// Returns the solid angle that the middle sees it under [Van Oosterom and Strackee 1983].
+/// Adds a face and returns its solid angle seen from the centre [Van Oosterom and Strackee 1983].
 double BallLamp::Mesh::addFace(std::size_t i) {
     const Vec3d a = fromMiddle(i, 0), b = fromMiddle(i, 1), c = fromMiddle(i, 2);
     const Vec3d n = cross(b - a, c - a);
@@ -198,7 +202,7 @@ std::vector<BallLamp> BallLamp::find(std::span<const EmissiveTriangle> triangles
     const auto mayBelong = [&](std::size_t i) {
         const EmissiveTriangle& t = triangles[i];
         const Corners& c = corners[i];
-        // At a pole of a sphere there may be triangles of no size.
+        // At a pole of a sphere there may be degenerate triangles.
         return !t.texture && !t.alpha && !isBlack(t.radiance) && c[0] != c[1] && c[1] != c[2] &&
                c[2] != c[0];
     };

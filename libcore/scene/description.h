@@ -1,5 +1,5 @@
-// What a scene file says, before anything is built from it: plain values in the file's own units
-// and coordinates. gltf.h fills it; scene.h turns it into something rays can be traced in.
+// The content of a scene file as plain values in the file's units and coordinates. gltf.h fills it;
+// scene.h builds from it a scene for ray tracing.
 #pragma once
 
 #include <array>
@@ -19,8 +19,9 @@ namespace lacuna {
 struct Mesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty, or one per position (not necessarily unit)
-    /// Empty, or one per position (TANGENT), only where there are normals: the direction of the
-    /// normal map's right edge, and the sign of its upper one, cross(normal, tangent).
+    /// Empty, or one per position (TANGENT), only together with normals: the direction towards the
+    /// right edge of the normal map, and the sign of the direction towards its upper edge,
+    /// cross(normal, tangent).
     std::vector<std::array<float, 4>> tangents;
     std::vector<Vec2> uvs;   ///< empty, or one per position (TEXCOORD_0)
     std::vector<Vec2> uvs1;  ///< likewise (TEXCOORD_1)
@@ -34,9 +35,9 @@ struct Instance {
     std::uint32_t mesh = 0;
     Affine toWorld;
     static constexpr std::uint32_t kNoGroup = 0xffffffffu;
-    std::uint32_t lightGroup = kNoGroup;  ///< among SceneDescription::nodeGroups
+    std::uint32_t lightGroup = kNoGroup;  ///< index into SceneDescription::nodeGroups
     static constexpr std::uint32_t kNoName = 0xffffffffu;
-    std::uint32_t nodeName = kNoName;  ///< among SceneDescription::nodeNames
+    std::uint32_t nodeName = kNoName;  ///< index into SceneDescription::nodeNames
 };
 
 /// glTF perspective camera: looks along -Z of its own frame, +Y up.
@@ -45,34 +46,34 @@ struct CameraDescription {
     Affine toWorld;
     double yfov = 0.8;         ///< radians, full vertical angle
     double aspectRatio = 0.0;  ///< width / height; 0: not given
-    /// Of the picture against the viewing axis, to the right and up, as a fraction of the picture's
-    /// larger side.
+    /// Shift of the picture against the viewing axis, to the right and up, as a fraction of the
+    /// picture's larger side.
     std::array<double, 2> shift{};
 };
 
-/// KHR_lights_punctual, in world coordinates. Units 1:1: W/sr per channel (point, spot), irradiance
-/// perpendicular to the direction (directional).
+/// KHR_lights_punctual, in world coordinates. Units: W/sr per channel (point, spot); irradiance in
+/// W/m^2 perpendicular to the direction (directional).
 struct PunctualLight {
     enum class Kind : std::uint8_t { Point, Spot, Directional };
     Kind kind = Kind::Point;
     Rgb intensity;
     Vec3d position;
-    Vec3d direction{0, 0, -1};            ///< unit, the way the light travels (spot, directional)
+    Vec3d direction{0, 0, -1};            ///< unit, along the light (spot, directional)
     double innerConeAngle = 0.0;          ///< radians from the axis (spot)
     double outerConeAngle = 0.785;        ///< radians from the axis (spot)
-    std::string group;                    ///< what its node calls its group, else its name
-    std::vector<std::string> names = {};  ///< of its node and its own, as far as it has them
+    std::string group;                    ///< the node's group, else the light's name
+    std::vector<std::string> names = {};  ///< of its node and of itself, if not empty
 };
 
 struct EnvironmentDescription {
-    std::string file;  ///< path that can be opened, latitude-longitude .exr or .hdr
+    std::string file;  ///< path of a latitude-longitude .exr or .hdr
     double scale = 1.0;
     double rotationDegrees = 0.0;  ///< about +Y
-    std::optional<Rgb> colour{};   ///< radiance from everywhere, in place of the file
+    std::optional<Rgb> colour{};   ///< constant radiance, instead of the file
 };
 
-/// What a file has the intensities of its punctual lights in. Inside they are radiometric, W/sr and
-/// W/m^2, and so is what a photometric file has in candela and lux, by 683 lumens per watt.
+/// The units of a file's punctual lights. Descriptions hold radiometric units, W/sr and W/m^2. The
+/// candela and lux of a photometric file are converted by 683 lumens per watt.
 enum class LampUnits { Radiometric, Photometric };
 constexpr const char* nameOf(LampUnits units) {
     return units == LampUnits::Radiometric ? "radiometric" : "photometric";
@@ -80,12 +81,12 @@ constexpr const char* nameOf(LampUnits units) {
 
 struct SceneDescription {
     std::string file;
-    LampUnits lampUnits = LampUnits::Radiometric;  ///< that `lights` were read as
-    bool fromBlender = false;                      ///< asset.generator says so
+    LampUnits lampUnits = LampUnits::Radiometric;  ///< units in which the file's lights were read
+    bool fromBlender = false;                      ///< whether asset.generator says so
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
-    std::vector<std::string> nodeGroups;  ///< names of light groups that nodes with meshes have
-    std::vector<std::string> nodeNames;   ///< of nodes with meshes
+    std::vector<std::string> nodeGroups;  ///< light groups of nodes with meshes
+    std::vector<std::string> nodeNames;   ///< names of nodes with meshes
     std::vector<Material>
         materials;  ///< never empty: glTF's default material is added where needed
     std::vector<Texture> textures;
@@ -97,7 +98,7 @@ struct SceneDescription {
     std::optional<int> width, height, maxDepth;
     std::optional<double> aperture, focus;
 
-    std::string contentHash;            ///< hex XXH3-128 of all bytes that were read
+    std::string contentHash;            ///< XXH3-128 of all bytes read, in hexadecimal digits
     std::vector<std::string> warnings;  ///< one line each, for the user
     std::map<std::string, double> phaseSeconds;
 };

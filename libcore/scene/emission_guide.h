@@ -1,10 +1,10 @@
-// Where light subpaths begin and set out, learned from paths that reach the picture: which light,
-// which part of it, which directions from there; of lights at infinity, which part of the disk that
-// covers the scene. Frozen. (theory.md, "Learned emission")
+// A learned distribution of emission, from paths that reach the picture: which light emits, which
+// part of it, and in which directions; for lights at infinity, from which part of the disk that
+// covers the scene. It is frozen while rendering. (theory.md, "Learned emission")
 //
-// Every light has a square that its points are spread over evenly, and one for the ray that leaves a
-// point (Lights::pointSquare, Lights::raySquare). The guide is a density on these squares, relative to
-// what a light does without it.
+// Every light maps its points to a unit square on which they are uniform without a guide, and the rays that leave a
+// point to another one (Lights::pointSquare, Lights::raySquare). The guide is a density on these squares, relative to
+// the density without a guide.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,21 @@
 namespace lacuna {
 
 struct EmissionGuide {
-    /// Probability of each light, by index; sums to one, and is positive where the light has power.
+    /// Probability of each light, by index. It sums to one and is positive for each light with
+    /// power.
     std::vector<double> pmf;
-    /// What is known of a light: its tree of `points`; kNone: nothing.
+    /// By light: index of its tree in `points`; kNone: nothing was learned.
     std::vector<std::uint32_t> pointTree;
     std::vector<SquareDensity> points;
-    /// By tree of `points` and leaf: the leaf's tree of `rays`, kNone: nothing. Those of tree i begin
-    /// at firstLeaf[i].
+    /// rayTree: by tree of `points` and leaf, the index of the leaf's tree in `rays`; kNone: nothing was learned. The
+    /// leaves of tree i begin at firstLeaf[i].
     std::vector<std::uint32_t> firstLeaf, rayTree;
     std::vector<SquareDensity> rays;
 
-    /// The guide of one point.
+    /// The guide at one point.
     struct Here {
-        double pdf = 1.0;                     ///< of the point, on its square
-        const SquareDensity* rays = nullptr;  ///< for what leaves it; null: even
+        double pdf = 1.0;                     ///< density of the point on its square
+        const SquareDensity* rays = nullptr;  ///< density of rays that leave it; null: uniform
     };
     Here at(std::uint32_t light, SquarePoint point) const {
         const std::uint32_t tree = pointTree[light];
@@ -40,10 +41,10 @@ struct EmissionGuide {
         return {place.pdf, ofRays == kNone ? nullptr : &rays[ofRays]};
     }
 
-    /// Throws std::invalid_argument naming what does not fit together, or does not fit `lights`
+    /// Throws std::invalid_argument naming a part that is inconsistent or does not fit `lights`
     /// lights.
     void check(std::size_t lights) const;
-    /// Of everything above, as hexadecimal digits.
+    /// Hash of everything above, in hexadecimal digits.
     std::string contentHash() const;
 };
 

@@ -17,8 +17,8 @@ EmissiveTriangle emissiveTriangle(const SceneDescription& description, const Bak
     for (Vec2& uv : e.uvs) uv = material.emissiveTexture.at(uv);
     if (holes) e.alpha = alphaOf(description, mesh, triangle);
     if (object.turned()) {
-        // The front is the image of the mesh's front: for a mirrored instance, which still has the
-        // mesh's winding, two corners change places (barycentrics are swapped where it is hit).
+        // The front is the image of the mesh's front. A mirrored instance still has the mesh's
+        // winding; therefore two corners are swapped (and barycentrics at hits).
         std::swap(e.corners[1], e.corners[2]);
         std::swap(e.uvs[1], e.uvs[2]);
         if (e.alpha) {

@@ -1,4 +1,4 @@
-// The lamps that are meshes: triangles with emissive materials.
+// Mesh lights: triangles with emissive materials.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// Those of all objects, object by object; sets the objects' SceneObject::firstLight. They refer to
-/// materials and textures of `description`.
+/// The emissive triangles of all objects, object by object. Sets the objects'
+/// SceneObject::firstLight. The triangles refer to materials and textures of `description`.
 std::vector<EmissiveTriangle> emissiveTriangles(const SceneDescription& description,
                                                 BakedScene& baked);
 

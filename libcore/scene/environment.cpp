@@ -12,7 +12,7 @@
 namespace lacuna {
 
 namespace {
-/// What is above the mean by less is not above it.
+/// Relative margin for rounding: a cell must exceed the mean by more than this.
 constexpr double kRounding = 1e-5;
 }  // namespace
 
@@ -102,8 +102,8 @@ Rgb Environment::radianceAt(const Place& p) const {
            c.rightBelow * (p.right * p.bottom);
 }
 
-/// Share of the row that is above `direction`, by solid angle. What a direction's length is off by
-/// rounding is a good part of a row at the poles.
+/// Share of the row, by solid angle, that is above `direction`. The direction is normalised in
+/// double: at the poles, the rounding of its length is a considerable part of a row.
 double Environment::shareBelow(int y, Vec3 direction) const {
     const Vec3d d(direction);
     const Row& row = rows_[std::size_t(y)];
@@ -112,23 +112,24 @@ double Environment::shareBelow(int y, Vec3 direction) const {
 
 namespace {
 
-/// Densities that are linear between 0 and 1.
+/// A density that is linear on [0, 1].
 struct Linear {
-    double begin, end;  ///< any multiple of the density there; not both 0
+    double begin, end;  ///< proportional to the density at 0 and 1; not both 0
 
     double sample(double u) const {
         const double root = std::sqrt(begin * begin + u * (end * end - begin * begin));
         const double sum = begin + root;
         return sum > 0.0 ? std::min(u * (begin + end) / sum, 1.0) : u;
     }
-    /// Undoes it.
+    /// The inverse of sample().
     double cdf(double x) const {
         const double sum = begin + end;
         return sum > 0.0 ? x * (2.0 * begin + x * (end - begin)) / sum : x;
     }
 };
 
-/// In a cell: how far down, and how far to the right there.
+/// A bilinear density in a cell: the marginal density downwards, and the conditional density to the
+/// right.
 struct Bilinear {
     double leftAbove, rightAbove, leftBelow, rightBelow;
 
@@ -139,7 +140,7 @@ struct Bilinear {
     }
 };
 
-/// `cosine` to +Y; `turns` about it, from -Z towards +X.
+/// The direction with this cosine to +Y and this longitude in turns, from -Z towards +X.
 Vec3 directionAt(double cosine, float turns) {
     const auto sine = float(std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine))));
     const SineCosine longitude = sineCosineOfTurns(turns);
@@ -162,10 +163,10 @@ Environment::Sample Environment::sampleSquare(double across, double down, Part p
         return {directionAt(1.0 - 2.0 * down, float(across) + turn_), {image_[0], kEvenPdfW}};
     }
     const auto& [cells, rows] = table(part);
-    // The last row that begins at or below, so that it has something.
+    // The last row that begins at or below `down`: it has a positive probability.
     const auto next = std::upper_bound(rows.begin() + 1, rows.end() - 1, down);
     const double begin = next[-1], end = *next;
-    // Rounding must not lead into the next row.
+    // Rounding must not lead to the next row.
     const double u = std::min(begin + across * (end - begin), std::nextafter(end, begin));
     const DiscreteDistribution::Pick cell = cells.sample(u);
     return inCell(cell, cell.remapped(), (down - begin) / (end - begin));
@@ -174,7 +175,7 @@ Environment::Sample Environment::sampleSquare(double across, double down, Part p
 double Environment::aboveMeanAt(const Place& p) const {
     const std::size_t cell = std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x);
     const double whole = whole_.cells.pmf(cell);
-    // The table would say the same, from another place in memory.
+    // The table above_ has the same value but would need another memory access.
     return whole > 0.0 ? std::max(0.0, 1.0 - evenly(p.y) / whole) / contrast() : 0.0;
 }
 
@@ -194,7 +195,8 @@ SquarePoint Environment::squareOf(Vec3 direction) const {
 
 SkySides Environment::sides(Part part) const {
     SkySides::Sum sum;
-    // Cells of a coarse sky are large: from so many points of each, five degrees apart at most.
+    // Cells of a coarse sky are large: each is sampled at several points, at most five degrees
+    // apart.
     const int across = 1 + 72 / width_, down = 1 + 36 / height_;
     for (std::size_t i = 0; i < rows_.size() * std::size_t(width_); ++i) {
         const double share = table(part).cells.pmf(i) / double(across * down);
@@ -222,7 +224,7 @@ Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, 
     const double cosine = row.top + (row.bottom - row.top) * below;
     const Vec3 direction =
         directionAt(cosine, float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
-    // Rounding may lead into the next cell: the density is the one that is found there.
+    // Rounding may lead to the next cell; the density is that of the resulting direction.
     return {direction, seen(direction)};
 }
 

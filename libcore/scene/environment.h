@@ -1,4 +1,4 @@
-// Latitude-longitude environment map: radiance by direction, and directions by radiance.
+// Latitude-longitude environment map: radiance by direction, and directions sampled by radiance.
 #pragma once
 
 #include "libcore/base/discrete.h"
@@ -10,14 +10,14 @@
 
 namespace lacuna {
 
-/// Centre of the image -Z, right half +X, top row +Y (theory.md, "Lights"). Radiance is the
-/// bilinear interpolation of the texels (periodic in longitude), and so is the density, of their
-/// mean over the channels: up to the share of a row that is between its rows of texels, which is
-/// that of the angle there and that of its cosine here.
+/// The image's centre is -Z, its right half +X, its top row +Y (theory.md, "Lights"). Radiance is
+/// the bilinear interpolation of the texels (periodic in longitude). The density is proportional to
+/// the bilinear interpolation of their means over the channels. The two differ in one respect:
+/// between two rows of texels, radiance is linear in the angle, and the density in its cosine.
 class Environment {
   public:
-    /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError
-    /// for an empty image or negative or non-finite texels, naming `file`.
+    /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError,
+    /// which names `file`, for an empty image or negative or non-finite texels.
     Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
 
     Rgb radiance(Vec3 direction) const {
@@ -27,7 +27,7 @@ class Environment {
     float pdfW(Vec3 direction) const {
         return even_ ? kEvenPdfW : pdfWAt(placeOf(direction), direction);
     }
-    /// Both.
+    /// Radiance and density.
     struct Seen {
         Rgb radiance;
         float pdfW;
@@ -40,40 +40,42 @@ class Environment {
 
     struct Sample {
         Vec3 direction;  ///< unit, from the scene towards the sky
-        Seen seen;       ///< there
+        Seen seen;       ///< in that direction
     };
-    /// What is drawn: the whole radiance, or what of each cell is above the mean [Karlik19].
+    /// The part of the sky that is sampled: the whole radiance, or the part of each cell above the
+    /// mean [Karlik19].
     enum class Part { Whole, AboveMean };
-    /// The density is that of the whole, whatever is drawn. Not to be called for a black map, nor for a part
-    /// that has nothing.
+    /// Samples a direction. The reported density is that of Part::Whole, whatever the part. Must not be called for a
+    /// black map or an empty part.
     Sample sample(double uTexel, float u1, float u2, Part part = Part::Whole) const;
-    /// The same density from a point of the square: points that are even there are even in the sky.
+    /// Samples the same density from a point of the unit square. The map keeps low-discrepancy
+    /// points even.
     Sample sampleSquare(double across, double down, Part part = Part::Whole) const;
-    /// The point of the square that gives `direction`: {across, down}. Not for a black map.
+    /// The inverse: the point {across, down} of the square that is mapped to `direction`. Must not
+    /// be called for a black map.
     SquarePoint squareOf(Vec3 direction) const;
 
     bool black() const { return whole_.cells.empty(); }
-    /// Integral of the radiance over all directions, as the density has it.
+    /// Integral over all directions of the radiance as the density interpolates it.
     Rgb integral() const { return integral_; }
-    /// Share of it above its mean: 0 of a sky that is the same everywhere, near 1 where a small sun has
-    /// all the light.
+    /// Share of the light above the mean: 0 for a constant sky, near 1 if a small sun has all the light.
     double contrast() const { return above_.cells.total(); }
-    /// What surfaces get of the part, by side. Not for a part that has nothing.
+    /// Irradiance of surfaces from the part, by side. Must not be called for an empty part.
     SkySides sides(Part part) const;
-    /// Density of what is drawn above the mean over that of the whole. 0 where there is no contrast.
+    /// Density of sampling Part::AboveMean over that of Part::Whole; 0 if there is no contrast.
     double aboveMean(Vec3 direction) const {
         return above_.cells.empty() ? 0.0 : aboveMeanAt(placeOf(direction));
     }
 
   private:
-    static constexpr float kEvenPdfW = 0.25f / kPi;  ///< of a sky that is the same from everywhere
+    static constexpr float kEvenPdfW = 0.25f / kPi;  ///< of a constant sky
 
-    // A cell lies between four centres of texels, those above it being of row y - 1 and those below
-    // of row y, 0 <= y <= height. In the first and the last row of cells, half as high, both are the
-    // same.
+    // A cell lies between the centres of four texels: those above are in row y - 1, those below in
+    // row y, 0 <= y <= height. The first and the last row of cells have half the height, and there
+    // both rows are the same.
     struct Place {
-        int x, y;             ///< of the cell; x is that of its left texels
-        float right, bottom;  ///< share of what is on that side
+        int x, y;             ///< cell; x is the column of its left texels
+        float right, bottom;  ///< weights of the texels on these sides
     };
     Place placeOf(Vec3 direction) const;
     struct Corners {
@@ -87,28 +89,29 @@ class Environment {
     double aboveMeanAt(const Place& place) const;
     struct Table {
         DiscreteDistribution cells;
-        /// Where each row begins among them, and the end of the last one: close together, where those of
-        /// the cells would each have to be fetched from afar.
+        /// Probability of all cells before each row, and 1 at the end. Reading it from the cells' table would need
+        /// distant memory accesses.
         std::vector<double> rows;
     };
     const Table& table(Part part) const { return part == Part::Whole ? whole_ : above_; }
     Table tableOf(std::span<const double> weights) const;
-    /// A cell's share of all directions, as far as it counts as not above the mean.
+    /// Probability of a cell of this row in a constant sky, plus a margin for rounding. Only the
+    /// excess over it counts as above the mean.
     double evenly(int row) const;
     const Rgb& texel(int x, int y) const { return image_[std::size_t(y) * width_ + x]; }
 
     int width_, height_;
     std::vector<Rgb> image_;
     struct Row {
-        double top, bottom;  ///< cosines to +Y of its edges
-        double solidAngle;   ///< of a cell: exact, so that densities integrate to one
+        double top, bottom;  ///< cosines of its edges to +Y
+        double solidAngle;   ///< of one cell, exact, so that densities integrate to one
     };
     std::vector<Row> rows_;  // of cells
     Table whole_;
-    Table above_;  ///< by what is above the mean; its sum is the share of that
+    Table above_;  ///< by the part above the mean; the total is its share
     Rgb integral_;
-    bool even_ = false;  ///< one texel that is not black: the same from everywhere
-    float turn_;         ///< rotation as a fraction of a whole turn
+    bool even_ = false;  ///< constant sky: one texel that is not black
+    float turn_;         ///< rotation in whole turns
 };
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// A node of the lamp tree, for the two files that make and read the tree (lamp_tree.h).
+// A node of the lamp tree, for the two files that build and traverse the tree (lamp_tree.h).
 #pragma once
 
 #include <array>
@@ -10,27 +10,27 @@
 
 namespace lacuna {
 
-/// Eight children side by side, so that one instruction weighs all of them.
+/// Eight children side by side for SIMD: one instruction weighs all of them.
 struct alignas(32) LampTree::Node {
     static constexpr std::size_t kWidth = 8;
     using Lanes = std::array<float, kWidth>;
 
-    Lanes x{}, y{}, z{};                        // middle of the box
-    Lanes extentX{}, extentY{}, extentZ{};      // half of its size
-    Lanes radius{};                             // half of its diagonal
-    Lanes axisX{}, axisY{}, axisZ{};            // of the cone
-    Lanes sine{}, cosine{};                     // of its half angle
+    Lanes x{}, y{}, z{};                        // centre of the box
+    Lanes extentX{}, extentY{}, extentZ{};      // half its size
+    Lanes radius{};                             // half its diagonal
+    Lanes axisX{}, axisY{}, axisZ{};            // axis of the cone
+    Lanes sine{}, cosine{};                     // of the cone's half angle
     Lanes fades{}, twoSided{};                  // 1 or 0
-    Lanes intensity{};                          // 0: no such child
+    Lanes intensity{};                          // 0: no child
     std::array<std::uint32_t, kWidth> child{};  // 0: a leaf
-    std::array<std::uint32_t, kWidth> begin;    // its first leaf; no child: beyond all leaves
+    std::array<std::uint32_t, kWidth> begin;    // first leaf below it; no child: beyond all leaves
 
     Node() { begin.fill(~0u); }
 
     void set(std::size_t i, const Extent& e, std::uint32_t first);
     void weigh(const Viewpoint& from, Lanes& importance) const;
     Shares shares(const Viewpoint& from) const;
-    /// The child that the leaf is under.
+    /// The child that contains the leaf.
     std::size_t childOf(std::uint32_t leaf) const {
         std::uint32_t begun = 0;
         for (const std::uint32_t b : begin) begun += b <= leaf ? 1 : 0;
@@ -38,27 +38,28 @@ struct alignas(32) LampTree::Node {
     }
 };
 
-/// Of children: what each is picked in proportion to.
+/// Weights in proportion to which the children of a node are picked.
 struct LampTree::Shares {
     Node::Lanes weights{};
     double sum = 0.0;
-    bool dark = false;  ///< none can send anything: they are picked by intensity
+    bool dark = false;  ///< no child can send light: they are picked by intensity
 
     double operator[](std::size_t i) const { return double(weights[i]) / sum; }
 };
 
-/// Of the choice between the tree and the lights at infinity: the tree's, and all together.
+/// Weights of the choice between the tree and the lights at infinity: that of the tree, and the
+/// sum.
 struct LampTree::Roots {
-    Shares node;  ///< of the tree's first node, if there is one
+    Shares node;  ///< of the root node, if there is one
     double tree = 1.0, sum = 1.0;
-    bool even = false;  ///< nothing can arrive: all are alike
+    bool even = false;  ///< no light can arrive: all have the same weight
 };
 
-/// What a node has of its lights.
+/// Bounds of the lights below a node.
 struct LampTree::Extent {
     Vec3 low, high;
     ShiningCone cone;
-    double intensity = 0.0;  // 0: of none yet
+    double intensity = 0.0;  // 0: no lights so far
 
     void add(const Vec3& l, const Vec3& h, const ShiningCone& c, double i) {
         if (intensity == 0.0) {
@@ -74,8 +75,8 @@ struct LampTree::Extent {
     void add(const Extent& e) {
         if (e.intensity > 0.0) add(e.low, e.high, e.cone, e.intensity);
     }
-    /// What a split is to make small [Conty18 eq 2], with the diagonal in place of the surface,
-    /// which lights in a row have none of.
+    /// The cost that a split minimises [Conty18 eq 2], with the box's squared diagonal instead of
+    /// its surface, which is zero for lights in a row.
     static std::uint32_t split(std::span<PlacedLight> own);
     double cost() const {
         return intensity == 0.0 ? 0.0

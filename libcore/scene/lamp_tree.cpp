@@ -12,27 +12,30 @@ namespace lacuna {
 
 namespace {
 
-/// What is not behind a surface counts as so far in front of it at least: rounding again.
+/// Least cosine at the receiver for lights that are not entirely behind its surface, because of
+/// rounding.
 constexpr float kLeastCosine = 1e-4f;
 
-/// What leaves a surface is at least so much of the most that may: the mean is no bound.
+/// Least emission of a surface in relation to the bound: the typical value is no bound.
 constexpr float kLeastUsual = 0.1f;
 
 }  // namespace
 
-/// Intensity over squared distance with the cosines at both ends: the most, wherever in the box and in
-/// the cone the light may be, or of surfaces about the mean. Zero only where that is. Distances are no less than the box's own size, so that nodes
-/// around the point stay comparable. Without branches: for all children at once.
+/// Importance: intensity over squared distance, times the cosines at both ends. These are upper bounds over the box and
+/// the cone; the emission of surfaces is about the mean instead. It is zero only if no light can arrive. Distances are
+/// at least half the box's diagonal, so that nodes around the point stay comparable. There are no branches, so that all
+/// children are weighed at once.
 void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
     const Vec3 p = from.position, side = from.side;
     const Vec3 size{std::fabs(side.x), std::fabs(side.y), std::fabs(side.z)};
-    // Without a side everything is above it, and every cosine is one.
+    // Without a side, everything is above it and every cosine is one.
     const float up = side == Vec3{} ? 2.0f : 0.0f;
     for (std::size_t i = 0; i < kWidth; ++i) {
         const float tx = x[i] - p.x, ty = y[i] - p.y, tz = z[i] - p.z;
         const float d2 = tx * tx + ty * ty + tz * tz, r2 = radius[i] * radius[i];
         const float inverse = 1.0f / std::sqrt(std::max(d2, r2));
-        // Half the angle under which the box is seen; a right angle inside it.
+        // The half angle of the box's bounding sphere, seen from the point; a right angle inside
+        // it.
         const float boxSine = radius[i] * inverse;
         const float boxCosine = std::sqrt(std::max(0.0f, 1.0f - boxSine * boxSine));
 
@@ -55,8 +58,8 @@ void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
         const bool mayBeIn = offCosine >= boxCosine;
         const float faded = std::max(0.0f, offCosine * boxCosine + offSine * boxSine) * fades[i];
         const float most = mayBeIn ? 1.0f : faded;
-        // Of surfaces whose normals fill the cone: the mean of the cosine, and about that of what is
-        // positive of it.
+        // For surfaces whose normals fill the cone: the mean of the cosine, and from it about the
+        // mean of its positive part.
         const float mean = 0.5f * a * (1.0f + cosine[i]);
         const float scatter = cosine[i] > 0.0f ? 0.5f * sine[i] : 0.5f;
         const float usual = 0.5f * (mean + std::sqrt(mean * mean + scatter * scatter));
@@ -68,8 +71,8 @@ void LampTree::Node::weigh(const Viewpoint& from, Lanes& importance) const {
     }
 }
 
-/// Where no child can send anything, it does not matter which is picked: all shares still sum to
-/// one.
+/// The weights of the children. If no child can send light, any choice will do, but the shares must
+/// still sum to one.
 LampTree::Shares LampTree::Node::shares(const Viewpoint& from) const {
     Shares result;
     weigh(from, result.weights);
@@ -81,8 +84,8 @@ LampTree::Shares LampTree::Node::shares(const Viewpoint& from) const {
     return result;
 }
 
-/// By the cosine of the direction that is closest to the side, which is positive unless all are
-/// behind it; a sky by what that side gets of it.
+/// Irradiance times the cosine of the bundle's direction that is closest to the side, which is
+/// positive unless all are behind it. For a sky, the irradiance of that side.
 double LampTree::importanceOf(const Bundle& bundle, const Viewpoint& from) const {
     if (from.side == Vec3{}) return bundle.irradiance;
     if (bundle.axis == Vec3{}) return bundle.irradiance * double(sky_.at(from.side));
@@ -110,7 +113,7 @@ double LampTree::shareOf(const Roots& roots, const Bundle& bundle, const Viewpoi
     return (roots.even ? 1.0 : importanceOf(bundle, from)) / roots.sum;
 }
 
-/// `pmf`: of the leaf.
+/// `pmf`: probability of the leaf.
 LampTree::Pick LampTree::pickIn(const Leaf& leaf, double pmf, double u) {
     const bool isFirst = u < leaf.share;
     const std::uint32_t light = leaf.light + (isFirst ? 0 : 1);
@@ -118,7 +121,7 @@ LampTree::Pick LampTree::pickIn(const Leaf& leaf, double pmf, double u) {
     return {light, pmf * ofLeaf, below1((isFirst ? u : u - leaf.share) / ofLeaf)};
 }
 
-/// `pmf`: of the bundle.
+/// `pmf`: probability of the bundle.
 LampTree::Pick LampTree::pickIn(const Bundle& bundle, double pmf, double u) const {
     const auto begin = distant_.begin() + bundle.begin, end = distant_.begin() + bundle.end;
     const auto behind = std::upper_bound(begin + 1, end, u,
@@ -134,7 +137,7 @@ LampTree::Pick LampTree::pick(const Viewpoint& fileFrom, double u) const {
     double pmf = top.tree / top.sum;
     if (u >= pmf && !distant_.empty()) {
         u -= pmf;
-        // The last one that can be picked at all has what rounding leaves over.
+        // The last bundle with positive probability takes the remainder due to rounding.
         Pick found{};
         for (const Bundle& b : bundles_) {
             const double p = shareOf(top, b, from);

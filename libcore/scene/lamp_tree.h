@@ -1,12 +1,12 @@
-// Which light to ask for light at a point, by what the point can see of each: a tree with boxes and
-// cones [Conty18], whose nodes are weighed by the bound of [Pharr23 12.6.3], of surfaces by what is
-// usual below it. A node has eight
-// children, which are weighed at once. (theory.md, "Lamps that are seen")
+// Picks a light for next-event estimation at a point: a tree of lights with boxes and cones
+// [Conty18]. Its nodes are weighed by the bound of [Pharr23 12.6.3]; for surfaces, by a typical
+// value below the bound. A node has eight children, which are weighed at once. (theory.md, "Lamps
+// that are seen")
 //
-// Lights with a place are the tree's leaves; lights at infinity stand beside its root, weighed by
-// their irradiance: those in about one direction as one, as a sun that has a size is made of many.
-// A pick goes down one path, and so does the question for its probability: both take the same
-// numbers in the same order, so that they agree in every bit.
+// Lights with a position are the tree's leaves. Lights at infinity stand beside its root and are
+// weighed by their irradiance. Those in about the same direction are bundled, because a sun with a
+// size consists of many lights. A pick descends along one path, and so does the computation of its
+// probability. Both use the same numbers in the same order, so that they agree bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -18,38 +18,37 @@
 
 namespace lacuna {
 
-/// Where light is asked for.
+/// The point that receives light.
 struct Viewpoint {
     Vec3 position;
-    Vec3 side;  ///< unit, the side that light has to come from; zero: any
+    Vec3 side;  ///< unit, side from which light must come; zero: any
 };
 
-/// Directions that light leaves along.
+/// The cone of directions of emission.
 struct ShiningCone {
     Vec3d axis;             ///< unit
-    double angle = 0;       ///< half angle; inside, light may be as strong as along the axis
-    bool fades = false;     ///< outside as well, by the cosine to the cone, as from a surface
-    bool twoSided = false;  ///< against the axis as well
+    double angle = 0;       ///< half angle; within it, light may have the full intensity
+    bool fades = false;     ///< emits outside too, by the cosine to the cone, like a surface
+    bool twoSided = false;  ///< also emits against the axis
 
     void add(const ShiningCone& other);
-    /// Integral of what may leave, per intensity [Conty18 eq 1].
+    /// Integral of the emission that the cone allows, per intensity [Conty18 eq 1].
     double measure() const;
 };
 
-/// A light that has a place, or two halves of a flat one: lights that follow one another.
+/// A light with a position, or the two halves of a flat lamp, which are consecutive lights.
 struct PlacedLight {
     std::uint32_t light;
     Vec3 low, high;
     ShiningCone cone;
-    double intensity;  ///< the most that leaves along any direction; positive
-    double share = 1;  ///< of it the first light's; 1: there is no second one
+    double intensity;  ///< maximum over all directions; positive
+    double share = 1;  ///< the first light's share of it; 1: there is no second light
 };
 /// A light at infinity.
 struct DistantLight {
     std::uint32_t light;
-    Vec3 direction;  ///< unit, towards it; zero: from all sides
-    double
-        irradiance;  ///< positive, in units of intensity over squared distance; what counts of it
+    Vec3 direction;     ///< unit, towards the light; zero: from all sides
+    double irradiance;  ///< positive, in units of intensity over squared distance
 };
 
 class LampTree {
@@ -58,25 +57,26 @@ class LampTree {
     LampTree(LampTree&&) noexcept;
     LampTree& operator=(LampTree&&) noexcept;
     ~LampTree();
-    /// `sceneRadius`: positive. `lights`: how many there are, those without power included. `sky`: of
-    /// the light that comes from all sides.
+    /// `sceneRadius`: positive. `lights`: number of all lights, including those without power. `sky`: irradiance by
+    /// side of the light that comes from all sides.
     LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight> distant,
              float sceneRadius, std::size_t lights, SkySides sky = {});
 
-    /// Whether there is more to choose from than the halves of one light, which go by power.
+    /// Whether there is more than one leaf or distant light to choose from. (The two halves of one
+    /// lamp are one leaf and are picked by power.)
     bool chooses() const { return leaves_.size() + distant_.size() > 1; }
 
     struct Pick {
         std::uint32_t light;
         double pmf;
-        double remapped;  ///< u, stretched to [0, 1) inside the outcome: to be used again
+        double remapped;  ///< u, rescaled to [0, 1) within the outcome; can be reused
     };
-    /// u in [0, 1). Not to be called on an empty tree.
+    /// Picks a light with u in [0, 1). Must not be called on an empty tree.
     Pick pick(const Viewpoint& from, double u) const;
-    /// Probability of that pick; zero for lights that are not in the tree.
+    /// Probability of picking the light; zero for lights that are not in the tree.
     double pmf(const Viewpoint& from, std::uint32_t light) const;
-    /// What it is picked in proportion to: about what arrives from it, up to a factor that all have in
-    /// common, and zero only where nothing can.
+    /// The weight of the light alone: about the light that arrives from it, up to a common factor. It is zero only if
+    /// no light can arrive.
     double importance(const Viewpoint& from, std::uint32_t light) const;
 
     std::uint64_t bytes() const;
@@ -88,19 +88,20 @@ class LampTree {
     struct Shares;
     struct Leaf {
         std::uint32_t light;
-        double share;  ///< of the light; the rest is that of the next one
+        double share;  ///< probability of `light`; the rest belongs to the next light
         double shareOf(std::uint32_t l) const { return l == light ? share : 1.0 - share; }
     };
-    /// Lights at infinity in about one direction, in a row; they are picked by irradiance.
+    /// Consecutive lights at infinity in about the same direction; within the bundle they are
+    /// picked by irradiance.
     struct Bundle {
         Vec3 axis{};                       ///< unit; zero: from all sides
-        float cosine = 1.0f, sine = 0.0f;  ///< of the angle that none is further from the axis by
+        float cosine = 1.0f, sine = 0.0f;  ///< of the largest angle to the axis
         double irradiance = 0.0;
         std::uint32_t begin = 0, end = 0;
     };
     struct Distant {
         std::uint32_t light, bundle;
-        double before, share;  ///< of its bundle: those in front of it, its own
+        double before, share;  ///< shares of its bundle: of the lights before it, and its own
     };
 
     Viewpoint scaled(const Viewpoint& from) const { return {from.position * toUnits_, from.side}; }
@@ -117,11 +118,11 @@ class LampTree {
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
-    std::vector<std::uint32_t> placeOf_;  // by light: its leaf, then those at infinity
+    std::vector<std::uint32_t> placeOf_;  // by light: of its leaf; distant ones follow
     std::vector<Distant> distant_;
     std::vector<Bundle> bundles_;
     SkySides sky_;
-    float toUnits_ = 1.0f;  // lengths to those of the tree: a power of two
+    float toUnits_ = 1.0f;  // factor from lengths to those of the tree, a power of two
 };
 
 }  // namespace lacuna

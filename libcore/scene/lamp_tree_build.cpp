@@ -13,19 +13,19 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 constexpr int kBuckets = 12;  // [Pharr23 12.6.3]
-/// Boxes are so much larger than they are, in units of the scene's size: rounding.
+/// Boxes are enlarged by this, relative to the scene's size, because of rounding.
 constexpr float kRounding = 0x1p-21f;
-/// Radians that lights of a bundle are from its axis at most: the size of a sun, of which all or none
-/// are above a surface nearly everywhere.
+/// Largest angle of a bundle's lights to its axis, in radians: the size of a sun, which is either wholly above or
+/// wholly below nearly every surface.
 constexpr double kBundle = 0.2;
-/// What the directions of a bundle are off by rounding at most, in radians.
+/// Largest rounding error of the directions of a bundle, in radians.
 constexpr double kRoundingOfAngles = 1e-5;
 
 Vec3 centreOf(const PlacedLight& l) {
     return (l.low + l.high) * 0.5f;
 }
 
-/// `v` turned about the unit axis `k`.
+/// `v` rotated about the unit axis `k`.
 Vec3d turned(const Vec3d& v, const Vec3d& k, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return v * c + cross(k, v) * s + k * (dot(k, v) * (1.0 - c));
@@ -35,7 +35,7 @@ Vec3d turned(const Vec3d& v, const Vec3d& k, double angle) {
 
 void ShiningCone::add(const ShiningCone& other) {
     fades |= other.fades;
-    // A lamp that shines both ways has its axis either way.
+    // The axis of a two-sided lamp may point either way.
     const Vec3d towards =
         twoSided && other.twoSided && dot(axis, other.axis) < 0.0 ? -other.axis : other.axis;
     twoSided |= other.twoSided;
@@ -63,7 +63,8 @@ double ShiningCone::measure() const {
                                                    2.0 * o * std::sin(o) + std::cos(o));
 }
 
-/// Sorts the lights so that those of one half come first; returns where the other half begins.
+/// Reorders the lights so that those of one half come first. Returns the index at which the other
+/// half begins.
 std::uint32_t LampTree::Extent::split(std::span<PlacedLight> own) {
     Vec3 low = centreOf(own[0]), high = low;
     for (const PlacedLight& l : own) {
@@ -91,7 +92,7 @@ std::uint32_t LampTree::Extent::split(std::span<PlacedLight> own) {
         }
         for (std::size_t b = 0; b + 1 < kBuckets; ++b) {
             left.add(buckets[b]);
-            // Thin slabs are what distance tells least about.
+            // Thin slabs are penalised: distance separates their lights least.
             const double cost = (left.cost() + ofRight[b + 1]) * double(longest / size[axis]);
             if (cost < best) {
                 best = cost;
@@ -100,8 +101,8 @@ std::uint32_t LampTree::Extent::split(std::span<PlacedLight> own) {
             }
         }
     }
-    if (bestAxis == 3) return std::uint32_t(own.size() / 2);  // all in one place
-    // The first and the last bucket have a light each.
+    if (bestAxis == 3) return std::uint32_t(own.size() / 2);  // all at one place
+    // The first and the last bucket are not empty.
     const auto right = std::stable_partition(own.begin(), own.end(), [&](const PlacedLight& l) {
         return bucketOf(l, bestAxis) <= bestBucket;
     });
@@ -138,7 +139,7 @@ LampTree::LampTree(std::vector<PlacedLight> placed, std::span<const DistantLight
     if (!placed.empty()) build(placed);
 }
 
-/// To the last bundle, whose directions fill `cone`, or to one of its own.
+/// Adds a light to the last bundle, whose directions fill `cone`, or to a new bundle.
 void LampTree::add(const DistantLight& light, double irradiance, ShiningCone& cone) {
     const ShiningCone own{Vec3d(light.direction)};
     ShiningCone joined = cone;
@@ -159,7 +160,7 @@ void LampTree::add(const DistantLight& light, double irradiance, ShiningCone& co
     bundle.end = std::uint32_t(distant_.size());
 }
 
-/// Leaves in a row.
+/// Consecutive leaves.
 struct LampTree::Range {
     std::uint32_t begin, end;
     Extent extent;
@@ -183,7 +184,7 @@ void LampTree::build(std::vector<PlacedLight>& lights) {
         open.pop_back();
         std::vector<Range> children{Range(lights, next.begin, next.end)};
         while (children.size() < Node::kWidth) {
-            // The worst one of several lights.
+            // The child with several lights and the largest cost.
             auto worst = children.end();
             for (auto c = children.begin(); c != children.end(); ++c) {
                 if (c->single()) continue;

@@ -15,9 +15,9 @@
 namespace lacuna {
 
 namespace {
-constexpr int kRoom = 64;  // binary orders of power that products of throughputs may go up or down
+constexpr int kRoom = 64;  // binary orders of magnitude by which products of throughputs may vary
 
-/// Mean of the channels of a product that a float need not hold.
+/// Mean of the channels of a product that may overflow a float.
 double meanOf(const Rgb& a, const Rgb& b = Rgb(1.0f)) {
     return (double(a.r) * double(b.r) + double(a.g) * double(b.g) + double(a.b) * double(b.b)) /
            3.0;
@@ -60,7 +60,7 @@ float perRadiance(const EmissiveTriangle& t) {
     return t.twoSided ? 2.0f * kPi : kPi;
 }
 
-/// How finely emission has to be looked at over the triangle: an edge's length in texels of the
+/// The resolution needed to integrate the triangle's emission: the longest edge in texels of the
 /// finer of its two textures.
 double texelsAlong(const EmissiveTriangle& t) {
     const auto longest = [](const Texture* texture, const std::array<Vec2, 3>& uvs) {
@@ -80,11 +80,11 @@ double texelsAlong(const EmissiveTriangle& t) {
     return std::max(colour, longest(t.alpha->texture, uvs));
 }
 
-/// Mean over the triangle of what it emits, as a factor on its radiance: never zero where some
-/// point may shine that none of the looks fell on.
+/// Mean emission over the triangle, as a factor of its radiance. It is never zero if a point
+/// between the samples may emit.
 Rgb meanEmission(const EmissiveTriangle& t) {
     if (!t.texture && !t.alpha) return Rgb(1.0f);
-    constexpr int kFewest = 8, kMost = 64;  // looks along an edge
+    constexpr int kFewest = 8, kMost = 64;  // samples along an edge
     const int steps = int(std::clamp(std::ceil(texelsAlong(t)), double(kFewest), double(kMost)));
     Rgb sum{};
     int n = 0;
@@ -110,7 +110,7 @@ PlacedLight placedTriangle(const EmissiveTriangle& t, std::uint32_t light, doubl
             power / double(perRadiance(t))};
 }
 
-/// Whether the two are one flat lamp, cut along a diagonal.
+/// Whether two triangles are the halves of one flat lamp, cut along a diagonal.
 bool areHalves(const EmissiveTriangle& a, const EmissiveTriangle& b) {
     const auto normalOf = [](const EmissiveTriangle& t) {
         return triangleNormal(t.corners[0], t.corners[1], t.corners[2]);
@@ -189,7 +189,8 @@ Lights Lights::withoutHits() const {
     return lights;
 }
 
-/// Decides what next event draws of the sky, and makes the tree, which weighs that.
+/// Sets the part of the sky that next-event estimation samples, and rebuilds the tree with its
+/// weight.
 void Lights::drawSky(Environment::Part part) {
     skyPart_ = environment_ ? part : Environment::Part::Whole;
     skyKept_ = kept_ = 1.0;
@@ -200,14 +201,14 @@ void Lights::drawSky(Environment::Part part) {
     tree_ = std::make_shared<const LampTree>(makeTree());
 }
 
-/// Of its points, selection included. A triangle without area is never picked; a ray may still run
-/// into what rounding left of it.
+/// pdfA of the triangle's points, selection included. A triangle without area is never picked, but
+/// rounding may let a ray hit it.
 float Lights::pdfOfTriangle(std::uint32_t i) const {
     const double area = area_[i].area;
     return area > 0.0 ? float(selection_.pmf(i) / area) : 0.0f;
 }
 
-/// In W, by light.
+/// Powers of all lights in W.
 std::vector<double> Lights::powers() const {
     std::vector<double> power;
     const double disk = std::numbers::pi * double(diskRadius_) * double(diskRadius_);
@@ -244,10 +245,11 @@ void Lights::sumBalls() {
     }
 }
 
-/// Where next event draws all of a sky, no less of it counts: walks see no windows.
+/// The least weight of a sky that next-event estimation samples as a whole: walks rarely find
+/// windows.
 constexpr double kEvenSky = 0.1;
 
-/// Over the lights that can be picked.
+/// The tree over the lights that can be picked.
 LampTree Lights::makeTree() const {
     const std::vector<double>& powers = *powers_;
     std::vector<PlacedLight> placed;
@@ -275,7 +277,8 @@ LampTree Lights::makeTree() const {
             continue;
         }
         if (kinds_[i] == LightKind::Environment) {
-            // What a surface gets of the whole sky, whichever way it faces: the mean is a quarter.
+            // The irradiance of a surface from the whole sky, on average over its orientations: a
+            // quarter.
             const double share = skyPart_ == Environment::Part::Whole
                                      ? std::max(environment_->contrast(), kEvenSky)
                                      : skyKept_;
@@ -288,7 +291,7 @@ LampTree Lights::makeTree() const {
             distant.push_back({i, -punctualDirection_[p], powers[i] / disk});
             continue;
         }
-        // A spot's edge is dark: to round its cone up costs nothing.
+        // The edge of a spot is dark, so that it costs nothing to enlarge the cone.
         const bool isPoint = kinds_[i] == LightKind::Point;
         const double cone =
             isPoint ? std::numbers::pi : std::min(l.outerConeAngle + 1e-3, std::numbers::pi);
@@ -335,7 +338,8 @@ LightPoint Lights::environmentPoint(Vec3 direction) const {
 
 const double Lights::kByPower = 0.1;
 
-/// By even numbers of 24 bits and another one, which gives each 26 more: skies have rare texels.
+/// Extends the even numbers of 24 bits by 26 bits each, taken from `rest`: skies have texels of
+/// tiny probability.
 Environment::Sample Lights::sampleSky(double rest, float across, float down,
                                       Environment::Part part) const {
     const double scaled = rest * 0x1p26, first = std::floor(scaled);
@@ -345,7 +349,7 @@ Environment::Sample Lights::sampleSky(double rest, float across, float down,
     return environment_->sampleSquare(at[0], at[1], part);
 }
 
-/// To where the guide wants it.
+/// Warps a uniform point by the guide.
 SquarePoint Lights::warpPoint(std::uint32_t light, SquarePoint u) const {
     if (!guide_ || guide_->pointTree[light] == kNone) return u;
     return guide_->points[guide_->pointTree[light]].warp(u);
@@ -353,7 +357,7 @@ SquarePoint Lights::warpPoint(std::uint32_t light, SquarePoint u) const {
 
 namespace {
 
-/// Undoes concentricDisk, for a point of the disk or close to it.
+/// The inverse of concentricDisk, for a point on the disk or close to it.
 SquarePoint squareOfDisk(double x, double y) {
     constexpr double kPerRadian = 4.0 / std::numbers::pi;
     const double r = std::min(std::hypot(x, y), 1.0);
@@ -378,7 +382,7 @@ double turnOf(double y, double x) {
 
 SquarePoint Lights::pointSquare(const LightPlace& y0) const {
     if (y0.light < area_.size()) {
-        // Undoes uniformTriangle.
+        // The inverse of uniformTriangle.
         const double s = 1.0 - double(y0.uv.x);
         return {s * s, s > 0.0 ? std::clamp(double(y0.uv.y) / s, 0.0, 1.0) : 0.0};
     }
@@ -389,8 +393,8 @@ SquarePoint Lights::pointSquare(const LightPlace& y0) const {
 SquarePoint Lights::raySquare(const LightPlace& y0, const Vec3& direction, const Vec3& x1) const {
     switch (kinds_[y0.light]) {
         case LightKind::Area: {
-            // By the normal that rays are drawn about: that of a hit may be zero in another way,
-            // and a frame jumps there.
+            // This must be the normal that rays are sampled about. A hit's normal may differ in the
+            // sign of a zero, at which Frame is discontinuous.
             const AreaLight& a = area_[y0.light];
             const bool back = a.twoSided && dot(a.ng, direction) < 0.0f;
             const Vec3 local = Frame(back ? -a.ng : a.ng).toLocal(direction);
@@ -448,7 +452,7 @@ std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, 
         return SeenPoint{*point, samples};
     }
     const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
-    // The sky is the last light, so that the end of the table is what is left out of it.
+    // The sky is the last light: the end of the table is the part of it that is left out.
     const DiscreteDistribution::Pick pick = selection_.sample(u * kept_);
     const double kept = pick.index == environmentIndex_ ? skyKept_ : 1.0;
     const double rest = below1(pick.remapped() / kept);
@@ -457,7 +461,7 @@ std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, 
     return SeenPoint{*point, seenSamples(*point, from)};
 }
 
-/// A point of next event on the light, or on the ball that it is a part of.
+/// Samples a point for next-event estimation on the light, or on the ball that contains it.
 std::optional<LightPoint> Lights::seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                                               const Vec3& from) const {
     const BallLamp* ball = ballOf(light);
@@ -469,15 +473,15 @@ std::optional<LightPoint> Lights::seenPointOn(std::uint32_t light, double u, con
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
     const double ofPoint = pointSamples(y0, from.position);
-    if (!(ofPoint > 0.0)) return 0.0;  // the tree need not be asked
+    if (!(ofPoint > 0.0)) return 0.0;  // saves the query of the tree
     if (!picksBySight()) return pickSamples(y0.light, 0.0) * ofPoint;
     const BallLamp* ball = ballOf(y0.light);
     const std::uint32_t inTree = ball ? ball->lights().front() : y0.light;
     return pickSamples(y0.light, tree_->pmf(from, inTree)) * ofPoint;
 }
 
-/// Probability of picking the light, or its ball, over that of light walks. `pmfOfTree` is read where
-/// lights are picked by sight.
+/// Probability of picking the light, or its ball, over its pmf in samplePoint. `pmfOfTree` is read only if
+/// picksBySight().
 double Lights::pickSamples(std::uint32_t light, double pmfOfTree) const {
     const double power = selection_.pmf(light);
     if (!(power > 0.0)) return 0.0;
@@ -488,7 +492,7 @@ double Lights::pickSamples(std::uint32_t light, double pmfOfTree) const {
     return kByPower * byPower + (1.0 - kByPower) * (pmfOfTree / power);
 }
 
-/// The same of the point on it.
+/// The same ratio for the density of the point on the light.
 double Lights::pointSamples(const LightPlace& y0, const Vec3& from) const {
     if (const BallLamp* ball = ballOf(y0.light)) {
         const AreaLight& a = area_[y0.light];
@@ -504,7 +508,7 @@ LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
     return areaPoint(light, a.corner + a.edge1 * uv.x + a.edge2 * uv.y, a.ng, uv);
 }
 
-/// A point on the light; `u` picks among an environment's texels.
+/// Samples a point on the light. `u` picks among an environment's texels.
 LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                            Environment::Part sky) const {
     if (light < area_.size()) {
@@ -541,7 +545,7 @@ LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
 
 Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) const {
     const std::size_t i = std::size_t(&l - punctual_.data());
-    // Of two unit vectors: half the square of their distance.
+    // The versine for two unit vectors: half the square of their distance.
     const double v = 0.5 * lengthSquared(Vec3d(direction) - Vec3d(punctualDirection_[i]));
     const double falloff = spotFalloff(l, v);
     if (falloff == 0.0) return {};
@@ -549,7 +553,7 @@ Lights::Emission Lights::spotEmission(const PunctualLight& l, Vec3 direction) co
     return {float(falloff / spotSolidAngle(l)), float(1.0 / capSolidAngle(l.outerConeAngle))};
 }
 
-/// Of lights without a surface.
+/// The emission of lights without a surface.
 Lights::Emission Lights::otherEmission(std::uint32_t light, const Vec3& direction) const {
     if (kinds_[light] == LightKind::Point) return {0.25f / kPi, 0.25f / kPi};
     if (kinds_[light] == LightKind::Spot) {
@@ -599,7 +603,7 @@ std::optional<Lights::EmissionRay> Lights::sampleEmission(const LightPoint& poin
         case LightKind::Environment:
             break;
     }
-    // A disk that covers the scene's bounding sphere, seen from the light.
+    // The ray starts on a disk that covers the scene's bounding sphere, seen from the light.
     const Frame frame(point.position);
     const Vec2 d = concentricDisk(u1, u2) * diskRadius_;
     const Vec3 origin = frame.toWorld(Vec3{d.x, d.y, diskRadius_});

@@ -1,4 +1,4 @@
-// Lights by the names of their groups, so that a picture can be taken apart by them.
+// Groups of lights by name, by which a picture can be decomposed.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,11 @@
 
 namespace lacuna {
 
-/// The group of every light, as NamedLights::group says it. Who has no name at all is in `unnamed`.
+/// The group of every light (NamedLights::group). Lights without any name are in the group
+/// `unnamed`.
 struct LightGroups {
     std::vector<std::string> names;    ///< in the order of the groups' first lights
-    std::vector<std::uint32_t> group;  ///< by light, as Lights counts them: an index into `names`
+    std::vector<std::uint32_t> group;  ///< by index of the light: index into `names`
 };
 LightGroups lightGroups(std::span<const NamedLights> lights);
 

@@ -9,7 +9,7 @@ namespace lacuna {
 
 namespace {
 
-/// Not all metal and not all glass.
+/// Whether it may be neither all metal nor all glass.
 bool mayHaveBase(const Material& m) {
     return (m.metallic < 1.0f || m.metallicRoughnessTexture) &&
            (m.transmission < 1.0f || m.transmissionTexture);
@@ -18,14 +18,15 @@ bool mayHaveBase(const Material& m) {
 bool isRough(float roughness) {
     return roughness * roughness >= kMinAlpha;
 }
-/// Where it is smoothest by its factors.
+/// Roughness across the grain, by the factors alone.
 float roughnessOf(const Material& m) {
     return Bsdf::roughnessOf(m.roughness, m.anisotropy);
 }
 bool mayBeRough(const Material& m) {
     return isRough(roughnessOf(m));
 }
-/// Where it is smoothest by its texture too. Between texels floats may come out a little lower.
+/// The smallest roughness with its texture. Interpolation between texels may round it down a
+/// little.
 float leastOf(float roughness, const TextureUse& texture, float leastTexel) {
     return texture ? roughness * leastTexel * 0.9999f : roughness;
 }

@@ -1,5 +1,5 @@
-// Materials and textures as a scene file gives them: plain values. Which textures a BSDF is made
-// of, and which kinds of lobes a material may have, is said once, in the tables below.
+// Materials and textures of a scene file as plain values. The tables below alone define which
+// textures a BSDF depends on and which kinds of lobes a material may have.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace lacuna {
 
-/// 8-bit image, row 0 at the top, texel (x, y) at [(y * width + x) * 4]. `srgb` says how RGB is
-/// coded; alpha is always linear.
+/// An 8-bit RGBA image, row 0 at the top, texel (x, y) at [(y * width + x) * 4]. `srgb` tells
+/// whether RGB is coded as sRGB; alpha is always linear.
 struct Texture {
     enum class Wrap : std::uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 
@@ -22,11 +22,11 @@ struct Texture {
     std::vector<std::uint8_t> rgba;
     bool srgb = false;
     Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
-    bool nearest = false;  ///< texels are squares of one colour; else linear between their centres
+    bool nearest = false;  ///< texels are squares of one colour; else linear interpolation
 };
 
-/// A texture as a material uses it: index into SceneDescription::textures, or none, and how it lies
-/// on the surface (KHR_texture_transform).
+/// A material's use of a texture: index into SceneDescription::textures, or none, and the transform
+/// of coordinates (KHR_texture_transform).
 struct TextureUse {
     static constexpr std::int32_t kNone = -1;
     std::int32_t value = kNone;
@@ -34,7 +34,7 @@ struct TextureUse {
     Vec2 uAxis{1, 0}, vAxis{0, 1}, offset{0, 0};
 
     explicit operator bool() const { return value != kNone; }
-    /// Coordinates in the texture, from those of the mesh.
+    /// Coordinates in the texture for those of the mesh.
     Vec2 at(Vec2 uv) const { return uAxis * uv.x + vAxis * uv.y + offset; }
 };
 
@@ -50,17 +50,17 @@ struct Material {
     float metallic = 1.0f;
     float roughness = 1.0f;               ///< GGX alpha = roughness^2; 0 is a perfect mirror
     TextureUse metallicRoughnessTexture;  ///< linear: G = roughness, B = metallic
-    float leastRoughnessTexel = 0.0f;     ///< of its G; the loader finds out
-    float specular = 1.0f;                ///< KHR_materials_specular factor; 0 = exactly Lambert
+    float leastRoughnessTexel = 0.0f;     ///< smallest G in the texture; set by the loader
+    float specular = 1.0f;                ///< KHR_materials_specular factor; 0 = Lambertian
     TextureUse specularTexture;           ///< linear: alpha
-    Rgb specularColor{1.0f};              ///< of the layer along its normal; may be above 1
+    Rgb specularColor{1.0f};              ///< at normal incidence; may be above 1
     TextureUse specularColorTexture;      ///< sRGB
     float clearcoat = 0.0f;  ///< KHR_materials_clearcoat: weight of a layer over everything else
     TextureUse clearcoatTexture;  ///< linear: R
     float clearcoatRoughness = 0.0f;
     TextureUse clearcoatRoughnessTexture;       ///< linear: G
     float leastClearcoatRoughnessTexel = 0.0f;  ///< likewise
-    TextureUse clearcoatNormalTexture;          ///< as normalTexture; none: the mesh's own normals
+    TextureUse clearcoatNormalTexture;          ///< like normalTexture; none: the mesh's normals
     float clearcoatNormalScale = 1.0f;
     Rgb sheenColor;                ///< KHR_materials_sheen; black: none
     TextureUse sheenColorTexture;  ///< sRGB
@@ -77,22 +77,22 @@ struct Material {
     float transmission = 0.0f;
     TextureUse transmissionTexture;  ///< linear: R
     bool thin = true;                ///< no KHR_materials_volume thickness: no refraction
-    Rgb absorption;                  ///< of a solid, per unit of length: exp(-absorption d) is left
+    Rgb absorption;                  ///< of a solid, per unit length: transmits exp(-absorption d)
     TextureUse normalTexture;        ///< linear: tangent, bitangent, normal as (x + 1) / 2
-    float normalScale = 1.0f;        ///< of the first two
+    float normalScale = 1.0f;        ///< scales tangent and bitangent
     Rgb emission;                    ///< radiance: emissiveFactor x emissiveStrength
     TextureUse emissiveTexture;      ///< sRGB, times emission
     bool doubleSided = false;        ///< emission from both sides (geometry is never culled)
     Alpha alphaMode = Alpha::Opaque;
     float alphaCutoff = 0.5f;
-    bool hiddenFromCamera =
-        false;                    ///< only the edge at the lens passes it, as if it were not there
-    std::string lightGroup = {};  ///< of what emits by it; empty: its name
-    LobeSet without;              ///< lobes to leave out, whatever the rest says
-    bool pane = false;  ///< rays pass it straight (theory.md, "Panes"); the scene finds out
+    bool hiddenFromCamera = false;  ///< rays with an end at the lens pass it
+    std::string lightGroup = {};    ///< of emissive surfaces; empty: its name
+    LobeSet without;                ///< lobes to leave out, whatever the other fields are
+    bool pane = false;              ///< rays pass it straight (theory.md, "Panes"); set by bake()
 };
 
-/// The textures that a BSDF is made of, the base colour first. (What turns it is not, and emission.)
+/// The textures that a BSDF depends on, the base colour first, except those that turn it and
+/// emission.
 inline constexpr std::array kBsdfTextures = {&Material::baseColorTexture,
                                              &Material::metallicRoughnessTexture,
                                              &Material::transmissionTexture,
@@ -104,42 +104,44 @@ inline constexpr std::array kBsdfTextures = {&Material::baseColorTexture,
                                              &Material::sheenRoughnessTexture,
                                              &Material::diffuseTransmissionTexture,
                                              &Material::diffuseTransmissionColorTexture};
-/// Those that turn it, which need axes on the surface.
+/// Textures that turn a BSDF, which need axes on the surface.
 inline constexpr std::array kTurningTextures = {
     &Material::normalTexture, &Material::clearcoatNormalTexture, &Material::anisotropyTexture};
 
-/// Whether the clearcoat's normals are not those of what is under it.
+/// Whether the clearcoat's normals differ from those of the layers under it.
 bool hasOwnClearcoatNormal(const Material& material);
-/// Whether points have directions beside their shading normal: a grain, or the clearcoat's normal.
+/// Whether points have directions besides their shading normal: a grain, or a clearcoat's normal.
 bool hasOwnDirections(const Material& material);
 
-/// Whether the material asks for any texture by TEXCOORD_1.
+/// Whether any texture of the material uses TEXCOORD_1.
 bool usesSecondSet(const Material& material);
 
-// What a material may hold anywhere on its surface: textures lower factors, so that they can switch
-// lobes off as well as on. Lobes that are left out by force (Material::without) do not count.
+// Lobes that a material may have anywhere on its surface. Textures lower factors, so that they can
+// switch lobes off as well as on. These functions ignore lobes that are left out
+// (Material::without).
 bool mayBeDiffuse(const Material& material);
 bool mayTransmitDiffusely(const Material& material);
 bool hasSheen(const Material& material);
 /// Metal, or a dielectric layer over a diffuse base.
 bool mayReflect(const Material& material);
 bool mayTransmit(const Material& material);
-/// Some perfectly smooth reflection or transmission, of lobes that are not left out.
+/// Whether it may have perfectly smooth reflection or transmission, without the lobes that are left
+/// out.
 bool mayBeSpecular(const Material& material);
-/// Whether every ray that comes by meets it, which those of alpha and panes do not.
+/// Whether it stops every ray. Materials with alpha and panes do not.
 bool stopsAllRays(const Material& material);
-/// Whether rays go on straight or bent through it, scattered nowhere else.
+/// Whether it may transmit rays, straight or refracted, without scattering.
 bool mayBeSmoothGlass(const Material& material);
-/// Whether they go on through one narrow lobe, as wide everywhere on the surface (Bsdf::refractsNarrowly).
+/// Whether it may transmit by one narrow lobe whose width is constant over the surface (Bsdf::refractsNarrowly).
 bool mayBeNarrowGlass(const Material& material);
-/// Either of the two, which stops all rays: what next event goes through.
+/// Either of the two, if it stops all rays: next-event estimation can go through it.
 bool mayBeClearGlass(const Material& material);
-/// Thin smooth glass and nothing else, with or without a colour: a pane where it is flat.
+/// Whether it is only thin smooth glass, with or without colour: a pane if the mesh is flat.
 bool mayBePane(const Material& material);
-/// A diffuse base, black or not, under a dielectric layer.
+/// Whether it may have a diffuse base, black or not, under a dielectric layer.
 bool mayHaveCoatedBase(const Material& material);
 
-/// A kind of lobes and its name in lists of effects.
+/// A kind of lobe and its name in lists of effects.
 struct LobeRow {
     LobeKind kind;
     const char* name;

@@ -1,5 +1,4 @@
-// Rays, hits and their bookkeeping: plain structs that everything but accel.cpp sees instead of
-// Embree.
+// Rays, hits and their counters: plain structs that hide Embree from everything but accel.cpp.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace lacuna {
 
-/// What a ray is traced for; rays are counted by kind.
+/// The purpose of a ray. Rays are counted by kind.
 enum class RayKind : std::uint8_t {
     Camera,
     EyeWalk,
@@ -19,7 +18,7 @@ enum class RayKind : std::uint8_t {
     Connection,
     Splat,
     Cache,
-    Chain,  ///< in search of chains of mirrors and smooth glass, and along them
+    Chain,  ///< search for specular chains (mirrors and smooth glass), and tests along them
     Count
 };
 inline constexpr std::size_t kRayKinds = std::size_t(RayKind::Count);
@@ -29,14 +28,14 @@ struct Ray {
     Vec3 origin;
     Vec3 direction;  ///< any length: tFar is in its units
     float tFar = std::numeric_limits<float>::infinity();
-    bool atLens = false;  ///< one of its ends is the lens: it passes what the camera does not see
+    bool atLens = false;  ///< one end is the lens: it passes objects hidden from the camera
 };
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
 struct Hit {
-    std::uint32_t object = kNone;     ///< index of the scene's object
-    std::uint32_t primitive = kNone;  ///< triangle of the object's mesh
+    std::uint32_t object = kNone;     ///< index of the object in the scene
+    std::uint32_t primitive = kNone;  ///< index of the triangle in the object's mesh
     float u = 0, v = 0;  ///< barycentric weights of the triangle's second and third corner
     float distance = 0;  ///< along the ray, in lengths of its direction
 };
@@ -45,11 +44,11 @@ using RayCounts = std::array<std::uint64_t, kRayKinds>;
 
 /// One traced ray, for the benchmark that replays them through bare Embree.
 struct RecordedRay {
-    Ray ray;  ///< tFar: for closest hits the distance that was found (infinity: a miss)
+    Ray ray;  ///< tFar: for closest hits the distance found (infinity: a miss)
     RayKind kind;
 };
 
-/// Per-worker state of ray tracing: counters, and a recording where a benchmark asks for one.
+/// State of ray tracing per worker: counters, and a recording if a benchmark wants one.
 struct RayTally {
     RayCounts counts{};
     std::vector<RecordedRay>* recording = nullptr;

@@ -14,7 +14,7 @@ namespace lacuna {
 
 namespace {
 
-/// Absorption by material; empty where none absorbs.
+/// Absorption coefficients by material; empty if none absorbs.
 std::vector<Rgb> absorptions(std::span<const Material> materials) {
     std::vector<Rgb> all;
     bool any = false;
@@ -25,7 +25,7 @@ std::vector<Rgb> absorptions(std::span<const Material> materials) {
     return any ? all : std::vector<Rgb>{};
 }
 
-/// `what`: that is so far from the scene's middle.
+/// Throws InputError if `what`, at this distance from the scene's centre, is too far.
 void requireNear(const SceneDescription& scene, const std::string& what, double distance) {
     if (distance <= kFarthest) return;
     throw InputError(scene.file + ": " + what + ": expected to be within " + numberText(kFarthest) +
@@ -101,9 +101,10 @@ bool Scene::stops(const Hit& hit, Vec3 origin, Vec3 direction) const {
     const SceneObject& object = baked_.objects[hit.object];
     const float share = shareStopped(hit, object.instanced ? object.vector(direction) : direction);
     if (share <= 0.0f || share >= 1.0f) return share > 0.0f;
-    // A share of the rays, which they draw themselves: no state, and the same ray again meets the
-    // same surfaces. Every strategy of a path has the same chance at each of its edges and vertices
-    // but the lamp's own point, where light subpaths begin (LightPoint::opacity).
+    // The decision is a hash of the ray: it needs no state, and the same ray traced again meets the
+    // same surfaces. All strategies for a path have the same probability of passing its edges and
+    // meeting its vertices, except for the lamp's point, where light subpaths begin
+    // (LightPoint::opacity).
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
     return hashToUniform({bits(origin.x), bits(origin.y), bits(origin.z), bits(direction.x),
                           bits(direction.y), bits(direction.z), hit.object, hit.primitive}) < share;

@@ -1,4 +1,4 @@
-// The scene as rays see it: recentred (the origin is the middle of the bounding box), in float,
+// The scene for ray tracing: recentred (the origin is the centre of the bounding box), in float,
 // const after construction.
 #pragma once
 
@@ -27,88 +27,86 @@ class ThreadPool;
 
 class Scene {
   public:
-    /// Bakes meshes that are used once into world space, keeps the others as Embree instances,
-    /// builds lights, tables and hierarchies. Degenerate triangles are dropped. Throws InputError
-    /// for an environment that cannot be read and for what is farther out than kFarthest, RunError if
-    /// memory runs out.
+    /// Transforms meshes that are used once to world space, keeps the others as Embree instances, and builds lights,
+    /// tables and hierarchies. Degenerate triangles are dropped. Throws InputError for an environment that cannot be
+    /// read and for anything farther out than kFarthest, RunError if memory runs out.
     Scene(SceneDescription description, const ThreadPool& pool);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    /// Replaces nothing, decides nothing: the camera of that name, or the first. Throws InputError
-    /// if the scene has no camera or has it farther out than kFarthest, UsageError if none has that
-    /// name (both list what there is).
+    /// The camera of that name, or the first one if the name is empty. Throws InputError if the
+    /// scene has no camera or the camera is farther out than kFarthest, and UsageError, which lists
+    /// the cameras, if none has that name.
     Camera makeCamera(const std::string& name, Camera::Film film, Camera::Lens lens) const;
 
     const SceneDescription& description() const { return description_; }
     const Lights& lights() const { return *lights_; }
     const Environment* environment() const { return environment_.get(); }
-    /// These three are made anew at each call.
+    /// Each call computes the following three anew.
     LightGroups lightGroups() const { return lacuna::lightGroups(namedLights()); }
     std::vector<NamedLights> namedLights() const;
     std::vector<ObjectNames> objectNames() const;
     const Accel& accel() const { return *accel_; }
-    /// Middle of the file's bounding box: file coordinates = ours + centre().
+    /// Centre of the file's bounding box: file coordinates = scene coordinates + centre().
     Vec3d centre() const { return baked_.centre; }
-    /// Radius of the bounding sphere about the origin; 0 without geometry.
+    /// Radius of the bounding sphere around the origin; 0 without geometry.
     float radius() const { return baked_.radius; }
-    /// Half the sides of the bounding box, whose middle is the origin; zero without geometry.
+    /// Half the sides of the bounding box, which is centred at the origin; zero without geometry.
     const Vec3& halfSize() const { return baked_.halfSize; }
     std::size_t triangleCount() const { return baked_.triangles; }
-    /// The triangles that stop light, in our coordinates, instances each time, in a fixed order.
-    /// That is all of them, glass that bends light too: a connection does not pass it either. Left out
-    /// are panes, and triangles of which alpha lets more than half through (leaves, chains, veils).
+    /// The triangles that block light, in scene coordinates, once per instance, in a fixed order. Refracting glass is
+    /// included, because it blocks connections. Left out are panes, and triangles whose alpha lets more than half of
+    /// the light through (leaves, chains, veils).
     std::vector<std::array<Vec3, 3>> blockingTriangles(const ThreadPool& pool) const {
         return surfaces_.blocking(pool);
     }
 
-    /// The triangles of materials that are `wanted`, likewise.
+    /// The triangles of those materials that `wanted` accepts, likewise.
     std::vector<std::array<Vec3, 3>> trianglesOf(bool (*wanted)(const Material&)) const {
         return surfaces_.of(wanted);
     }
-    /// Likewise of one material.
+    /// The triangles of one material, likewise.
     std::vector<std::array<Vec3, 3>> trianglesOf(std::size_t material) const {
         return surfaces_.of(material);
     }
 
-    /// Closest surface along a ray that leaves `origin` (offset off its surface; ng zero: no
-    /// surface).
+    /// Closest surface along a ray from `origin`, which is moved off its surface along ng (ng zero:
+    /// no surface).
     std::optional<Hit> trace(const Vec3& origin, const Vec3& ng, const Vec3& direction,
                              RayKind kind, RayTally& tally) const;
-    /// The point of a hit; all of `out` is replaced. Asks the cache for the texels that bsdfAt will
-    /// look at.
+    /// The point of a hit; replaces all of `out`. Prefetches the texels that bsdfAt will read.
     void surfaceAt(const Hit& hit, SurfacePoint& out) const { surfaces_.pointAt(hit, out); }
-    /// The shape at a hit, whose point is `point`: of the surface, or of a clearcoat with normals of its own.
+    /// The shape of the surface at a hit, or of a clearcoat with its own normals. `point`: the point of the hit.
     SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const {
         return surfaces_.shapeAt(hit, point, clearcoat);
     }
-    /// Closest surface and its point, one after the other.
+    /// trace() followed by surfaceAt().
     std::optional<SurfacePoint> intersect(const Vec3& origin, const Vec3& ng, const Vec3& direction,
                                           RayKind kind, RayTally& tally) const;
-    /// Whether two points see each other; each is moved off its surface towards the other.
+    /// Whether two points are mutually visible. Each is moved off its surface towards the other.
     bool visible(const Vec3& a, const Vec3& ngA, const Vec3& b, const Vec3& ngB, RayKind kind,
                  RayTally& tally) const;
-    /// Whether `a` sees infinitely far along `direction`.
+    /// Whether the ray from `a` along `direction` is free to infinity.
     bool visibleToInfinity(const Vec3& a, const Vec3& ngA, const Vec3& direction, RayKind kind,
                            RayTally& tally) const;
 
-    /// Whether some textures of bsdfAt are larger than the processor's nearer caches.
+    /// Whether some textures of bsdfAt do not fit into the processor's nearer caches.
     bool hasFarTextures() const { return hasFarTextures_; }
-    /// The share of rays along `direction`, of any length, that a surface stops: one, but where alpha
-    /// or a pane lets some of them pass.
+    /// The share of rays along `direction` (of any length) that a surface stops: one, except where alpha or a pane lets
+    /// some pass.
     float shareStopped(const Hit& hit, const Vec3& direction) const;
-    /// Of the object that was hit.
+    /// Material of the object that was hit.
     const Material& materialAt(const Hit& hit) const;
     /// Evaluates the material's textures at the point.
     Bsdf bsdfAt(const SurfacePoint& point) const { return shading_.bsdfAt(point); }
     const AlbedoTables& albedoTables() const { return shading_.albedoTables(); }
-    /// Of the materials' bodies, per unit of length; empty where none absorbs.
+    /// Absorption coefficients by material, per unit length; empty if no material absorbs.
     std::span<const Rgb> absorption() const { return absorption_; }
 
   private:
-    /// Whether a ray (of which origin and direction may be in the object's own space) stops at the
-    /// hit: always, but where alpha or a pane lets some of them pass.
+    /// Whether a ray stops at the hit: always, except where alpha or a pane lets some rays pass.
+    /// Its origin and direction may be in the object's own space.
     bool stops(const Hit& hit, Vec3 origin, Vec3 direction) const;
 
     SceneDescription description_;
@@ -117,7 +115,7 @@ class Scene {
     bool hasFarTextures_ = false;
     Surfaces surfaces_;
     Shading shading_;
-    std::vector<Rgb> absorption_;  // by material; empty where none absorbs
+    std::vector<Rgb> absorption_;  // by material; empty if none absorbs
     std::unique_ptr<Environment> environment_;
     std::unique_ptr<Lights> lights_;
     std::unique_ptr<Accel> accel_;

@@ -19,7 +19,7 @@ ObjectNames namesOf(const SceneDescription& description, const BakedScene& baked
             materialOf(description, baked, object).name};
 }
 
-/// The light group of an object that emits.
+/// The light group of an emissive object.
 std::string groupOf(const SceneDescription& description, const BakedScene& baked,
                     const SceneObject& object) {
     if (object.lightGroup != Instance::kNoGroup) return description.nodeGroups[object.lightGroup];
@@ -31,8 +31,7 @@ std::string groupOf(const SceneDescription& description, const BakedScene& baked
 
 std::vector<NamedLights> namedLights(const SceneDescription& description, const BakedScene& baked,
                                      bool environment) {
-    // In the order of Lights: triangles object by object, then the lamps without a surface, then what
-    // is around the scene.
+    // In the order of Lights: triangles object by object, then lamps without a surface, then the environment.
     std::vector<NamedLights> all;
     for (const SceneObject& object : baked.objects) {
         if (object.firstLight == SceneObject::kNoLight) continue;

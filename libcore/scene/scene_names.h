@@ -1,4 +1,4 @@
-// What lights and objects are called: by the scene's file, for people who name them.
+// Names of lights and objects in the scene's file, by which users refer to them.
 #pragma once
 
 #include <cstddef>
@@ -11,31 +11,31 @@ namespace lacuna {
 struct BakedScene;
 struct SceneDescription;
 
-/// Lights that follow each other, as Lights counts them, and are called the same.
+/// Consecutive lights of Lights with the same names.
 struct NamedLights {
     enum class Kind : std::uint8_t { Mesh, Lamp, Environment };
     Kind kind = Kind::Lamp;
     std::size_t count = 1;
-    /// A mesh that emits is in the group that its node names, else in that of its material, else in
-    /// one of the material's name; any other lamp in the one that its node names, else in one of the
-    /// node's name, else of its own; the environment in `environment`. Empty: none has a name.
+    /// For an emissive mesh: the group that its node names, else that of its material, else the
+    /// material's name. For any other lamp: the group that its node names, else the node's name,
+    /// else its own. For the environment: `environment`. Empty if none of these has a name.
     std::string group;
-    /// Of the node, then the material's or the light's own, as far as it has them.
+    /// The node's name, then that of the material or the light, without empty ones.
     std::vector<std::string> names;
 };
-/// All of them.
+/// The names of all lights.
 std::vector<NamedLights> namedLights(const SceneDescription& description, const BakedScene& baked,
                                      bool environment);
 
-/// Empty where there is none.
+/// The names of an object; empty if it has none.
 struct ObjectNames {
     std::string node, material;
 
-    /// Those that there are.
+    /// The names that are not empty.
     std::vector<std::string> all() const;
     friend bool operator==(const ObjectNames&, const ObjectNames&) = default;
 };
-/// By object.
+/// The names by object.
 std::vector<ObjectNames> objectNames(const SceneDescription& description, const BakedScene& baked);
 
 }  // namespace lacuna

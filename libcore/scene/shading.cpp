@@ -8,10 +8,11 @@ namespace lacuna {
 
 namespace {
 
-/// Indices of all dielectric layers over a diffuse base that the materials may have anywhere.
+/// Indices of refraction of all dielectric layers over a diffuse base that the materials may have.
 std::vector<float> layerIndices(std::span<const Material> materials) {
-    // A coloured texture makes any layer up to the factor's: some tables on the way, each for the
-    // layers up to it, so that the base gets at most F0 / 8 too little.
+    // A coloured texture can give any reflectance up to that of the factor. Tables at kSteps
+    // intermediate values serve the layers below them, so that the base gets at most F0 / 8 too
+    // little.
     constexpr int kSteps = 8;
     std::vector<float> indices;
     for (const Material& m : materials) {

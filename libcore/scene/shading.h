@@ -1,4 +1,4 @@
-// From a material and its textures to the BSDF at a point.
+// Makes the BSDF at a point from a material and its textures.
 #pragma once
 
 #include <memory>
@@ -15,17 +15,18 @@ namespace lacuna {
 
 class Shading {
   public:
-    /// `description` must outlive it.
+    /// `description` must outlive the object.
     Shading(const SceneDescription& description, std::span<const BakedMesh> meshes);
 
-    /// Evaluates the material's textures at the point; what turns the BSDF is there already.
+    /// Evaluates the material's textures at the point, except those that turn the BSDF, whose
+    /// results are in `point`.
     Bsdf bsdfAt(const SurfacePoint& point) const;
     const AlbedoTables& albedoTables() const { return *tables_; }
 
   private:
-    /// What a material has in common wherever it is.
+    /// A material's precomputed data.
     struct Prepared {
-        std::optional<Bsdf> bsdf;  ///< where nothing but the base colour varies; white then
+        std::optional<Bsdf> bsdf;  ///< if at most the base colour varies; then with white
         bool colorVaries = false;
     };
 

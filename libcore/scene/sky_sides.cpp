@@ -4,7 +4,7 @@
 namespace lacuna {
 
 namespace {
-/// Nothing is quite dark: a cell has sides that face a little more of the sky than its middle.
+/// No cell is quite dark: some orientations in it face a little more of the sky than its centre.
 constexpr double kLeast = 0.05;
 }  // namespace
 
@@ -13,7 +13,7 @@ SkySides::SkySides(const Sum& sum) {
     for (const Vec3d& flux : sum.cells_) {
         if (!(flux == Vec3d{})) fluxes.push_back(flux);
     }
-    // The mean of a cosine, where it is positive, over all sides is a quarter.
+    // The mean of the positive part of a cosine over all orientations is a quarter.
     const double mean = 0.25 * sum.whole();
     for (std::size_t i = 0; i < kSide * kSide; ++i) {
         const auto middle = [](std::size_t cell) {

@@ -1,4 +1,4 @@
-// How much of a sky a surface gets, by the side that it faces. (theory.md, "Lamps that are seen")
+// The irradiance from a sky by the orientation of the surface. (theory.md, "Lamps that are seen")
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace lacuna {
 
-/// Irradiance, nothing in between, over its mean over all sides: one value for each cell of the
-/// square that stands for all directions. Without a sky it is 1.
+/// Unoccluded irradiance over its mean over all orientations, tabulated by cells of the octahedral
+/// square of directions. Without a sky it is 1.
 class SkySides {
   public:
     SkySides() = default;
-    /// A sky is added up, and then made a table of.
+    /// Accumulates a sky, from which the table is then made.
     class Sum {
       public:
-        /// `direction`: unit; `flux`: what comes from there, per area across.
+        /// `direction`: unit; `flux`: light from there, per area perpendicular to it.
         void add(const Vec3& direction, double flux) {
             cells_[cellOf(direction, kSumSide)] += Vec3d(direction) * flux;
             whole_ += flux;
@@ -32,10 +32,10 @@ class SkySides {
         std::vector<Vec3d> cells_ = std::vector<Vec3d>(kSumSide * kSumSide);
         double whole_ = 0.0;
     };
-    /// `sum`: of something.
+    /// `sum` must not be empty.
     explicit SkySides(const Sum& sum);
 
-    /// `side`: unit.
+    /// Relative irradiance of a surface with the unit normal `side`.
     float at(const Vec3& side) const { return table_.empty() ? 1.0f : table_[cellOf(side, kSide)]; }
 
   private:

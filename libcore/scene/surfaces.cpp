@@ -9,8 +9,8 @@
 
 namespace lacuna {
 
-/// How a normal map lies at a point: the directions, of any length, of the image's right and upper
-/// edge.
+/// Axes of a normal map at a point: the directions, of any length, towards the image's right and
+/// upper edge.
 struct Surfaces::MapAxes {
     Vec3 right, up;
 
@@ -20,7 +20,7 @@ struct Surfaces::MapAxes {
                                  const std::array<Vec2, 3>& uvs) {
         const Vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
         const Vec2 d1 = uvs[1] - uvs[0], d2 = uvs[2] - uvs[0];
-        // The determinant's sign is enough: lengths are normalised away.
+        // Only the sign of the determinant matters: lengths are normalised later.
         const float side = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;
         return {(e1 * d2.y - e2 * d1.y) * side, (e1 * d2.x - e2 * d1.x) * side};
     }
@@ -34,7 +34,7 @@ Vec2 between(const std::vector<Vec2>& uvs, const std::array<std::uint32_t, 3>& t
     return uvs[t[0]] * (1.0f - u - v) + uvs[t[1]] * u + uvs[t[2]] * v;
 }
 
-/// Whether there is a map and the mesh has coordinates for it.
+/// Whether there is a map for which the mesh has coordinates.
 bool hasMap(const BakedMesh& mesh, const TextureUse& map) {
     return map && !mesh.uvsOf(map).empty();
 }
@@ -71,7 +71,7 @@ void Surfaces::pointAt(const Hit& hit, SurfacePoint& s) const {
         if (object.instanced) n = object.normalTo(n);
         n = normalize(n);
         const float side = dot(n, s.ng);
-        // Normals that contradict the winding are turned; ones at a right angle say nothing.
+        // Normals opposite to the winding are flipped; those at a right angle to ng are ignored.
         turned = side < 0.0f;
         if (std::fabs(side) > 1e-3f) s.ns = turned ? -n : n;
     }
@@ -100,11 +100,11 @@ SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point, bool c
     if (dot(shape.ng, Vec3d(point.ng)) < 0.0) shape.ng = -shape.ng;
     shape.normals.fill(shape.ng);
     Vec3 SurfacePoint::*const normal = clearcoat ? &SurfacePoint::clearcoatNs : &SurfacePoint::ns;
-    if (point.*normal == point.ng) return shape;  // flat, or its normals say nothing
+    if (point.*normal == point.ng) return shape;  // flat, or its normals are ignored
     const double u(hit.u), v(hit.v);
     const Material& material = description_.materials[mesh.material];
     if (hasMap(mesh, clearcoat ? material.clearcoatNormalTexture : material.normalTexture)) {
-        constexpr float kStep = 0x1p-10f;  // of the triangle: enough of a texel for floats to tell
+        constexpr float kStep = 0x1p-10f;  // of the triangle: enough in texels for float precision
         const auto normalAt = [&](float du, float dv) {
             Hit near = hit;
             near.u += du;
@@ -133,7 +133,8 @@ SurfaceShape Surfaces::shapeAt(const Hit& hit, const SurfacePoint& point, bool c
     return shape;
 }
 
-/// What a plain mesh has not. `turned`: the interpolated normal was.
+/// Fills the fields that plain meshes do not have. `turned`: whether the interpolated normal was
+/// flipped.
 void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool turned,
                         SurfacePoint& s) const {
     const SceneObject& object = baked_.objects[hit.object];
@@ -153,7 +154,7 @@ void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool
         return axesOf(hit, corners, map, turned, s.ns);
     };
     if (material.anisotropy > 0.0f) {
-        // The tangents are those of the normal map, where there is one [glTF 2.0, 3.7.2.1].
+        // The tangents are those of the normal map, if there is one [glTF 2.0, 3.7.2.1].
         const TextureUse& map =
             material.normalTexture ? material.normalTexture : material.anisotropyTexture;
         s.grain = grainAt(s, material, axesOfMap(map));
@@ -170,8 +171,8 @@ void Surfaces::decorate(const Hit& hit, const std::array<Vec3, 3>& corners, bool
     }
 }
 
-/// Axes by the mesh's tangents, else by the coordinates of the map; zero where it has neither.
-/// `turned`: the interpolated normal was, which is now `ns`.
+/// Axes from the mesh's tangents, else from the map's coordinates; zero if it has neither.
+/// `turned`: whether the interpolated normal was flipped to become `ns`.
 Surfaces::MapAxes Surfaces::axesOf(const Hit& hit, const std::array<Vec3, 3>& corners,
                                    const TextureUse& map, bool turned, const Vec3& ns) const {
     const SceneObject& object = baked_.objects[hit.object];
@@ -189,14 +190,14 @@ Surfaces::MapAxes Surfaces::axesOf(const Hit& hit, const std::array<Vec3, 3>& co
             right = object.vector(right);
             over = over != object.mirrored;
         }
-        // Tangents that say nothing (zero or NaN) leave it to the coordinates.
+        // If tangents are invalid (zero or NaN), the coordinates determine the axes.
         const Vec3 up = cross(ns, right) * (over ? -1.0f : 1.0f);
         if (lengthSquared(up) > 0.0f) axes = {right, up};
     }
     return axes;
 }
 
-/// The direction along which the surface is rougher, as long as the strength.
+/// The direction along which the surface is rougher; its length is the strength.
 Vec3 Surfaces::grainAt(const SurfacePoint& point, const Material& m, const MapAxes& axes) const {
     Vec2 direction{1.0f, 0.0f};
     float strength = m.anisotropy;
@@ -208,7 +209,7 @@ Vec3 Surfaces::grainAt(const SurfacePoint& point, const Material& m, const MapAx
     }
     const float c = std::cos(m.anisotropyRotation), s = std::sin(m.anisotropyRotation);
     Vec3 tangent = axes.right - point.ns * dot(point.ns, axes.right);
-    // Without axes any direction will do, but the same everywhere around.
+    // Without axes any direction will do, if it is the same everywhere around.
     if (!(lengthSquared(tangent) > 0.0f)) tangent = Frame(point.ns).s;
     tangent = normalize(tangent);
     Vec3 bitangent = cross(point.ns, tangent);
@@ -219,7 +220,7 @@ Vec3 Surfaces::grainAt(const SurfacePoint& point, const Material& m, const MapAx
     return (length2 > 0.0f ? along * (1.0f / std::sqrt(length2)) : tangent) * strength;
 }
 
-/// Shading normal by a normal map, whose axes are made perpendicular to the interpolated normal.
+/// Shading normal from a normal map. Its axes are made perpendicular to the interpolated normal.
 Vec3 Surfaces::bumped(const SurfacePoint& point, const TextureUse& map, float scale,
                       const MapAxes& axes) const {
     const Vec3 tangent = normalize(axes.right - point.ns * dot(point.ns, axes.right));
@@ -230,8 +231,8 @@ Vec3 Surfaces::bumped(const SurfacePoint& point, const TextureUse& map, float sc
                    bitangent * ((2.0f * texel.g - 1.0f) * scale) +
                    point.ns * (2.0f * texel.b - 1.0f);
     const Vec3 unit = normalize(n);
-    // Normals that lead below the surface, and those of triangles without tangents (NaN), say
-    // nothing.
+    // Normals that point below the surface and those of triangles without tangents (NaN) are
+    // ignored.
     return dot(unit, point.ng) > 1e-3f ? unit : point.ns;
 }
 
@@ -256,7 +257,7 @@ std::vector<std::array<Vec3, 3>> Surfaces::of(std::size_t material) const {
 }
 
 bool Surfaces::mostlyHoles(const TriangleAlpha& alpha) const {
-    // Points in the middle of an even division of the triangle into 64.
+    // Centres of a uniform subdivision of the triangle into 64.
     constexpr int kRows = 8;
     int there = 0;
     for (int i = 0; i < kRows; ++i) {

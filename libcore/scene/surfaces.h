@@ -1,5 +1,4 @@
-// What a ray meets: the point of a hit with everything a path vertex needs, and whether it is
-// there.
+// Surfaces at hits: the point with everything that a path vertex needs, and its opacity.
 #pragma once
 
 #include <array>
@@ -10,45 +9,45 @@
 
 namespace lacuna {
 
-/// Where a ray met a surface.
+/// The point where a ray hit a surface.
 struct SurfacePoint {
     Vec3 position;
     Vec3 ng;           ///< unit, by the winding (sign of the transform's determinant included)
     Vec3 ns;           ///< unit, on ng's side
-    Vec3 clearcoatNs;  ///< unit, on ng's side, where the clearcoat's normals are its own; else zero
-    Vec3 grain;        ///< along a brushed surface; its length is the anisotropy's strength
-    Vec2 uv, uv1;      ///< texture coordinates of either set
-    Rgb color{1.0f};   ///< the vertices', a factor on the base colour
+    Vec3 clearcoatNs;  ///< unit, on ng's side, if the clearcoat has its own normals; else zero
+    Vec3 grain;        ///< along a brushed surface, as long as the anisotropy's strength
+    Vec2 uv, uv1;      ///< texture coordinates of both sets
+    Rgb color{1.0f};   ///< vertex colour, a factor of the base colour
     Vec2 barycentric;
     std::uint32_t object = kNone;
     std::uint32_t material = 0;
     std::uint32_t light = kNone;  ///< area light of this triangle, if it emits
 };
 
-/// How a surface lies and bends around a hit, in double: what differentials of rays are made of.
+/// Position and curvature of a surface around a hit, in double, for ray differentials.
 struct SurfaceShape {
-    std::array<Vec3d, 3> corners;  ///< of the triangle, in the order of the hit's coordinates
-    Vec3d ng;                      ///< unit, as SurfacePoint's
-    /// By corner: the shading normal, on ng's side, is along what lies between them.
+    std::array<Vec3d, 3> corners;  ///< of the triangle, in the order of the hit's barycentrics
+    Vec3d ng;                      ///< unit, like SurfacePoint::ng
+    /// By corner, on ng's side. Their interpolation is along the shading normal.
     std::array<Vec3d, 3> normals;
 };
 
-/// The scene's triangles. Both references must outlive it.
+/// The scene's triangles. Both references must outlive the object.
 class Surfaces {
   public:
     Surfaces(const SceneDescription& description, const BakedScene& baked)
         : description_(description), baked_(baked) {}
 
-    /// The point of a hit; all of `out` is replaced. Asks the cache for the texels of its BSDF.
+    /// The point of a hit; replaces all of `out`. Prefetches the texels of its BSDF.
     void pointAt(const Hit& hit, SurfacePoint& out) const;
 
-    /// The shape at a hit, whose point is `point`: of the surface, or of a clearcoat that has normals of its own. Where a
-    /// normal map bends it, that is its tangent plane, by differences of texels.
+    /// The shape of the surface at a hit, or of a clearcoat with its own normals. `point`: the point of the hit. With a
+    /// normal map, the normals are linearised around the hit by differences.
     SurfaceShape shapeAt(const Hit& hit, const SurfacePoint& point, bool clearcoat) const;
 
-    /// Alpha's: the share of the rays that find the point there.
+    /// The share of rays that the point stops by its alpha.
     float opacity(const Hit& hit) const;
-    /// Whether that may be below 1 somewhere on the object.
+    /// Whether the opacity may be below 1 somewhere on the object.
     bool hasHoles(const SceneObject& object) const;
     const Material& materialOf(const SceneObject& object) const {
         return description_.materials[baked_.meshes[object.mesh].material];

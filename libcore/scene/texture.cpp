@@ -20,7 +20,7 @@ struct Decoder {
 };
 
 int wrapped(int i, int n, Texture::Wrap wrap) {
-    if (unsigned(i) < unsigned(n)) return i;  // nearly always, and without a division
+    if (unsigned(i) < unsigned(n)) return i;  // the usual case, without a division
     switch (wrap) {
         case Texture::Wrap::ClampToEdge:
             return i < 0 ? 0 : i >= n ? n - 1 : i;
@@ -35,7 +35,7 @@ int wrapped(int i, int n, Texture::Wrap wrap) {
     return r < 0 ? r + n : r;
 }
 
-/// Texel coordinate of u without losing the fraction to large |u|; repeat modes are periodic.
+/// Texel coordinate of u. It keeps the fraction of large |u|; repeat modes are periodic.
 double texelCoordinate(float u, int n, Texture::Wrap wrap) {
     double x = u;
     if (wrap == Texture::Wrap::Repeat) x -= std::floor(x);
@@ -44,8 +44,8 @@ double texelCoordinate(float u, int n, Texture::Wrap wrap) {
     return x * n - 0.5;
 }
 
-/// The four texels around a point, and how far it is from the first to the second ones. Where the
-/// texture is not interpolated, the first one is all.
+/// The four texels around a point, and its fractional position between the first and the second
+/// ones. Without interpolation, only the first texel counts.
 struct Footprint {
     int x[2], y[2];
     float fx, fy;
@@ -105,7 +105,7 @@ float leastGreen(const Texture& texture) {
 
 void prefetchTexture(const Texture& texture, Vec2 uv) {
     const Footprint at(texture, uv);
-    // The second column is nearly always in the same line of the cache.
+    // The second column is nearly always in the same cache line.
     for (const int y : at.y) __builtin_prefetch(texelOf(texture, at.x[0], y));
 }
 

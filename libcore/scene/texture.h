@@ -1,5 +1,4 @@
-// Texture look-ups: bilinear or nearest, without mip maps, because f must not depend on the strategy that
-// asks.
+// Texture look-ups: bilinear or nearest, without mip maps, because f must not depend on the strategy that evaluates it.
 #pragma once
 
 #include <span>
@@ -18,16 +17,16 @@ struct Rgba {
 /// half integers). The texture must have at least one texel.
 Rgba sampleTexture(const Texture& texture, Vec2 uv);
 
-/// The least of all texels' G, linear where the texture is: sampleTexture() gives nothing below but by rounding.
+/// The smallest G of all texels, decoded: sampleTexture() returns nothing smaller, but for rounding.
 float leastGreen(const Texture& texture);
 
-/// The texture that `use` names, at the point with these coordinates of either set.
+/// Samples the texture of `use` at the point with these coordinates of both sets.
 inline Rgba sampleTexture(std::span<const Texture> textures, const TextureUse& use, Vec2 uv,
                           Vec2 uv1) {
     return sampleTexture(textures[std::size_t(use.value)], use.at(use.secondSet ? uv1 : uv));
 }
 
-/// Asks the cache for what sampleTexture will look at.
+/// Prefetches the texels that sampleTexture will read.
 void prefetchTexture(const Texture& texture, Vec2 uv);
 
 }  // namespace lacuna
