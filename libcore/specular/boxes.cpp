@@ -13,7 +13,8 @@ std::size_t longestAxis(const Box& box) {
     return size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// In two at the middle of the longest side, while there are triangles on both sides.
+/// Divides a part in two at the middle of its longest side, as long as there are triangles
+/// on both sides.
 void divide(std::span<Triangle> part, int divisions, float margin,
             std::vector<BoxedTriangles>& out) {
     if (part.empty()) return;
@@ -61,7 +62,7 @@ Box around(std::span<const BoxedTriangles> parts) {
     return all;
 }
 
-/// The points a share t of the way from one box to the other fill a box, whose sides are linear in t.
+/// The points at a share t of the way from one box to the other fill a box, whose sides are linear in t.
 bool mayLieBetween(const Box& third, const Box& one, const Box& other) {
     float from = 0.0f, to = 1.0f;
     const auto atMost = [&](float slope, float bound) {  // slope t <= bound

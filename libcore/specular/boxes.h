@@ -19,8 +19,8 @@ struct BoxedTriangles {
     std::vector<std::array<Vec3, 3>> triangles;
 };
 
-/// At most 2^divisions parts of the triangles, none where there are none. A box is `margin` wider than
-/// its triangles on each side.
+/// Divides the triangles into at most 2^divisions parts; empty without triangles. A box is `margin` wider than its
+/// triangles on each side.
 std::vector<BoxedTriangles> inBoxes(std::vector<std::array<Vec3, 3>> triangles, int divisions,
                                     float margin);
 
@@ -30,8 +30,8 @@ Box around(std::span<const std::array<Vec3, 3>> triangles, float margin);
 /// The box of some boxes, of which there must be one.
 Box around(std::span<const BoxedTriangles> parts);
 
-/// Whether some straight way from a point of the one box to a point of the other meets the third one.
-/// Never false where one does by more than rounding.
+/// Whether some straight line from a point of `one` to a point of `other` meets `third`. Never false where one does,
+/// up to rounding.
 bool mayLieBetween(const Box& third, const Box& one, const Box& other);
 
 }  // namespace lacuna

@@ -54,7 +54,7 @@ MovingNormal normalAt(const SurfaceShape& shape, const MovingPlace& point) {
     return normal;
 }
 
-/// The directions alone.
+/// The ray with its direction mirrored; the origin stays.
 MovingRay mirroredBy(const MovingNormal& normal, const MovingRay& ray) {
     MovingRay mirrored = ray;
     const double along = dot(ray.direction, normal.at);
@@ -131,7 +131,7 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
                 last_.directionBy[i] * scale + n * (qByCosine * cosineBy) + nBy * q;
         }
         step.out.direction = normalize(step.out.direction);
-        // Through a sheet goes what would be reflected, mirrored by the sheet.
+        // A sheet lets through what would be reflected, mirrored by the sheet.
         if (transmits && !bends) step.out = mirroredBy(shading, step.out);
     }
     if ((dot(step.out.direction, shape.ng) * side < 0.0) != transmits) return std::nullopt;
@@ -139,7 +139,8 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
     step.toEye = Vec3(-d);
     step.toLight = Vec3(step.out.direction);
     const BsdfEvaluation e = bsdf.evaluate(step.toEye, step.toLight, event.event);
-    // f with its cosine over what a walk's generalised density has but for its pmf (bsdf.h).
+    // A walk's generalised density without its pmf (bsdf.h). `through` is f with its
+    // cosine over that.
     step.measure = std::fabs(dot(step.out.direction, n));
     if (byFacet) {
         // d h / d toLight [Walter07 eq 14, 17].
@@ -159,7 +160,7 @@ std::optional<Chain::Step> Chain::stepAt(const Layer& layer, SpecularEvent event
     return step;
 }
 
-/// The vertex to be, without its event; false where it has none.
+/// Sets the next vertex without its event. False where the surface has no specular event.
 bool Chain::arriveAt(const Scene& scene, const Hit& hit) {
     if (size_ == kMost) return false;
     ChainVertex& v = vertices_[size_];
@@ -168,7 +169,7 @@ bool Chain::arriveAt(const Scene& scene, const Hit& hit) {
     return isSpecular(v.bsdf) || v.bsdf.refractsNarrowly();
 }
 
-/// None where it has no such layer, or one that is not specular.
+/// Empty where the surface has no such layer, or one that is not specular.
 std::optional<Chain::Layer> Chain::layerAt(const Scene& scene, const Hit& hit,
                                            bool clearcoat) const {
     const ChainVertex& v = vertices_[size_];

@@ -1,6 +1,6 @@
-// A chain of mirrors and smooth glass that a ray runs through, and how all of it moves when the
-// ray's first direction does: ray differentials [Igehy99]. In double, since a search follows the
-// ray to where it meets the light. (theory.md, "Specular chains")
+// A chain of mirrors and smooth glass that a ray runs through, and how the chain moves with the
+// ray's first direction: ray differentials [Igehy99]. All this is in double, since a search follows
+// the ray to where it meets the light. (theory.md, "Specular chains")
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@ struct MovingRay {
     Vec3d origin, direction;  ///< direction: unit
     std::array<Vec3d, 2> originBy, directionBy;
 
-    /// From `origin` along the unit `direction`, which the parameters turn: by an angle each, about
-    /// axes at a right angle.
+    /// A ray from `origin` along the unit `direction`. The parameters turn the direction, by an
+    /// angle each, about axes at a right angle.
     static MovingRay from(const Vec3d& origin, const Vec3d& direction);
-    /// Which the parameters move sideways instead, by a metre each.
+    /// Likewise, but the parameters move the ray sideways, by a metre each.
     static MovingRay parallel(const Vec3d& origin, const Vec3d& direction);
 };
 
-/// What happens at a vertex of a chain. Where the shading normal is not the geometric one, some of
-/// what an eye sees is scattered about the latter (bsdf.h): an event of its own. ScatterEvent::Smooth: a facet of
-/// nearly smooth glass refracts the ray.
+/// The event at a vertex of a chain. Where the shading normal is not the geometric one, some of what an eye sees is
+/// scattered about the latter (bsdf.h). That is an event of its own. ScatterEvent::Smooth means that a facet of nearly
+/// smooth glass refracts the ray.
 struct SpecularEvent {
     ScatterEvent event = ScatterEvent::DeltaReflection;
     bool aboutNg = false;
@@ -44,21 +44,22 @@ struct ChainVertex {
     SpecularEvent event;
     FacetSlope facet;     ///< of ScatterEvent::Smooth
     Vec3 toEye, toLight;  ///< unit
-    /// Share of the radiance from toLight that leaves along toEye, with the square of the index that
-    /// refraction changes it by, and with the share of rays that meet the surface at all.
+    /// Share of the radiance from toLight that leaves along toEye. It contains the squared index by which refraction
+    /// changes radiance, and the share of rays that meet the surface at all.
     Rgb through;
     Rgb scatter;  ///< f of the event (bsdf.h)
-    /// What the event's generalised densities have beside their probabilities (bsdf.h); where a facet refracts, the
-    /// density of toLight if facets are drawn (pdfOfFacet).
+    /// The factor of the event's generalised densities beside their probabilities (bsdf.h). Where a facet refracts, it
+    /// is the density (pdfW) of toLight if facets are drawn (pdfOfFacet).
     double measure;
 };
 
-/// From the eye's side. A value type: searches keep several.
+/// A chain, with its vertices in order from the eye's side. It is a value type:
+/// searches keep several.
 class Chain {
   public:
     static constexpr std::size_t kMost = 6;  ///< vertices
 
-    /// No vertex yet: the ray that it begins with.
+    /// A chain without a vertex, and the ray that it begins with.
     explicit Chain(const MovingRay& first) { restart(first); }
     void restart(const MovingRay& first) {
         first_ = last_ = first;
@@ -70,21 +71,21 @@ class Chain {
     /// Unit, from where the chain begins.
     const Vec3d& firstDirection() const { return first_.direction; }
     const MovingRay& first() const { return first_; }
-    /// That leaves the last vertex, or that it begins with.
+    /// The ray that leaves the last vertex, or that the chain begins with.
     const MovingRay& last() const { return last_; }
-    /// Of the last vertex; zero where there is none.
+    /// The geometric normal of the last vertex; zero where there is none.
     Vec3 lastNormal() const { return size_ > 0 ? vertices_[size_ - 1].point.ng : Vec3{}; }
 
-    /// Goes on at `hit` of last() by `event`. False, with the chain as it was, where the surface has no
-    /// such event for this ray. `facet`: of ScatterEvent::Smooth.
+    /// Extends the chain by `event` at `hit`, which last() has met. False, with the chain unchanged, where the surface
+    /// has no such event for this ray. `facet` is that of ScatterEvent::Smooth.
     bool extend(const Scene& scene, const Hit& hit, SpecularEvent event, FacetSlope facet = {});
-    /// Likewise by one of all events that there are, each with the probability that is its share of the
-    /// mean of `through`. `u` in [0, 1).
+    /// Likewise by an event that is drawn by `u` in [0, 1). The probability of each event is its share of the sum of
+    /// mean(through).
     bool extend(const Scene& scene, const Hit& hit, double u);
     /// Where last() meets the triangle of another chain's vertex, if it does.
     std::optional<Hit> meetAgain(const ChainVertex& vertex) const;
 
-    /// Of events in turn.
+    /// Whether both chains have the same events in the same order.
     bool sameEventsAs(const Chain& other) const;
 
   private:
@@ -96,7 +97,7 @@ class Chain {
         Rgb through, scatter;
         double measure;
     };
-    /// What mirrors and refracts at a hit: all that is there, or one of two layers.
+    /// The specular layer at a hit: all that is there, or one of two layers.
     struct Layer {
         SurfaceShape shape;
         Bsdf bsdf;

@@ -8,7 +8,7 @@ namespace lacuna {
 
 namespace {
 
-constexpr double kSame = 1e-5;  // two chains, by the miss that would lie between them
+constexpr double kSame = 1e-5;  // largest miss between two chains that count as the same
 
 /// Whether two searches for the same target found the same chain.
 bool isSame(const FoundChain& a, const FoundChain& b) {
@@ -27,8 +27,8 @@ bool isAmong(std::span<const FoundChain> chains, const FoundChain& found) {
     return std::ranges::any_of(chains, [&](const FoundChain& c) { return isSame(c, found); });
 }
 
-/// A third of the rays each: straight to the light, since glass before it turns rays a little; to the
-/// surfaces where chains may begin, wherever they are; and to what the start sees, so that what is near
+/// The direction of a guess. A third of the rays each go straight to the light, since glass before it turns rays a
+/// little; to the surfaces where chains may begin, wherever they are; and to what the start sees, so that what is near
 /// is found as well.
 Vec3d ChainSearch::seedDirection(const ChainQuery& query, Rng& rng) const {
     const ChainStart& start = query.start;
@@ -47,8 +47,8 @@ Vec3d ChainSearch::seedDirection(const ChainQuery& query, Rng& rng) const {
     return normalize(Vec3d(Frame(normal).toWorld(cosineHemisphere(u1, u2))));
 }
 
-/// A ray that scatters by the events' shares, from where it leads to specular surfaces. It may end at
-/// any vertex, and more seldom where another one follows, which then stands before the light.
+/// The chain of a random ray, whose events are drawn by their shares. It may end at any vertex. Where another surface
+/// follows, which then stands before the light, it ends with the probability kEndsBefore.
 std::optional<Chain> ChainSearch::guess(const ChainQuery& query, Rng& rng, RayTally& tally) const {
     const ChainStart& start = query.start;
     constexpr float kEndsBefore = 0.1f;
@@ -83,7 +83,8 @@ std::optional<FoundChain> WayFollower::followUsual(const ChainSeed& way, const C
     return follow(way, way.directionAt(Vec3d(query.start.position)), query, tally);
 }
 
-/// Near a focus the derivative leads astray.
+/// Near a focus the way's derivative leads astray. Then the way is followed towards
+/// its first vertex.
 std::optional<FoundChain> WayFollower::followOther(const ChainSeed& way, const ChainQuery& query,
                                                    RayTally& tally) const {
     if (const auto found = followUsual(way, query, tally)) return found;
@@ -113,7 +114,8 @@ std::size_t WayFollower::othersThatLeadTo(const FoundChain& found, const ChainQu
     }));
 }
 
-/// The usual ones; and one that another way leads to, or one from a random ray if no way leads to it.
+/// Brings the usual chains, and one more: a chain that another way leads to, or one from a random ray if no
+/// way leads to it.
 void ChainSearch::sample(const ChainQuery& query, const WaysNearby& ways, Rng& rng, RayTally& tally,
                          const std::function<void(const FoundChain&, const Worth&)>& bring) const {
     const std::vector<FoundChain> usual = follower_.usual(query, ways, tally);
@@ -140,12 +142,13 @@ void ChainSearch::sample(const ChainQuery& query, const WaysNearby& ways, Rng& r
     });
 }
 
-/// An estimate without bias of one over the probability that a guess finds a chain. It has no bound; the mean number
-/// of guesses is that number.
+/// An unbiased estimate of one over the probability that a guess finds the chain. It has no upper bound. The mean
+/// number of guesses is that number, too.
 double ChainSearch::reciprocalProbability(const FoundChain& found, const ChainQuery& query,
                                           Rng& rng, RayTally& tally) const {
-    // 1 / p = sum over n >= 0 of (1 - p)^n: how often n guesses in a row find something else. From
-    // kAll on a roulette at each doubling, so that no single estimate takes minutes.
+    // 1 / p = sum over n >= 0 of (1 - p)^n: its terms are the probabilities that n guesses in a row
+    // find something else. From kAll on roulette is played at each doubling, so that no single
+    // estimate takes minutes.
     constexpr std::uint64_t kAll = 1024;
     double sum = 1.0, worth = 1.0;
     for (std::uint64_t n = 1;; ++n) {

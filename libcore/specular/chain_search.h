@@ -1,7 +1,7 @@
-// The chains of mirrors and smooth glass that join a point with a light that no ray can hit, by Newton's
-// method [Hanika15]: those that ways lead to by which light is known to come, and those that it finds from a
-// random ray. The probability of the latter is estimated by searching until they are found again [Zeltner20].
-// (theory.md, "Specular chains")
+// Searches for the chains of mirrors and smooth glass that join a point with a light that no ray can hit, by Newton's
+// method [Hanika15]. It starts from ways by which light is known to come, or from a random ray. The probability of
+// chains that a random ray leads to is estimated by searching until they are found again [Zeltner20]. (theory.md,
+// "Specular chains")
 #pragma once
 
 #include <functional>
@@ -19,16 +19,15 @@ namespace lacuna {
 /// Whether a chain is one of those that other searches for the same target found.
 bool isAmong(std::span<const FoundChain> chains, const FoundChain& found);
 
-/// Chains by the ways that light is known to come. Whether a chain sees its start and the light is for the
-/// caller to ask.
+/// Finds chains by the ways that light is known to come. The caller has to ask whether a chain's edges are open.
 class WayFollower {
   public:
     /// `scene` must outlive it.
     explicit WayFollower(const Scene& scene) : solver_(scene) {}
 
     const ChainSolver& solver() const { return solver_; }
-    /// The chain that a way leads to; empty where it leads to none. A usual way is followed in the direction
-    /// that it would have, others to their first vertex as well.
+    /// The chain that a way leads to; empty where it leads to none. A usual way is followed in the direction that it
+    /// would have at the start. If that fails, other ways are followed towards their first vertex as well.
     std::optional<FoundChain> followUsual(const ChainSeed& way, const ChainQuery& query,
                                           RayTally& tally) const;
     std::optional<FoundChain> followOther(const ChainSeed& way, const ChainQuery& query,
@@ -47,7 +46,7 @@ class WayFollower {
     ChainSolver solver_;
 };
 
-/// All chains.
+/// Samples all chains.
 class ChainSearch {
   public:
     /// `scene` must outlive it.
@@ -55,15 +54,14 @@ class ChainSearch {
         : follower_(scene), triangles_(scene.trianglesOf(mayBeSpecular)) {}
 
     const WayFollower& follower() const { return follower_; }
-    /// Nothing in the scene that a chain could begin at.
+    /// Whether the scene has nothing that a chain could begin at.
     bool empty() const { return triangles_.empty(); }
 
-    /// What a chain stands for: one over its probability, without bias. Asked for where it is needed, since it
-    /// may take many searches.
+    /// An unbiased estimate of one over a chain's probability. It is computed only where it is needed, since it may
+    /// take many searches.
     using Worth = std::function<double()>;
-    /// Calls `bring` for some chains: E of the sum of their worths is the number of chains that there are,
-    /// each counted once, whatever the ways are. Whether a chain sees its start and the light is for the
-    /// caller to ask.
+    /// Calls `bring` for some chains. Every chain that exists has an expected worth of one in total, whatever the ways
+    /// are. The caller has to ask whether a chain's edges are open.
     void sample(const ChainQuery& query, const WaysNearby& ways, Rng& rng, RayTally& tally,
                 const std::function<void(const FoundChain&, const Worth&)>& bring) const;
 

@@ -16,19 +16,19 @@ namespace {
 constexpr double kRays = 32768;  // of all lights
 constexpr std::size_t kRaysPerTask = 512;
 constexpr std::size_t kDraws = 16;     // at most, until a light shines that way
-constexpr std::size_t kNear = 16;      // ways that are here
+constexpr std::size_t kNear = 16;      // ways that are near a place
 constexpr std::size_t kAround = 1024;  // ways that are farther around
-constexpr std::size_t kStep = 256;     // places in a row that have the same ones around
+constexpr std::size_t kStep = 256;     // successive windows that share the ways farther around
 constexpr int kBits = 9;               // of a code, for each coordinate
-constexpr double kFewTimes = 10.0;     // from here on it is worth knowing the way to a lamp
-constexpr float kAlike = 0.98f;        // cosine between ways of one kind
+constexpr double kFewTimes = 10.0;  // a way to a lamp is kept if walks are so many times as seldom
+constexpr float kAlike = 0.98f;     // cosine between ways of one kind
 
 /// The axes across a direction that ChainSeed::turn is in.
 std::array<Vec3d, 2> axesOf(const Vec3& direction) {
     return MovingRay::from({}, Vec3d(direction)).directionBy;
 }
 
-/// How the direction towards where a ray comes from turns with where it ends, so far from its origin: by ray
+/// How the direction back along a ray turns with the place where the ray ends, at `distance` from its origin, by ray
 /// differentials. Not finite where the rays about it meet.
 std::array<std::array<float, 2>, 2> turnOf(const MovingRay& ray, double distance,
                                            const std::array<Vec3d, 2>& axes) {
@@ -60,8 +60,8 @@ ChainSeed backwards(const Chain& chain, const Vec3& end, double strength) {
     return seed;
 }
 
-/// How much more seldom an eye walk that leaves a surface at this distance would hit a lamp or a sky than a point
-/// is drawn there.
+/// How many times as seldom an eye walk from a surface at this distance hits the point of a lamp or a sky as the point
+/// is drawn there: the ratio of the two densities.
 double timesAsSeldom(const LightPoint& from, const Vec3& direction, double distance) {
     const double pdfW = isInfinite(from.kind)
                             ? double(from.pdf)
@@ -70,7 +70,8 @@ double timesAsSeldom(const LightPoint& from, const Vec3& direction, double dista
     return kPi * pdfW;
 }
 
-/// Whether next event through glass makes this way's paths: from where it ends straight on, refracted.
+/// Whether next event through glass makes this way's paths: the straight ray from its end to the light
+/// leads to its chain.
 bool isStraightOn(const ChainSolver& solver, const Chain& chain, const SurfacePoint& end,
                   const LightPoint& from) {
     for (std::size_t i = 0; i < chain.size(); ++i) {
@@ -86,7 +87,7 @@ bool isStraightOn(const ChainSolver& solver, const Chain& chain, const SurfacePo
            length(found->chain.firstDirection() + chain.last().direction) < kAngle;
 }
 
-/// Every third bit.
+/// Spreads the bits of x to every third bit.
 std::uint32_t spread(std::uint32_t x) {
     x = (x | x << 16) & 0x030000ffu;
     x = (x | x << 8) & 0x0300f00fu;
@@ -115,7 +116,7 @@ bool ChainSeed::hasEventsOf(const Chain& chain) const {
     return true;
 }
 
-/// What one ray of the light leads to: wherever something scatters it.
+/// Follows one ray of a light. Adds an arrival wherever something scatters the ray.
 void ChainSeeds::followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
                            Rng& rng, std::vector<Arrival>& arrivals) {
     const Scene& scene = solver.scene();
@@ -176,7 +177,7 @@ ChainSeeds::ChainSeeds(const Scene& scene, const ThreadPool& threads) {
             triangles.area() * std::fabs(dot(direction, Vec3d(triangles.normal(at.triangle))));
         return Ray{origin, direction, profile * cosine * area / disk};
     };
-    // `pointOf` draws where each of so many rays leaves its light. Where a light shines on little of the glass, most
+    // `pointOf` draws the point at which a ray leaves its light. Where a light shines on little of the glass, most
     // draws come to nothing, and cost little.
     const auto trace = [&](std::size_t rays, std::uint32_t stream, const UsualKinds& usual,
                            const auto& pointOf) {
@@ -265,14 +266,15 @@ ChainSeeds::Sorted ChainSeeds::sorted(std::span<const std::vector<Arrival>> arri
     return ways;
 }
 
-/// By events, and by where ways come from.
+/// Whether a way is of this kind, by its events and by the direction that it comes from.
 bool ChainSeeds::isOf(const Kind& kind, std::span<const ChainSeed> all, const ChainSeed& way) {
     const ChainSeed& own = all[kind.way];
     return own.size == way.size && own.events == way.events &&
            dot(kind.direction, way.direction) > kAlike;
 }
 
-/// The one in the middle stands for a kind. The most frequent first.
+/// The kinds of `size` ways from `first` on, the most frequent one first. The way nearest to the
+/// middle stands for its kind.
 std::vector<ChainSeeds::Kind> ChainSeeds::kindsOf(std::span<const ChainSeed> all, std::size_t first,
                                                   std::size_t size) {
     const auto fromMiddle = [&](std::size_t way) {
@@ -328,7 +330,7 @@ ChainSeeds::Window ChainSeeds::windowOf(std::span<const ChainSeed> all, std::siz
     return window;
 }
 
-/// The axis that the side lies nearest to, then a Morton code: what is near in these is mostly near in
+/// The axis that the side lies nearest to, then a Morton code of the place. Places with near codes are mostly near in
 /// space, and on one side of a sheet.
 std::uint32_t ChainSeeds::codeOf(const Vec3& place, const Vec3& side) const {
     const Vec3 size{std::fabs(side.x), std::fabs(side.y), std::fabs(side.z)};

@@ -1,6 +1,5 @@
-// Ways on which light comes over mirrors and through smooth glass, traced once from the lights: what a search
-// for chains at a place nearby begins with [Fan23]. (theory.md, "Specular chains", "Next event along known
-// ways")
+// Ways on which light comes over mirrors and through smooth glass, traced once from the lights. A search for chains
+// begins with the ways that ended nearby [Fan23]. (theory.md, "Specular chains", "Next event along known ways")
 #pragma once
 
 #include <algorithm>
@@ -16,37 +15,38 @@ namespace lacuna {
 
 /// A way that was seen to end on a surface that scatters.
 struct ChainSeed {
-    Vec3 end;            ///< there
-    Vec3 direction;      ///< unit, from there to its first vertex
-    float distance = 0;  ///< of that vertex, in metres
+    Vec3 end;            ///< where it ended
+    Vec3 direction;      ///< unit, from the end to the first vertex
+    float distance = 0;  ///< from the end to the first vertex, in metres
     /// Change of the direction with the end, per metre, both by two axes across it.
     std::array<std::array<float, 2>, 2> turn{};
     std::array<SpecularEvent, Chain::kMost> events{};  ///< from the eye's side
     std::uint8_t size = 0;
-    /// Of a light without a size, the power that comes this way, over what its whole power brings to a square metre of the
-    /// sphere around the scene. Of lamps and skies, the root of the second moment that walks have which run into them
-    /// this way, over what all lights bring there.
+    /// For a light without a size: the power that comes this way, over what its whole power brings to a square metre of
+    /// the sphere around the scene. For lamps and skies: the root of the second moment of walks that run into them this
+    /// way, over what all lights bring to such a square metre.
     float strength = 0;
 
     bool hasEventsOf(const Chain& chain) const;
-    /// Unit, of a way over the same surfaces from the same light that ends at a place nearby: exact as its
-    /// distance goes to zero.
+    /// Unit direction of a way over the same surfaces from the same light that ends at a place nearby. It is exact as
+    /// the distance to that place goes to zero.
     Vec3d directionAt(const Vec3d& place) const;
 };
 
-/// Ways that ended near a place. What comes over the same events from about the same direction is of one kind.
+/// Ways that ended near a place. Ways of the same events from about the same direction are of one kind.
 struct WaysNearby {
     static constexpr std::size_t kMostUsual = 8, kMostOthers = 28;
     std::span<const ChainSeed> all;  ///< of the light, or of all lamps
     // Where they stand in `all`:
-    /// One of each kind that came here; of lamps, more than once.
+    /// One way of each kind that came here; for lamps, of each kind that came more than once.
     std::span<const std::uint32_t> usual;
     std::span<const std::uint32_t> others;  ///< all that came here, then kinds from farther around
-    /// Of all that came here, per square metre; zero where the place lies beside it.
+    /// Strength of all that came here, per square metre; zero where the place lies outside
+    /// of their ball.
     double strength = 0;
 
-    /// An expected number of samples by that: samples which cost the same are worth most where their number goes as
-    /// the root of the second moment of what they bring.
+    /// An expected number of samples by `strength`. Samples of the same cost are worth most where their number is
+    /// proportional to the root of the second moment of what they bring.
     double samples(double fewest) const {
         constexpr double kByStrength = 0.25;
         return strength > 0.0 ? std::clamp(kByStrength * strength, fewest, 1.0) : fewest;
@@ -55,21 +55,22 @@ struct WaysNearby {
 
 class ChainSeeds {
   public:
-    /// Of all lights, the more of one the more power it has. A function of the scene.
+    /// Traces ways of all lights, the more of a light the more power it has. A
+    /// function of the scene.
     ChainSeeds(const Scene& scene, const ThreadPool& threads);
 
-    /// What a way that ended near a place says of the lights.
+    /// The light of a way that ended near a place, and its share of the power.
     struct LightShare {
         std::uint32_t light;
         float power;  ///< the share of all light that the way stands for
     };
-    /// Of all lights without an extent, if there are several: ways that ended near a place on a surface that looks to
-    /// `side`.
+    /// The ways of all lights without an extent that ended near a place, on a surface that looks to `side`. Empty if
+    /// there are not several such lights.
     std::span<const LightShare> lightsNear(const Vec3& place, const Vec3& side) const;
-    /// A light's, which has no extent, that ended near a place on a surface that looks to `side`, if any did
-    /// anywhere.
+    /// The ways of a light without an extent that ended near a place, on a surface that looks to `side`. Empty if none
+    /// ended anywhere.
     WaysNearby near(std::uint32_t light, const Vec3& place, const Vec3& side) const;
-    /// Likewise of all lights that walks run into, where walks seldom do.
+    /// Likewise the ways of all lights that walks can run into, but seldom do over these ways.
     WaysNearby nearOfLamps(const Vec3& place, const Vec3& side) const;
     bool anyOfLamps() const { return !ofLamps_.seeds.empty(); }
     /// Whether the scene has lights without an extent, and anything that their chains could go over.
@@ -90,7 +91,7 @@ class ChainSeeds {
     static void followRay(const ChainSolver& solver, const LightPoint& from, const Ray& ray,
                           Rng& rng, std::vector<Arrival>& arrivals);
 
-    /// A kind of ways: what stands for it, and how many there are.
+    /// A kind of ways: the way that stands for it, and how many ways it has.
     struct Kind {
         std::uint32_t way;
         Vec3 direction;  // of the first one
@@ -100,14 +101,14 @@ class ChainSeeds {
     static std::vector<Kind> kindsOf(std::span<const ChainSeed> all, std::size_t first,
                                      std::size_t size);
 
-    /// Which kinds of ways are usual: those that came so often, and how many.
+    /// Which kinds of ways are usual: those with at least so many ways, and how many kinds at most.
     struct UsualKinds {
         int fewestWays;
         std::size_t most;
     };
     static constexpr UsualKinds kOfPoints{1, WaysNearby::kMostUsual}, kOfLamps{2, 4};
 
-    /// What is known of as many ways as a place has.
+    /// What is known of kNear ways with successive codes.
     struct Window {
         std::array<std::uint32_t, WaysNearby::kMostUsual + WaysNearby::kMostOthers> ways;
         std::uint8_t usual = 0, others = 0;
@@ -127,10 +128,10 @@ class ChainSeeds {
     Sorted sorted(std::span<const std::vector<Arrival>> arrivals, const UsualKinds& usual,
                   const ThreadPool& threads) const;
     WaysNearby near(const Sorted& ways, const Vec3& place, const Vec3& side) const;
-    /// The first of the kNear codes about that of a place, or of all if they are fewer.
+    /// Index of the first of the kNear codes about that of a place; zero if there are fewer codes.
     std::size_t firstNear(std::span<const std::uint32_t> codes, const Vec3& place,
                           const Vec3& side) const;
-    /// Puts the ways of all lights together.
+    /// Fills codes_ and shares_ with the ways of all lights without an extent.
     void joinLights(const Lights& lights);
 
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent

@@ -8,18 +8,18 @@ namespace lacuna {
 
 namespace {
 
-constexpr int kMostSteps = 12;         // of Newton's method, those that did not help included
-constexpr double kConverged = 1e-10;   // of the miss: rounding in double
-constexpr double kAccepted = 1e-6;     // where texels of a normal map end the descent before
-constexpr double kAtTarget = 1e-4;     // of the way: what lies there is the target's own surface
+constexpr int kMostSteps = 12;        // of Newton's method, those that did not help included
+constexpr double kConverged = 1e-10;  // of the miss: rounding in double
+constexpr double kAccepted = 1e-6;    // of the miss, where texels of a normal map end the descent
+constexpr double kAtTarget = 1e-4;  // of the whole way: what is nearer is the target's own surface
 constexpr double kShortestStep = 0.1;  // of a full one
 
 double determinantOf(const Jacobian& j) {
     return j[0][0] * j[1][1] - j[0][1] * j[1][0];
 }
 
-/// By how much the last ray misses the target: the difference of two unit directions, and of it the
-/// two coordinates across the target's, by each parameter.
+/// By how much the last ray misses the target: the difference of two unit directions, its two
+/// coordinates across the direction to the target, and their changes by each parameter.
 struct Miss {
     Vec3d by;
     std::array<double, 2> across;
@@ -72,9 +72,9 @@ std::optional<Hit> ChainSolver::next(const ChainStart& start, const Chain& chain
                         tally);
 }
 
-/// Makes `chain`, whatever it was, that of the same events along another first ray; false where there is
-/// none. It stays on the same triangles where it can: mostly so, without tracing rays. Whether it sees its
-/// way is asked of what is found. Facets are those of the events, or `facets`.
+/// Replaces `chain` by the chain of the same events along another first ray. False where there is none. It stays on the
+/// same triangles where it can, so that mostly no ray is traced; whether its edges are open is asked later, of what is
+/// found. Facets are those of `events`, or `facets` where these are given.
 bool ChainSolver::retrace(const ChainStart& start, const Vec3d& direction, const Chain& events,
                           Chain& chain, RayTally& tally, std::span<const FacetSlope> facets) const {
     chain.restart(MovingRay::from(Vec3d(start.position), direction));
@@ -127,13 +127,13 @@ bool ChainSolver::stopsAllRaysAlong(const Chain& chain) const {
     return true;
 }
 
-/// What a ray runs through before the target, refracted by all of it.
+/// A ray that is refracted by all glass that it meets before the target.
 struct ChainSolver::Refracted {
     Chain chain;
-    std::optional<Hit> first;  // what it meets, glass or not
+    std::optional<Hit> first;  // its first hit, glass or not
 };
 
-/// Glass, smooth or as if it were.
+/// Extends the chain by a refraction, smooth or as if the glass were smooth.
 bool ChainSolver::refractAt(const Hit& hit, Chain& chain) const {
     const bool byFacet = mayBeNarrowGlass(scene_.materialAt(hit));
     return chain.extend(
@@ -166,13 +166,13 @@ std::optional<FoundChain> ChainSolver::solvedThroughGlass(const ChainQuery& quer
     if (!found || !stopsAllRaysAlong(found->chain)) return std::nullopt;
     const ChainTarget& target = query.target;
     if (target.infinite) return found;
-    // A lamp may be of glass itself, and rounding put its surface before it.
+    // A lamp may be of glass itself, and rounding may put its surface before the target.
     const double last = length(target.wayFrom(found->chain.last().origin));
     const double whole = length(target.wayFrom(Vec3d(query.start.position)));
     return last > kAtTarget * whole ? found : std::nullopt;
 }
 
-/// Where the surface of a body would refract a ray from within to the target, if it were flat.
+/// The direction from within a body that its surface, if it were flat, would refract to the target.
 std::optional<Vec3d> ChainSolver::turnedToLeave(const ChainQuery& query,
                                                 const Refracted& ray) const {
     if (!ray.first) return std::nullopt;

@@ -32,14 +32,14 @@ using Jacobian = std::array<std::array<double, 2>, 2>;
 struct FoundChain {
     Chain chain;
     /// Solid angle at the start per area across the light's last ray (at infinity: per solid angle of
-    /// what leaves the chain). What the light's intensity (irradiance) is multiplied by.
+    /// what leaves the chain). The light's intensity (irradiance) is multiplied by it.
     double spread;
-    /// How what misses the target changes with the first ray's two angles.
+    /// How the miss at the target changes with the first ray's two angles.
     Jacobian missBy;
 };
 
-/// Whether two chains of the same events to the same target are not divided by a fold of a caustic: those
-/// that lie close together on either side of one have determinants of opposite signs.
+/// Whether two chains of the same events to the same target lie on the same side of a caustic's fold. Chains that lie
+/// close together on different sides of a fold have determinants of opposite signs.
 bool onSameSideOfFold(const Jacobian& a, const Jacobian& b);
 
 class ChainSolver {
@@ -48,24 +48,25 @@ class ChainSolver {
     explicit ChainSolver(const Scene& scene) : scene_(scene) {}
 
     const Scene& scene() const { return scene_; }
-    /// What the last ray of a chain meets.
+    /// The hit of a chain's last ray.
     std::optional<Hit> next(const ChainStart& start, const Chain& chain, RayTally& tally) const;
     /// The chain of the same events as `seed` that meets the target; empty where the method finds none.
-    /// Whether it sees its start and the light is for the caller to ask.
+    /// The caller has to ask whether its edges are open.
     std::optional<FoundChain> solve(const ChainQuery& query, const Chain& seed,
                                     RayTally& tally) const;
 
-    /// The chain of refractions alone that a ray along a unit direction leads to: by what it runs through
-    /// before the target, then by Newton's method. Where that finds none and the ray leaves glass, once more
-    /// by where the surface would refract it to the target. A function of all three. Through glass alone that
-    /// stops every ray; what is nearly smooth refracts as if it were smooth.
+    /// The chain of refractions that a ray along a unit direction leads to. All glass that the ray meets before the
+    /// target refracts it, and Newton's method does the rest. Where that finds no chain and the ray leaves glass,
+    /// it is done once more, in the direction that the surface would refract to the target. The chain is a function
+    /// of the query and the direction. Only glass that stops every ray counts. Nearly smooth glass refracts as if
+    /// it were smooth.
     std::optional<FoundChain> throughGlass(const ChainQuery& query, const Vec3d& direction,
                                            RayTally& tally) const;
-    /// That chain once its facets are turned, one for each vertex (used where glass is nearly smooth).
+    /// The chain that `smooth` becomes with these facets, one for each vertex (used where glass is nearly smooth).
     std::optional<FoundChain> withFacets(const ChainQuery& query, const FoundChain& smooth,
                                          std::span<const FacetSlope> facets, RayTally& tally) const;
-    /// Whether a path of the same events between the same ends, which begins along a unit direction that
-    /// is known but for an angle, is this chain.
+    /// Whether a path of the same events between the same ends is this chain. The path begins along the unit
+    /// `direction`, which is known up to `angle`, in radians.
     bool isAlong(const FoundChain& found, const ChainQuery& query, const Vec3d& direction,
                  double angle, RayTally& tally) const;
 

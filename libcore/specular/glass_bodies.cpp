@@ -50,7 +50,7 @@ std::vector<std::array<std::uint32_t, 3>> cornersOf(std::span<const Triangle> tr
     return all;
 }
 
-/// What hangs together by shared corners, each as a list of triangles.
+/// Parts that hang together by shared corners, each as a list of triangles.
 std::vector<std::vector<Triangle>> connectedParts(std::span<const Triangle> triangles) {
     const auto corners = cornersOf(triangles);
     UnionFind sets(3 * triangles.size());
@@ -89,7 +89,7 @@ double volumeOf(const Box& box) {
     return size.x * size.y * size.z;
 }
 
-/// Half of its surface.
+/// Half of the box's surface.
 double areaOf(const Box& box) {
     const Vec3d size = Vec3d(box.high) - Vec3d(box.low);
     return size.x * size.y + size.y * size.z + size.z * size.x;
@@ -122,14 +122,14 @@ bool GlassBodies::Body::contains(const Vec3d& point, double slack) const {
     });
 }
 
-/// None where it is not convex, not closed, or round.
+/// Empty where the body is not convex, not closed, or has too many faces, as round ones have.
 std::optional<GlassBodies::Body> GlassBodies::bodyOf(std::span<const Triangle> triangles,
                                                      double index, double slack) {
     Body body{around(triangles, float(slack)), {}};
     const Vec3d middle = middleOf(triangles);
     for (const auto& [a, b, c] : triangles) {
         Vec3d n = normalize(cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)));
-        if (dot(n, Vec3d(a) - middle) < 0.0) n = -n;  // a mirrored copy's
+        if (dot(n, Vec3d(a) - middle) < 0.0) n = -n;  // of a mirrored copy
         const auto same = std::ranges::find_if(body.faces, [&](const Interface& face) {
             return dot(face.normal, n) > 1.0 - kSameFace;
         });
@@ -160,7 +160,8 @@ GlassBodies::GlassBodies(const Scene& scene) : slack_(kSlack * double(scene.radi
             }
         }
     }
-    // The largest, and of them the smallest first: what is inside of another one comes before it.
+    // Keeps the largest bodies, and the smallest of them first: a body inside of another one
+    // comes before it.
     const auto volume = [](const Body& body) { return volumeOf(body.box); };
     std::ranges::stable_sort(bodies_, std::greater(), volume);
     if (bodies_.size() > kMostBodies) bodies_.resize(kMostBodies);
@@ -170,12 +171,12 @@ GlassBodies::GlassBodies(const Scene& scene) : slack_(kSlack * double(scene.radi
     if (sides_.size() > kMostSides) sides_.resize(kMostSides);
 }
 
-/// By the axis, of six, that triangles look along most.
+/// Adds a side for each of the six directions along axes, of the triangles that look that way most.
 void GlassBodies::addSides(std::span<const Triangle> triangles, double index) {
     const Box whole = around(triangles, 0.0f);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const double sign : {-1.0, 1.0}) {
-            Vec3d normal, middle;  // weighed by area, which the length of n is twice
+            Vec3d normal, middle;  // weighted by area, half the length of n
             double area = 0.0;
             std::vector<Triangle> those;
             for (const Triangle& triangle : triangles) {

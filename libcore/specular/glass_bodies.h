@@ -1,5 +1,6 @@
-// What lies in smooth glass or under water, and the ways out: convex bodies with flat faces show a lamp once
-// through each of several faces; others have sides, roughly. (theory.md, "Next event through glass")
+// Bodies of smooth glass or water, and the ways out of them for points inside. A convex body with flat faces shows a
+// lamp once through each of several faces. Other bodies have sides, which describe them roughly. (theory.md, "Next
+// event through glass")
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ class GlassBodies {
   public:
     static constexpr std::size_t kMostFaces = 24;  ///< of a body
 
-    /// None.
+    /// No bodies.
     GlassBodies() = default;
     explicit GlassBodies(const Scene& scene);
 
@@ -30,7 +31,8 @@ class GlassBodies {
       public:
         std::size_t size() const { return size_; }
         const WayOut& operator[](std::size_t i) const { return ways_[i]; }
-        /// The way through the face that a triangle with this unit normal, or its opposite, is of.
+        /// The way through the face that has this unit normal, or its opposite. Null where
+        /// there is none.
         const WayOut* through(const Vec3& normal) const;
 
       private:
@@ -39,12 +41,12 @@ class GlassBodies {
         std::size_t size_ = 0;
     };
 
-    /// The ways from a point through the body around it that the face alone would turn to the target,
-    /// where they meet the face: none outside of all bodies. A function of both.
+    /// The ways from a point out of the body around it that one face alone would refract to the target, and that meet
+    /// this face. Empty outside of all bodies. A function of both arguments.
     WaysOut waysOut(const Vec3& from, const ChainTarget& target) const;
 
-    /// Guesses: ways out of all other bodies around a point, through the sides that look towards the target.
-    /// Also a function of both.
+    /// Guesses of ways out of all other bodies around a point, through the sides that look towards the target. Also a
+    /// function of both arguments.
     WaysOut roughWaysOut(const Vec3& from, const ChainTarget& target) const;
 
   private:
@@ -53,7 +55,8 @@ class GlassBodies {
         std::vector<Interface> faces;
         bool contains(const Vec3d& point, double slack) const;
     };
-    /// What looks along one axis of a body that is round or hollow: a plane through its middle.
+    /// The part of a round or hollow body that looks along one axis, as a plane through the
+    /// middle of that part.
     struct Side {
         Interface plane;
         Box box;     ///< around it, and somewhat wider

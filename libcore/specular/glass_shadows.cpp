@@ -15,7 +15,7 @@ namespace {
 constexpr int kLampDivisions = 2;
 constexpr int kRays = 32;  // from a box of glass to a box of lamps
 
-/// Those of lamps that shine at all, twice where they do so to both sides.
+/// The triangles of lamps that shine at all, in boxes. Those of two-sided lamps are there twice.
 std::vector<BoxedTriangles> lampsInBoxes(const Scene& scene) {
     const Lights& lights = scene.lights();
     std::vector<std::array<Vec3, 3>> triangles;
@@ -28,7 +28,7 @@ std::vector<BoxedTriangles> lampsInBoxes(const Scene& scene) {
     return inBoxes(std::move(triangles), kLampDivisions, boxMargin(scene));
 }
 
-/// Points and spots, as triangles without a size.
+/// Points and spots in boxes, as triangles without a size.
 std::vector<BoxedTriangles> pointsInBoxes(const Scene& scene) {
     const Lights& lights = scene.lights();
     std::vector<std::array<Vec3, 3>> points;
@@ -40,7 +40,7 @@ std::vector<BoxedTriangles> pointsInBoxes(const Scene& scene) {
     return inBoxes(std::move(points), kLampDivisions, boxMargin(scene));
 }
 
-/// Towards suns.
+/// The unit directions towards suns.
 std::vector<Vec3> parallelLight(const Scene& scene) {
     const Lights& lights = scene.lights();
     std::vector<Vec3> directions;
@@ -51,13 +51,14 @@ std::vector<Vec3> parallelLight(const Scene& scene) {
     return directions;
 }
 
-/// How often to try where this share of the light comes as far as the glass. The best number of samples
-/// goes by the root of what they bring, and half of a body's surface is turned away from the lamp.
+/// Expected number of tries where this share of the light comes as far as the glass. The best number of samples is
+/// proportional to the root of what they bring, and half of a body's surface is turned away from the lamp.
 double triesFor(double shareLit) {
     return std::clamp(2.0 * std::sqrt(shareLit), GlassShadows::kLeast, 1.0);
 }
 
-/// Of points of the glass, by random rays to where `shines(point, normal)` says whether light comes from.
+/// Share of the glass that light reaches, by random points on it. `shines(point, normal)` says whether light
+/// comes to a point.
 template <class Shines>
 double shareLit(const TrianglesByArea& glass, Rng& rng, const Shines& shines) {
     int lit = 0;
@@ -143,8 +144,9 @@ Box GlassShadows::boxOf(const Cube& cube, const Vec3& half, float margin) const 
             corner(cube.x + cube.side, cube.y + cube.side, cube.z + cube.side, margin)};
 }
 
-/// The best of `pairs`, which come in that order, for each cell. What lies between a lamp and no point of
-/// the cube lies between the lamp and none of its parts, so that they begin where the cube came to.
+/// Sets the cells of a cube to the best of `pairs`, which come best first. Glass that lies between its lamp and no
+/// point of the cube lies between the lamp and none of the cube's parts. So the parts begin with the first pair that
+/// serves the cube.
 void GlassShadows::fill(const Cube& cube, std::span<const Pair> pairs, const Vec3& half,
                         float margin) {
     const Box box = boxOf(cube, half, margin);

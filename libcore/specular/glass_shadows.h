@@ -1,6 +1,6 @@
-// Where next event through smooth glass is worth a try: where glass lies between a place and a lamp, and
-// the more of the lamp's light comes as far as the glass, the more so. A table over the scene's space.
-// (theory.md, "Next event through glass")
+// A table over the scene's space of where next event through smooth glass is worth a try. That is where glass lies
+// between a place and a lamp, and the more so the more of the lamp's light comes as far as the glass. (theory.md, "Next
+// event through glass")
 #pragma once
 
 #include <algorithm>
@@ -15,30 +15,30 @@ namespace lacuna {
 
 class GlassShadows {
   public:
-    /// `glass`: glassInBoxes(), `facets`: facetsInBoxes(). Lights without a size are brought through the latter
-    /// alone.
+    /// `glass` is glassInBoxes(), `facets` is facetsInBoxes(). Next event joins lights without a size through
+    /// the latter alone.
     GlassShadows(const Scene& scene, std::span<const BoxedTriangles> glass,
                  std::span<const BoxedTriangles> facets = {});
 
-    /// There is no glass, or no light behind it.
+    /// Whether there is no glass, or no light behind it.
     bool empty() const { return cells_.empty(); }
-    /// Whether some straight way from a place of the scene to a lamp or the sky may meet glass. Not to be
-    /// called when empty(), nor is the next one.
+    /// Whether some straight way from a place of the scene to a lamp or the sky may meet glass. Neither this nor
+    /// triesAt() may be called when empty().
     bool reach(const Vec3& place) const {
         const Cell cell = cellOf(place);
         return (rows_[cell.row] >> cell.x & 1) != 0;
     }
-    /// How often to try there: zero where they do not reach, else from kLeast to one.
+    /// Expected number of tries at a place: zero where reach() is false, else in [kLeast, 1].
     double triesAt(const Vec3& place) const {
         const Cell cell = cellOf(place);
         return kOfCode * double(cells_[cell.row * kSide + cell.x]);
     }
 
-    /// Glass that no lamp was seen to shine on is tried all the same: the light may come through a gap.
+    /// Tries where no lamp was seen to shine on the glass: its light may come through a gap all the same.
     static constexpr double kLeast = 1.0 / 16.0;
 
   private:
-    static constexpr std::size_t kSide = 32;  // cells; so many bits has a row
+    static constexpr std::size_t kSide = 32;  // cells along an axis, and bits of a row
     static constexpr double kOfCode = 1.0 / 240.0;
 
     /// Glass, and a lamp or the sky, whose light it may bring.
@@ -48,7 +48,7 @@ class GlassShadows {
         bool sky;
         std::uint8_t code;  ///< tries over kOfCode
     };
-    /// Of cells, from one corner on.
+    /// A cube of cells, from one corner on.
     struct Cube {
         std::size_t x, y, z, side;
     };
@@ -69,8 +69,7 @@ class GlassShadows {
 
     Vec3 toCells_;
     std::vector<std::uint8_t> cells_;  // Pair::code of the best pair
-    std::vector<std::uint32_t>
-        rows_;  // whether there is one, a bit each: small enough to stay at hand
+    std::vector<std::uint32_t> rows_;  // one bit per cell: has a pair; fits in the cache
 };
 
 }  // namespace lacuna

@@ -10,10 +10,11 @@ namespace lacuna {
 
 namespace {
 
-/// Of facets, by the area that is seen along the normal.
+/// Share of the facets up to kSteepest, by the area that is seen along the normal.
 constexpr double kShareNotTooSteep = kSteepest * kSteepest / (1.0 + kSteepest * kSteepest);
 
-/// At which the axes across a normal change: no surface is likely to have just that one.
+/// The normal's x at which the axes across it change. No surface is likely to have
+/// exactly this normal.
 constexpr double kOtherAxis = 0.6180339887;
 
 Vec3d besideNormal(const Vec3d& n) {
@@ -35,7 +36,7 @@ FacetSlope sampleFacet(double u1, double u2) {
 
 double pdfOfFacet(const FacetSlope& slope, double alpha) {
     const double squared = slope.s * slope.s + slope.t * slope.t;
-    // Per slopes 1 / (pi alpha^2 (1 + squared)^2), and d slopes = d h / cos^3.
+    // The density over slopes is 1 / (pi alpha^2 (1 + squared)^2), and d slopes = d h / cos^3.
     const double inverseCosine = std::sqrt(1.0 + alpha * alpha * squared);
     const double k = inverseCosine / (alpha * (1.0 + squared));
     return k * k * inverseCosine * (std::numbers::inv_pi / kShareNotTooSteep);

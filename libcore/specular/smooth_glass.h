@@ -14,7 +14,7 @@ class SmoothGlass {
     explicit SmoothGlass(const Scene& scene)
         : SmoothGlass(scene, glassInBoxes(scene), facetsInBoxes(scene)) {}
 
-    /// The scene has no such glass, or no light that next event brings through it.
+    /// Whether the scene has no such glass, or no light that next event joins through it.
     bool empty() const { return shadows_.empty(); }
     /// Whether some of it is nearly smooth, so that facets refract there (mayBeNarrowGlass).
     bool hasFacets() const { return hasFacets_; }

@@ -6,9 +6,9 @@ namespace lacuna {
 
 namespace {
 
-/// How far to the side a ray has come at the plane, `deep` below it, on its way to what is `wide` to the side
-/// and `high` above: where its optical length is least. The length's slope grows with the place and is zero
-/// there: Newton's method, which halves where it would leave what is known.
+/// How far to the side a ray crosses the plane, from a point `deep` below it to one that is `wide` to the side and
+/// `high` above: where its optical length is least. The slope of the length grows with the place and is zero there.
+/// Newton's method finds it, and halves the interval where a step would leave it.
 double sidewaysAt(double deep, double high, double wide, double index) {
     constexpr int kMostSteps = 40;
     constexpr double kConverged = 1e-12;  // of `wide`: rounding in double
