@@ -1,5 +1,5 @@
-// Assets: what methods need to be made of a scene beforehand, a skeleton or subspaces. Each knows
-// how it is read, made, hashed and drawn. Adding one = a file in this folder and a row in
+// Assets: data about a scene that methods need beforehand, such as a skeleton or subspaces. Each
+// asset can be read, made, hashed and drawn. To add one, write a file in this folder and a row in
 // assets.cpp.
 #pragma once
 
@@ -25,54 +25,56 @@ class Asset {
   public:
     virtual ~Asset() = default;
     virtual void giveTo(AssetSet& assets) const = 0;
-    /// Of its content: two files with the same one are the same to a method.
+    /// Hash of its content: assets with the same hash are the same to a method.
     virtual std::string contentHash() const = 0;
-    /// Layers of the picture that show what belongs to what is seen in each pixel of `crop`.
+    /// Adds layers to the picture that visualise the asset at the visible point of each pixel of
+    /// `crop`.
     virtual void draw(LayeredImage& image, const Scene& scene, const Camera& camera,
                       const PixelRect& crop, const ThreadPool& pool) const = 0;
 };
 
-/// What an asset is read or made for.
+/// The request for an asset.
 struct AssetRequest {
     const SceneStage& stage;
-    const SceneOptions& options;   ///< as the stage was loaded with, for the cache and for messages
+    const SceneOptions& options;   ///< of the stage, for the cache and for messages
     const Settings& settings;      ///< of the method
-    const Techniques& techniques;  ///< of the method, as its row has them
-    const std::string& prefix;     ///< of the asset's own options among them: "voxels."
-    const AssetSet& before;        ///< what the method needs and is there already
-    bool build;                    ///< where there is no file of it, or none that can be used
+    const Techniques& techniques;  ///< of the method's row
+    const std::string& prefix;     ///< before the asset's own options in `settings`: "voxels."
+    const AssetSet& before;        ///< the method's assets that exist already
+    bool build;                    ///< whether to make it if there is no usable file
     const ThreadPool& pool;
     const std::atomic<bool>& cancel;
     Phases& phases;
-    std::function<void(const std::string& path)> built;  ///< called with each file that is written
+    std::function<void(const std::string& path)> built;  ///< called for each file written
 
     std::string directory() const;
-    /// The path of the file of that stamp and kind ("subspaces"), whether it is there or not.
+    /// The path of the file of that stamp and kind ("subspaces"), whether it exists or not.
     std::string file(const CacheStamp& stamp, const std::string& kind) const;
 };
 
 struct AssetRow {
-    std::string name;  ///< as AssetNeed has it
-    /// Reads it from the scene's cache, or makes it. Throws InputError that says which inputs
-    /// differ and which command makes it, where it is not there and not asked to be made; Error 130
-    /// once `cancel` is set; RunError.
+    std::string name;  ///< the name in AssetNeed
+    /// Reads the asset from the scene's cache, or makes it. If it is missing and must not be made,
+    /// throws InputError, which tells the inputs that differ and the command that makes it. Also
+    /// throws InterruptedError once `cancel` is set, and RunError.
     std::unique_ptr<Asset> (*acquire)(const AssetRequest& request);
 };
 
 std::span<const AssetRow> assetRows();
-/// Throws std::logic_error for a name that no row has.
+/// The row of that name. Throws std::logic_error if there is none.
 const AssetRow& findAsset(const std::string& name);
 
-/// For the rows: `readFile` (path, stamp, remedy) gives the file of that stamp, or throws
-/// InputError. Empty where it cannot be used and is asked to be made; else throws what `readFile`
-/// threw, with the inputs in which the most similar file of this kind differs.
+/// For implementations of rows: reads a cache. `readFile` (path, stamp, remedy) returns the file of
+/// that stamp or throws InputError. If the file cannot be used, the result is empty if the asset
+/// may be made. Otherwise readCache rethrows the error of `readFile`, with the inputs in which the
+/// most similar file of this kind differs.
 template <class File, class ReadFile>
 std::optional<File> readCache(const AssetRequest& request, const CacheStamp& stamp,
                               const std::string& kind, const std::string& remedy,
                               const ReadFile& readFile);
 
-/// For rows whose asset is one file: readCache, in a phase of its own, or else what `make` () gives,
-/// written by `write` (path, file).
+/// For assets of one file: the result of readCache, in a phase of its own, or else that of `make`
+/// (), which `write` (path, file) writes.
 template <class File, class ReadFile, class WriteFile, class Make>
 File readOrMake(const AssetRequest& request, const CacheStamp& stamp, const std::string& kind,
                 const std::string& remedy, const ReadFile& readFile, const WriteFile& write,

@@ -8,8 +8,8 @@
 
 namespace lacuna {
 
-/// The file of another stamp that differs in the fewest inputs, in words for a message; nothing
-/// where there is none.
+/// Text for a message about the file of another stamp that differs in the fewest inputs; empty if
+/// there is none.
 template <class ReadFile>
 std::string mostSimilarCache(const std::string& directory, const CacheStamp& stamp,
                              const std::string& kind, const ReadFile& readFile) {
@@ -23,7 +23,7 @@ std::string mostSimilarCache(const std::string& directory, const CacheStamp& sta
             fewest = count;
             text = path + " was made of another " + differencesText(stamp, found);
         } catch (const InputError&) {
-            // Damaged, or of another version: nothing to compare with.
+            // Damaged or of another version: not comparable.
         }
     }
     return text;

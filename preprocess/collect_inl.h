@@ -1,5 +1,6 @@
-// Paths of the picture for training, by bidirectional path tracing: deterministic, whatever the
-// threads. Included by what collects its own kind of record of them. (theory.md, "Subspaces")
+// Collects the picture's paths for training, by bidirectional path tracing. The result does not
+// depend on the number of threads. Included by files that define their own kind of record.
+// (theory.md, "Subspaces")
 #pragma once
 
 #include <algorithm>
@@ -16,34 +17,35 @@
 
 namespace lacuna {
 
-/// What was collected. Set: size(), pixel(i), append(other, i), relate(scale).
+/// The collected records. A Set has size(), pixel(i), append(other, i) and relate(scale).
 template <class Set>
 struct Collected {
-    Set train, heldOut;        ///< contributions relative to their pixels
-    std::uint64_t traced = 0;  ///< paths that carry something, with those left out
+    Set train, heldOut;        ///< contributions are relative to their pixels
+    std::uint64_t traced = 0;  ///< contributing paths, including those left out
     std::uint64_t iterations = 0;
 };
 
-/// By pixel, because paths of one pixel share eye subpaths: a tenth.
+/// Whether the pixel's paths are held out; a tenth of the pixels is. Paths of one pixel share eye
+/// subpaths, so that they must stay together.
 inline bool isHeldOut(std::uint32_t pixel) {
     return (pixel * 2654435761u >> 16) % 10 == 0;
 }
 
-/// About `paths` records, or as many as a hundred iterations give. `add` (set, event, mean of the
-/// path's weighted contribution in the lights' unit) adds at most one. `first`: number of the first
-/// iteration, of those that no render reaches: what is learned from these paths must not know those
-/// that it weighs. Throws Error 130 once `cancel` is set.
+/// Collects about `paths` records, or as many as a hundred iterations give. `add` (set, event, mean
+/// of the path's weighted contribution in the lights' unit) adds at most one record. `first`:
+/// number of the first iteration, beyond those that renders reach, so that rendered paths are
+/// independent of the training paths. Throws InterruptedError once `cancel` is set.
 template <class Set, class Add>
 Collected<Set> collect(const Scene& scene, const TrainingView& view, std::uint64_t paths,
                        std::uint64_t seed, std::uint32_t first, const ThreadPool& pool,
                        const std::atomic<bool>& cancel, const Add& add) {
     constexpr std::uint64_t kMostIterations = 100;
-    constexpr int kBlocksAcross = 128;  // of the picture that contributions are relative to
+    constexpr int kBlocksAcross = 128;  // blocks of the picture to which contributions are relative
     struct Collector {
         Set records;
         std::vector<std::uint64_t> samples;  // by record
     };
-    /// A record of one collector's set and the sample that it came from.
+    /// A record of one collector's set, and its sample.
     struct Found {
         std::uint64_t sample;
         std::size_t collector, index;
@@ -51,7 +53,7 @@ Collected<Set> collect(const Scene& scene, const TrainingView& view, std::uint64
 
     const Camera::Film film = view.camera.film();
     const MethodRow& row = findMethod("bpt");
-    // Gamma reads p_t off the weights: all n r have to be one.
+    // Gamma derives p_t from the weights: all n r must be one.
     const std::unique_ptr<Method> method =
         row.create(resolve(row, std::array{std::string("lamps=power")}));
     RenderSettings settings;
@@ -61,7 +63,7 @@ Collected<Set> collect(const Scene& scene, const TrainingView& view, std::uint64
     settings.guides = view.guides;
     BidirIntegrator integrator(scene, view.camera, row.techniques, *method, settings, pool);
 
-    // Only ratios of contributions matter here: in the lights' own unit no sum of them overflows.
+    // Only ratios of contributions matter here. In the lights' unit, no sum of them overflows.
     const double unit = scene.lights().unit();
     const auto inLightUnit = [unit](const Rgb& c) {
         return Rgb(float(double(c.r) / unit), float(double(c.g) / unit), float(double(c.b) / unit));
@@ -77,14 +79,14 @@ Collected<Set> collect(const Scene& scene, const TrainingView& view, std::uint64
     std::vector<Rgb> pixels(std::size_t(film.width) * std::size_t(film.height)), sum(pixels.size());
     IterationStatistics statistics;
     std::uint64_t iterations = 1;
-    double share = 1.0;  // of an iteration's paths that is kept, so that there are about `paths`
+    double share = 1.0;  // share of the paths that is kept, for about `paths` in total
     for (std::uint64_t n = 0; n < iterations; ++n) {
         if (!integrator.render(first + std::uint32_t(n), pixels, cancel, statistics)) {
             throw InterruptedError("interrupted: nothing was written");
         }
         for (std::size_t p = 0; p < pixels.size(); ++p) sum[p] += inLightUnit(pixels[p]);
 
-        // In the order of samples, whatever the threads.
+        // Sorted by sample, independently of the threads.
         std::vector<Found> found;
         for (std::size_t w = 0; w < collectors.size(); ++w) {
             for (std::size_t i = 0; i < collectors[w].samples.size(); ++i) {

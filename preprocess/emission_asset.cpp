@@ -17,8 +17,8 @@ class EmissionAsset final : public Asset {
         if (file_.guide) assets.put(file_.guide);
     }
     std::string contentHash() const override { return file_.contentHash; }
-    /// `emission`: how much more densely light paths set out towards what each pixel shows than they
-    /// did without a guide; a mean over some points of the lights.
+    /// Layer `emission`: the density of light rays towards the visible point of each pixel,
+    /// relative to that without a guide; a mean over some points of the lights.
     void draw(LayeredImage& image, const Scene& scene, const Camera& camera, const PixelRect& crop,
               const ThreadPool& pool) const override {
         Image layer(crop.width(), crop.height());

@@ -1,4 +1,4 @@
-// Learned emission, as methods need it.
+// Learned emission as an asset.
 #pragma once
 
 #include "libcore/cache/emission_file.h"
@@ -7,16 +7,16 @@
 
 namespace lacuna {
 
-/// Gives methods the guide, as std::shared_ptr<const EmissionGuide>; nothing where plain emission is
-/// as good.
+/// Gives methods the guide as std::shared_ptr<const EmissionGuide>, or nothing if plain emission is
+/// as good: AssetRow::acquire.
 std::unique_ptr<Asset> acquireEmission(const AssetRequest& request);
 
-/// What is written of it.
+/// The content of the file.
 EmissionFile emissionFile(const CacheStamp& stamp, const EmissionTraining& training);
-/// In place of a guide's hash where there is none.
+/// Replaces the hash if there is no guide.
 inline constexpr const char* kPlainEmission = "plain";
 
-/// What the guides among `assets` make of the scene's light and walks.
+/// The guided lights and the guide of walks that follow from `assets`.
 Guides guidesOf(const Scene& scene, const AssetSet& assets);
 
 }  // namespace lacuna

@@ -15,10 +15,10 @@ using nlohmann::json;
 constexpr int kFloat = 5126, kUnsigned = 5125, kArrays = 34962, kIndices = 34963;
 constexpr int kLines = 1, kTriangles = 4;
 
-/// glTF's one buffer under construction.
+/// The .glb's only buffer, under construction.
 class Buffer {
   public:
-    /// Index of the new accessor.
+    /// Adds points and returns the index of their accessor.
     int addPoints(const std::vector<Vec3>& points) {
         constexpr float kFar = std::numeric_limits<float>::infinity();
         Vec3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
@@ -58,7 +58,7 @@ class Buffer {
     }
 };
 
-/// Unit sphere of rings and segments.
+/// Makes a unit sphere of rings and segments.
 void makeSphere(std::vector<Vec3>& points, std::vector<std::uint32_t>& indices) {
     constexpr std::uint32_t kRings = 8, kSegments = 16;
     for (std::uint32_t r = 0; r <= kRings; ++r) {
@@ -99,7 +99,8 @@ void writeGraphGlb(const std::string& path, const Skeletonized& result, const Ve
         meshes.push_back({{"name", name}, {"primitives", json::array({primitive})}});
         return int(meshes.size()) - 1;
     };
-    // Points relative to the scene's middle, which a node of its own adds: floats stay exact.
+    // Points are relative to the scene's centre, which a node of its own adds, so that floats stay
+    // precise.
     std::vector<Vec3> points;
     std::vector<std::uint32_t> indices;
     json children = json::array();

@@ -6,8 +6,8 @@
 namespace lacuna {
 
 namespace {
-// Of plain emission's loss. What gains less pays neither for look-ups nor for the paths that training has
-// not met, which become rarer.
+// Largest loss of a useful guide, relative to plain emission. A smaller gain pays neither for the look-ups nor for the
+// fact that paths that training has not met become rarer.
 constexpr double kEmissionWorthIt = 0.4;
 }  // namespace
 
@@ -35,7 +35,7 @@ EmissionTraining trainEmission(const Scene& scene, const Camera& camera, double 
                 set.add(event.path, event.counts, used, contribution, event.pixel);
             });
         result.learned = learnEmission(scene.lights(), found.train, found.heldOut, pool);
-        // Few paths may know nothing that is worth following; more may.
+        // A guide from few paths may be worthless; the next round has more.
         if (const auto& guide = result.learned.guide) {
             lights = std::make_shared<const Lights>(scene.lights().guidedBy(guide));
         }

@@ -1,5 +1,5 @@
-// What lacuna-train does first, and lacuna-render --prepare: where light subpaths begin and set out,
-// learned in rounds. (theory.md, "Learned emission")
+// The first step of lacuna-train and lacuna-render --prepare: learns in rounds how light subpaths
+// should begin. (theory.md, "Learned emission")
 #pragma once
 
 #include <atomic>
@@ -11,16 +11,17 @@
 
 namespace lacuna {
 
-/// What learned emission is made of: so many paths.
+/// The inputs of learned emission. `paths`: number of training paths.
 CacheStamp emissionStamp(const Settings& sceneInputs, const Settings& viewInputs,
                          std::uint64_t paths);
 
 struct EmissionTraining {
-    LearnedEmission learned;                       ///< of the last round
-    std::size_t trainPaths = 0, heldOutPaths = 0;  ///< of all rounds
+    LearnedEmission learned;                       ///< by the last round
+    std::size_t trainPaths = 0, heldOutPaths = 0;  ///< in all rounds
 };
 
-/// From about `paths` paths. `aspect`: width over height of the picture. Throws Error 130 once `cancel` is set.
+/// Learns from about `paths` paths. `aspect`: width over height of the picture. Throws InterruptedError once `cancel`
+/// is set.
 EmissionTraining trainEmission(const Scene& scene, const Camera& camera, double aspect,
                                const WalkLimits& limits, std::uint64_t paths, std::uint64_t seed,
                                const ThreadPool& pool, const std::atomic<bool>& cancel);

@@ -8,7 +8,7 @@
 namespace lacuna {
 
 namespace {
-/// Of the loss without a guide, from which a walk goes without one: less does not pay for look-ups.
+/// Largest loss of a useful guide, relative to none: a smaller gain does not pay for look-ups.
 constexpr double kWalksWorthIt = 0.97;
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Where walks go on to, learned in rounds. (theory.md, "Guided walks")
+// Learns directions of walks in rounds. (theory.md, "Guided walks")
 #pragma once
 
 #include <atomic>
@@ -10,19 +10,18 @@
 
 namespace lacuna {
 
-/// What a guide of walks is made of: so many paths, for a method of these techniques; their light
-/// subpaths began as `emission` (a hash) says.
+/// The inputs of a guide of walks. `paths`: number of training paths; `techniques`: of the guided
+/// method; `emission`: hash of the guide by which light subpaths begin.
 CacheStamp walkStamp(const Settings& sceneInputs, const Settings& viewInputs, std::uint64_t paths,
                      const Techniques& techniques, const std::string& emission);
 
 struct WalkTraining {
-    LearnedWalks learned;                          ///< of the last round
-    std::size_t trainPaths = 0, heldOutPaths = 0;  ///< of all rounds
+    LearnedWalks learned;                          ///< by the last round
+    std::size_t trainPaths = 0, heldOutPaths = 0;  ///< in all rounds
 };
 
-/// From about `paths` paths. `aspect`: width over height of the picture; `lights`: guided, or null;
-/// `techniques`: of the method that is to be guided.
-/// Throws Error 130 once `cancel` is set.
+/// Learns from about `paths` paths. `aspect`: width over height of the picture; `lights`: guided,
+/// or null; `techniques`: of the method to be guided. Throws InterruptedError once `cancel` is set.
 WalkTraining trainWalks(const Scene& scene, const Camera& camera, double aspect,
                         const WalkLimits& limits, const std::shared_ptr<const Lights>& lights,
                         const Techniques& techniques, std::uint64_t paths, std::uint64_t seed,

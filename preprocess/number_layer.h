@@ -1,4 +1,4 @@
-// Layers that show which node or subspace visible surfaces belong to.
+// Layers that show to which node or subspace visible surfaces belong.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,9 @@
 
 namespace lacuna {
 
-/// A colour by the number that `numberOf` (point, direction it is seen along) gives to what the
-/// middle of each pixel of `crop` shows; black where it gives none.
+/// A layer of colours: for the visible point at the centre of each pixel of `crop`, `numberOf`
+/// (point, direction of the ray) returns a number, which determines the colour. Black if it returns
+/// none.
 template <class NumberOf>
 Image numberLayer(const Scene& scene, const Camera& camera, const PixelRect& crop,
                   const ThreadPool& pool, const NumberOf& numberOf) {
@@ -26,7 +27,7 @@ Image numberLayer(const Scene& scene, const Camera& camera, const PixelRect& cro
             if (!hit) continue;
             const std::optional<std::uint32_t> number = numberOf(*hit, direction);
             if (!number) continue;
-            // Neighbours in number are far apart in colour.
+            // Successive numbers get very different colours.
             const std::uint32_t h = (*number + 1u) * 2654435761u;
             const auto part = [h](int shift) {
                 return 0.1f + 0.8f * float(h >> shift & 255u) / 255.0f;

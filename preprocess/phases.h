@@ -1,4 +1,4 @@
-// The steps of long work: their names as they begin, and how long they took.
+// Phases of long work: announces their names and measures their times.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@ namespace lacuna {
 
 class Phases {
   public:
-    /// `announce` is called with each phase's name when it begins; may be empty.
+    /// `announce` is called with the name of each phase when it begins; may be empty.
     explicit Phases(std::function<void(const std::string&)> announce = {})
         : announce_(std::move(announce)) {}
     /// Runs `work` as the phase `name`.

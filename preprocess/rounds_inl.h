@@ -1,5 +1,6 @@
-// What guides are learned from: paths in rounds, the later ones by ways that the earlier have found.
-// Included by what collects its own kind of record of them. (theory.md, "Learned emission")
+// Training paths of guides, collected in rounds: each round follows the guide that the earlier ones
+// have learned. Included by files that define their own kind of record. (theory.md, "Learned
+// emission")
 #pragma once
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 namespace lacuna {
 
 struct Round {
-    std::uint64_t paths;           ///< about
-    std::uint32_t firstIteration;  ///< of those that no render reaches
+    std::uint64_t paths;           ///< approximate number
+    std::uint32_t firstIteration;  ///< beyond those that renders reach
 };
 
-/// Of `paths` in all.
+/// The rounds for `paths` paths in total.
 inline std::array<Round, 3> roundsOf(std::uint64_t paths, std::uint32_t firstIteration) {
     constexpr double kShares[] = {0.15, 0.25, 0.6};
     constexpr std::uint32_t kIterations = 0x1000;
@@ -27,7 +28,7 @@ inline std::array<Round, 3> roundsOf(std::uint64_t paths, std::uint32_t firstIte
     return rounds;
 }
 
-/// collect() for a round, outliers lowered; its paths are counted in `training`.
+/// collect() for one round, with outliers lowered. Adds the numbers of paths to `training`.
 template <class Set, class Training, class Add>
 Collected<Set> collectRound(const Scene& scene, const TrainingView& view, const Round& round,
                             std::uint64_t seed, const ThreadPool& pool,

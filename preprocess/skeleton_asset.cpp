@@ -73,8 +73,8 @@ std::unique_ptr<Asset> acquireSkeleton(const AssetRequest& r) {
             });
         }
         file = skeletonize(scene, *voxels, r.pool, r.cancel, r.phases).file;
-        // Read back: files have the scene's own coordinates, to which places are rounded, and the
-        // picture must be the one that the next render makes of the file.
+        // The file is read back: it stores positions in the scene's own coordinates, which rounds
+        // them. The picture must be the same as that of later renders, which read the file.
         r.pool.run([&] {
             writeSkeletonFile(path, *file, scene.centre());
             file = readSkeletonFile(path, stamp, scene.centre(), remedy);

@@ -5,7 +5,7 @@
 namespace lacuna {
 
 /// The curve skeleton of the empty space and the map of its nodes (skeletonize.h):
-/// AssetRow::acquire. Voxels that it has to be made of are read, or made and written as well.
+/// AssetRow::acquire. If it must be made, its voxels are read, or made and written as well.
 std::unique_ptr<Asset> acquireSkeleton(const AssetRequest& request);
 
 }  // namespace lacuna

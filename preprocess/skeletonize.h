@@ -1,4 +1,4 @@
-// What lacuna-skeletonize does, for it and for lacuna-render --prepare.
+// The work of lacuna-skeletonize, also for lacuna-render --prepare.
 #pragma once
 
 #include "libcore/cache/skeleton_file.h"
@@ -11,11 +11,11 @@ struct Skeletonized {
     SkeletonFile file;
     SkeletonGraph raw;
     Betti empty;
-    Betti skeleton, filtered;  ///< b2 is 0: they are graphs
+    Betti skeleton, filtered;  ///< b2 is 0, because they are graphs
     std::size_t rounds = 0, punctures = 0, squares = 0;
 };
 
-/// Throws RunError, or Error 130 once `cancel` is set.
+/// Makes the skeleton of `voxels`. Throws RunError, or InterruptedError once `cancel` is set.
 Skeletonized skeletonize(const Scene& scene, const VoxelFile& voxels, const ThreadPool& pool,
                          const std::atomic<bool>& cancel, Phases& phases);
 

@@ -62,7 +62,7 @@ int skeletonizeTool(int argc, char** argv) {
     std::string path;
     total.run("all", [&] {
         phases.run("load", [&] { stage = loadScene(options, LooksAt::Scene, pool, progress); });
-        // Voxels of any resolution may be named, but of this scene.
+        // The user may name voxels of any resolution, but they must be of this scene.
         const Settings inputs = sceneInputs(stage);
         CacheStamp expected{inputs};
         if (voxelPath.empty()) {

@@ -19,8 +19,8 @@ class SubspaceAsset final : public Asset {
 
     void giveTo(AssetSet& assets) const override { assets.put(subspaces_); }
     std::string contentHash() const override { return contentHash_; }
-    /// `subspace`: of the eye, as seen from the camera [Su22 fig 7]; `lightSubspace`: the one that
-    /// Gamma picks most often there.
+    /// Layer `subspace`: the eye subspace for the camera's view [Su22 fig 7]. Layer
+    /// `lightSubspace`: the light subspace that Gamma picks most often there.
     void draw(LayeredImage& image, const Scene& scene, const Camera& camera, const PixelRect& crop,
               const ThreadPool& pool) const override {
         const auto eyeSubspace = [&](const SurfacePoint& hit) {

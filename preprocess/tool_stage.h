@@ -1,4 +1,4 @@
-// What the preprocessing tools share: options, the place of their result, what they report.
+// Shared parts of the preprocessing tools: options, path of the result, report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,21 +13,22 @@ struct BuildOptions : SceneOptions {
     std::string output;
 };
 
-/// SCENE, -o, the common options and those of the scene. Both must outlive the parsing.
+/// Declares SCENE, -o, the common options and those of the scene. Both arguments must outlive the
+/// parsing.
 void addBuildOptions(CLI::App& app, BuildOptions& options);
-/// Checks what the scene has no say in. Throws UsageError for a value out of its range, and if the
-/// JSON and the result are one file; RunError where the JSON cannot be written.
+/// Checks everything that does not depend on the scene. Throws UsageError for a value out of its
+/// range, and if the JSON and the result are one file; RunError if the JSON cannot be written.
 void checkBuildOptions(BuildOptions& options);
 
-/// Where the result goes: -o, or the cache's own name (whose directory is made). Throws RunError if
-/// it cannot be written.
+/// The path of the result: -o, or the cache's own name (whose directory is created). Throws
+/// RunError if it cannot be written.
 std::string resultFile(const BuildOptions& options, const CacheStamp& stamp,
                        const std::string& kind);
 
-/// Largest memory the process has had.
+/// Peak memory of the process.
 std::uint64_t peakBytes();
 
-/// Atomically, where --json asks for it. Throws RunError.
+/// Writes the report atomically if --json asks for it. Throws RunError.
 void writeReport(const CommonOptions& options, const nlohmann::json& report);
 
 }  // namespace lacuna

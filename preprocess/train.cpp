@@ -13,21 +13,21 @@ namespace lacuna {
 
 namespace {
 
-constexpr int kPicks = 3;                  // N that Gamma is optimised for
+constexpr int kPicks = 3;                  // N for which Gamma is optimised
 constexpr float kDirectionWeight = 0.05f;  // k_d of the centroids' metric [Su22 eq 18]
-constexpr double kLightShare = 0.2;        // of the light subspaces, those that divide the lights
+constexpr double kLightShare = 0.2;        // share of the light subspaces that divide the lights
 constexpr std::size_t kTreeSamples = 400'000, kJudgedSamples = 100'000;
 constexpr std::size_t kSamplesPerTask = 4096;
 constexpr std::uint64_t kLightPathsPerTask = 8192;
 constexpr std::uint32_t kLightPathIteration = 0xc0000000u;
 
-/// Ends of subpaths and the contributions of the paths that they are from.
+/// Ends of subpaths and the contributions of their paths.
 struct Ends {
     std::vector<SubpathEnd> end;
     std::vector<float> weight;
 };
 
-/// Every `step`-th end of one side, so that there are at most about `most`.
+/// Regularly selected ends of one side, about `most` at most.
 Ends endsOf(const TrainingPaths& paths, bool lightSide, std::size_t most) {
     const auto forEach = [&](const auto& body) {
         for (std::size_t n = 0; n < paths.size(); ++n) {
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> labelsOf(const Centroids& centroids, std::span<const 
     return labels;
 }
 
-/// By label, of which the first `first` are no centroid's.
+/// The nearest centroids by label. The first `first` labels do not belong to centroids.
 std::vector<std::vector<std::uint32_t>> neighboursOf(const Centroids& centroids,
                                                      std::span<const SubpathEnd> centres,
                                                      std::uint32_t first, const ThreadPool& pool) {
@@ -81,11 +81,11 @@ double lookUpNanoseconds(const DecisionTree& tree, std::span<const SubpathEnd> e
     const Clock::time_point start = Clock::now();
     for (const SubpathEnd& e : ends) sum += tree(e);
     const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-    // The sum is never so large: it only keeps the loop from being left out.
+    // The sum is never this large; using it keeps the compiler from removing the loop.
     return sum == ~std::uint64_t(0) ? 0.0 : ns / double(ends.size());
 }
 
-/// Everything about one side's classification on its way to a tree.
+/// The classification of one side, from samples to a tree.
 class Classification {
   public:
     Classification(const CollectedPaths& paths, bool lightSide)
@@ -94,7 +94,8 @@ class Classification {
 
     std::span<const SubpathEnd> ends() const { return train_.end; }
 
-    /// Labels count from `first`; at most `count` different ones, at least one.
+    /// Labels the ends by centroids. Labels count from `first`; there are at most `count` of them
+    /// and at least one.
     void label(std::uint32_t first, std::size_t count, float sigma2, float directionWeight,
                Rng& rng, const ThreadPool& pool) {
         const auto centres = drawCentroids(train_.end, train_.weight, count, rng);
@@ -107,8 +108,8 @@ class Classification {
         if (labels_.empty()) labels_ = {first}, train_.end = {SubpathEnd{}};
     }
     std::uint32_t labelCount() const { return labelCount_; }
-    /// By label, of `labels` of them: the nearest ones, itself among them. Those that no centroid
-    /// has are alone.
+    /// The nearest labels of each of `labels` labels, including itself. Labels without a centroid
+    /// have only themselves.
     std::vector<std::vector<std::uint32_t>> neighbours(std::uint32_t labels) const {
         std::vector<std::vector<std::uint32_t>> all = neighbours_;
         all.resize(labels);
@@ -140,7 +141,8 @@ class Classification {
     TreeReport report_;
 };
 
-/// Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19], and their number / M'.
+/// Measures Q(i) = (1/M') sum of mean(beta) over the vertices in i [Su22 eq 19], and their number /
+/// M'.
 void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces,
               const TrainSettings& settings, const ThreadPool& pool,
               const std::atomic<bool>& cancel) {
@@ -152,7 +154,7 @@ void measureQ(const Scene& scene, const TrainingView& view, Subspaces& subspaces
     subspaces.lightPaths = settings.lightPaths;
     subspaces.q.assign(subspaces.lightCount, 0.0);
     subspaces.population.assign(subspaces.lightCount, 0.0);
-    // Batches bound the memory of the sums, which are added in the order of tasks.
+    // Batches bound the memory of the sums. These are added in the order of tasks.
     constexpr std::uint64_t kBatch = 64;
     for (std::uint64_t first = 0; first < tasks; first += kBatch) {
         std::vector<Sums> sums(std::min(kBatch, tasks - first));
@@ -243,7 +245,7 @@ Trained train(const Scene& scene, const TrainingView& view, const TrainSettings&
         const float sigma2 = std::max(spatialVariance(light.ends()), spatialVariance(eye.ends()));
         Rng lightRng(settings.seed, kTrainingIteration, StreamKind::User, 0);
         Rng eyeRng(settings.seed, kTrainingIteration, StreamKind::User, 1);
-        // One subspace in all: the lights' cell is the subpaths' as well.
+        // With one subspace in total, the cell of the lights is also that of the subpaths.
         const std::uint32_t first = settings.subspaces == 1 ? 0 : s.cells.count();
         const std::uint32_t rest = settings.subspaces > first ? settings.subspaces - first : 1;
         light.label(first, rest, sigma2, kDirectionWeight, lightRng, pool);

@@ -1,4 +1,4 @@
-// What lacuna-train does, for it and for lacuna-render --prepare: classification, Q and Gamma of
+// The work of lacuna-train, also for lacuna-render --prepare: classification, Q and Gamma of
 // subspace-based connections [Su22 7].
 #pragma once
 
@@ -14,18 +14,18 @@ struct TrainSettings : TrainingSettings {
     std::uint64_t seed = 1;
 };
 
-/// What subspaces are made of. `emission`, `walks`: hashes of the guides that paths follow.
+/// The inputs of subspaces. `emission`, `walks`: hashes of the guides that paths follow.
 CacheStamp subspaceStamp(const Settings& sceneInputs, const Settings& viewInputs,
                          const TrainingSettings& settings, const std::string& emission,
                          const std::string& walks);
 
-/// One of the two trees against the nearest centroid.
+/// Quality of one of the two trees, compared with the nearest centroid.
 struct TreeReport {
     std::size_t centroids = 0, samples = 0;
     double accuracy = 1.0, heldOutAccuracy = 1.0;
     int depth = 0;
     std::size_t leaves = 0;
-    double nanoseconds = 0.0;  ///< of a look-up
+    double nanoseconds = 0.0;  ///< time of a look-up
 };
 
 struct Trained {
@@ -39,7 +39,8 @@ struct Trained {
     std::map<std::string, std::uint64_t> peakBytes;  ///< of the process, at each phase's end
 };
 
-/// `stamp` says what the result is made of. Throws Error 130 once `cancel` is set.
+/// Trains subspaces. `stamp`: the inputs of the result. Throws InterruptedError once `cancel` is
+/// set.
 Trained train(const Scene& scene, const TrainingView& view, const TrainSettings& settings,
               const CacheStamp& stamp, const ThreadPool& pool, const std::atomic<bool>& cancel,
               Phases& phases);

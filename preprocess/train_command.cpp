@@ -10,7 +10,7 @@
 namespace lacuna {
 
 namespace {
-const std::string kTraining = "train.";  // what options of training begin with
+const std::string kTraining = "train.";  // prefix of the options of training
 }
 
 std::uint64_t trainingPaths(const Settings& settings) {

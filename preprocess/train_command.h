@@ -1,4 +1,4 @@
-// The command line of lacuna-train that makes what a method asks for.
+// The command line of lacuna-train that makes the assets of a method.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace lacuna {
 
-/// train.paths, of a method that is trained; else 0.
+/// The setting train.paths; 0 for methods without training.
 std::uint64_t trainingPaths(const Settings& settings);
 
-/// What a message advises where something is missing that lacuna-train makes: "add --prepare, or run
-/// lacuna-train ..". Without training there is no such command.
+/// The advice in a message if an asset of lacuna-train is missing: "add --prepare, or run
+/// lacuna-train ..". The command is left out for methods without training.
 std::string trainRemedy(const AssetRequest& request);
 
 }  // namespace lacuna

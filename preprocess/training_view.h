@@ -1,4 +1,4 @@
-// How training looks at a scene: as it is rendered.
+// The view of a scene for training: that of the render.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct TrainingView {
     Guides guides = {};
 };
 
-/// The rendered camera with a small film for so many paths. `aspect`: width over height of the
-/// picture.
+/// The rendered camera with a small film, whose size depends on the number of paths. `aspect`:
+/// width over height of the picture.
 TrainingView trainingView(const Camera& camera, double aspect, const WalkLimits& limits,
                           std::uint64_t paths);
 
-/// Iterations of training: no render reaches them.
+/// First iterations of training; renders do not reach them.
 inline constexpr std::uint32_t kTrainingIteration = 0x80000000u;
 inline constexpr std::uint32_t kEmissionIteration = 0xa0000000u;
 inline constexpr std::uint32_t kWalkIteration = 0xb0000000u;

@@ -10,7 +10,7 @@
 namespace lacuna {
 
 namespace {
-/// Of the tools that make caches, and of lacuna-render, which makes them with --prepare.
+/// Names of options in messages: those of the preprocessing tools and of lacuna-render --prepare.
 constexpr const char* kDomain = "--domain (lacuna-render: --set voxels.domain)";
 constexpr const char* kResolution = "--resolution (lacuna-render: --set voxels.resolution)";
 }  // namespace
@@ -60,12 +60,12 @@ Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const
     Voxelized result;
     result.file.stamp = stamp;
     VoxelSpace& space = result.file.space;
-    bool flat = false;  // no resolution leaves room between the surfaces
+    bool flat = false;  // too flat: no resolution leaves room between the surfaces
     phases.run("voxelize", [&] {
         if (settings.domain.empty()) {
             const VoxelBox domain = defaultDomain(reach, boundsOf(triangles));
             space.shape = latticeOver(domain, settings.resolution);
-            // The surfaces take a layer on either side.
+            // The surfaces take one layer on each side.
             const VoxelIndex finest = latticeOver(domain, VoxelSettings::kHighestResolution).size;
             flat = std::min({finest[0], finest[1], finest[2]}) < 3;
         } else {

@@ -1,4 +1,4 @@
-// What lacuna-voxelize does, for it and for lacuna-render --prepare.
+// The work of lacuna-voxelize, also for lacuna-render --prepare.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// "x0,y0,z0,x1,y1,z1" with x0 < x1, .. Throws UsageError.
+/// Parses "x0,y0,z0,x1,y1,z1" with x0 < x1, .. Throws UsageError.
 VoxelBox parseDomain(const std::string& text);
 
 struct Voxelized {
@@ -18,11 +18,12 @@ struct Voxelized {
     PartCounts parts;
 };
 
-/// What voxels and the skeleton of them are made of.
+/// The inputs of voxels and of their skeleton.
 CacheStamp voxelStamp(const Settings& sceneInputs, const VoxelSettings& settings);
 
-/// `stamp` says what the voxels are made of. Throws UsageError for a domain that holds nothing of
-/// the scene, InputError for a scene without geometry, Error 130 once `cancel` is set.
+/// Voxelizes the scene. `stamp`: the inputs of the voxels. Throws UsageError for a domain without
+/// any part of the scene, InputError for a scene without geometry, InterruptedError once `cancel`
+/// is set.
 Voxelized voxelizeScene(const Scene& scene, const VoxelSettings& settings, const CacheStamp& stamp,
                         const ThreadPool& pool, const std::atomic<bool>& cancel, Phases& phases);
 

@@ -17,8 +17,8 @@ class WalkAsset final : public Asset {
         if (file_.guide) assets.put(file_.guide);
     }
     std::string contentHash() const override { return file_.contentHash; }
-    /// `walks`: how often eye walks and light walks follow the guide at what each pixel shows, in red and
-    /// green.
+    /// Layer `walks`: the probabilities that eye walks (red) and light walks (green) follow the guide at the visible
+    /// point of each pixel.
     void draw(LayeredImage& image, const Scene& scene, const Camera& camera, const PixelRect& crop,
               const ThreadPool& pool) const override {
         Image layer(crop.width(), crop.height());

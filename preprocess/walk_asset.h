@@ -1,4 +1,4 @@
-// Guided walks, as methods need them.
+// Guided walks as an asset.
 #pragma once
 
 #include "libcore/cache/walk_file.h"
@@ -7,12 +7,13 @@
 
 namespace lacuna {
 
-/// Gives methods the guide, as std::shared_ptr<const WalkGuide>; nothing where BSDFs are as good.
+/// Gives methods the guide as std::shared_ptr<const WalkGuide>, or nothing if sampling BSDFs is as
+/// good: AssetRow::acquire.
 std::unique_ptr<Asset> acquireWalks(const AssetRequest& request);
 
-/// What is written of it.
+/// The content of the file.
 WalkFile walkFile(const CacheStamp& stamp, const WalkTraining& training);
-/// In place of a guide's hash where there is none.
+/// Replaces the hash if there is no guide.
 inline constexpr const char* kPlainWalks = "plain";
 
 }  // namespace lacuna

@@ -1,5 +1,6 @@
-// Completion for bash and zsh. Each is a table of the program's options and a few lines of shell
-// that read it: what takes no value, what takes a file, what takes one of some words.
+// Completion for bash and zsh. Each script is a table of the program's options and a few lines of
+// shell that read it. The table tells whether an option takes no value, a file, or one of a list of
+// words.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -93,7 +94,7 @@ constexpr const char* kZshReader = R"shell(_lacuna_words() {
 }
 )shell";
 
-/// "lacuna-render" as a shell's function has it.
+/// The name of the program as that of a shell function.
 std::string functionName(const CLI::App& app) {
     std::string name = "_" + app.get_name();
     std::ranges::replace(name, '-', '_');
@@ -104,7 +105,7 @@ bool isShown(const CLI::Option& option) {
     return !option.get_group().empty();
 }
 
-/// As kBashReader has it.
+/// The kind of value in the notation of kBashReader.
 std::string bashKind(const ValueKind& kind) {
     if (kind.of == Of::Folders) return "/folder";
     if (kind.of == Of::Files)
@@ -117,7 +118,8 @@ std::string bashRow(const std::string& key, const std::string& value) {
     return "        [" + key + "]=" + shellQuoted(value) + "\n";
 }
 
-/// What zsh does with a value; `settings` is the state in which --set is completed.
+/// zsh's action for a value. `settings`: the value is that of --set, which a state of its own
+/// completes.
 std::string zshAction(const ValueKind& kind, bool settings) {
     if (settings) return "->settings";
     switch (kind.of) {
@@ -133,7 +135,7 @@ std::string zshAction(const ValueKind& kind, bool settings) {
     }
 }
 
-/// Text between brackets and colons of _arguments.
+/// Text escaped for _arguments, where it stands between brackets and colons.
 std::string zshText(const std::string& text) {
     std::string safe;
     for (const char c : text) {
@@ -143,7 +145,7 @@ std::string zshText(const std::string& text) {
     return safe;
 }
 
-/// What _arguments is told of an option: one text for each of its names.
+/// The specifications of an option for _arguments, one for each of its names.
 std::vector<std::string> zshSpecifications(const CLI::Option& option, const ValueWords& words) {
     const ValueKind kind = valueKind(option, words);
     const std::string type = zshText(typeOf(option));
@@ -177,7 +179,7 @@ std::string bashCompletion(const CLI::App& app, const ValueWords& words) {
         if (!isShown(*option)) continue;
         const ValueKind kind = valueKind(*option, words);
         if (option->get_positional()) {
-            // Where there are two, they are of one kind.
+            // If there are two positional arguments, they are of one kind.
             if (!values.starts_with("        [ARGUMENT]")) {
                 values = bashRow("ARGUMENT", bashKind(kind)) + values;
             }

@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-/// A texture of one texel.
+/// Adds a white texture of one texel and returns a use of it.
 TextureUse addTexel(SceneDescription& scene, bool srgb) {
     Texture t;
     t.width = t.height = 1;
@@ -30,7 +30,7 @@ void makeOpaque(SceneDescription& scene, Material::Alpha mode) {
     }
 }
 
-/// Any row of effectsOf().
+/// Switches an effect off; `name` is any row of effectsOf().
 void switchOff(const std::string& name, const SwitchTargets& to) {
     SceneDescription& scene = to.scene;
     if (name == "area_lights") {
@@ -90,7 +90,7 @@ void switchOff(const std::string& name, const SwitchTargets& to) {
     }
 }
 
-/// False where the scene has nothing that the effect's code could work on.
+/// Switches an effect on. False if the scene has nothing on which the effect's code could work.
 bool switchOn(const std::string& name, const SwitchTargets& to) {
     SceneDescription& scene = to.scene;
     if (name == "textures") {
@@ -115,11 +115,11 @@ bool switchOn(const std::string& name, const SwitchTargets& to) {
         for (Material& m : scene.materials) {
             if (m.alphaMode != Material::Alpha::Opaque) continue;
             m.alphaMode = Material::Alpha::Mask;
-            m.baseAlpha = 0.75f;  // below one, so that it is looked at, and above any cutoff of 0
+            m.baseAlpha = 0.75f;  // below one, so that it is tested, and above the cutoff
             m.alphaCutoff = 0.0f;
         }
     } else if (name == "attenuation") {
-        constexpr float kUnseen = 1e-30f;  // a float's exp of it is 1
+        constexpr float kUnseen = 1e-30f;  // exp of it rounds to 1
         for (Material& m : scene.materials) {
             if (isBlack(m.absorption)) m.absorption = Rgb(kUnseen);
         }

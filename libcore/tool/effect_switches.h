@@ -1,4 +1,4 @@
-// --effect NAME=on|off: effects forced on or off, whatever the scene calls for.
+// --effect NAME=on|off: effects forced on or off, whatever the scene needs.
 #pragma once
 
 #include <span>
@@ -12,27 +12,27 @@
 namespace lacuna {
 
 struct EffectSwitch {
-    std::string name;  ///< as --effects prints it
+    std::string name;  ///< in the output of --effects
     bool on = false;
 };
 
-/// Of texts NAME=on|off, in their order; a later one of the same name takes the earlier one's
-/// place. Throws UsageError for another text.
+/// Parses texts NAME=on|off, in their order. A later text of the same name replaces the earlier
+/// one. Throws UsageError for other texts.
 std::vector<EffectSwitch> parseEffectSwitches(std::span<const std::string> texts);
 
-/// What the switches change besides the scene.
+/// The objects that switches change.
 struct SwitchTargets {
     SceneDescription& scene;
     double& lensRadius;
-    Techniques* techniques;  ///< null: there is no method
+    Techniques* techniques;  ///< null without a method
 };
 
-/// Changes the scene so that an effect is not there any more, or so that its code runs though
-/// nothing calls for it (a white texture, a normal map that tilts nothing, a mask that hides
-/// nothing: the picture stays the same). `effects` is what effectsOf() found before; its rows then
-/// say what is done and why, and are `forced` where a switch changed something. Returns a warning
-/// for every effect that is off though the scene calls for it. Throws UsageError for unknown names
-/// and for what cannot be forced on.
+/// Removes an effect from the scene, or makes its code run although the scene does not need it. (A
+/// white texture, a normal map that tilts nothing or a mask that hides nothing leaves the picture
+/// the same.) `effects` are the rows that effectsOf() found before. They are updated to tell what
+/// is done and why, and are `forced` where a switch changed something. Returns a warning for every
+/// effect that is off although the scene needs it. Throws UsageError for unknown names and for
+/// effects that cannot be forced on.
 std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
                                       const SwitchTargets& targets, std::vector<Effect>& effects);
 

@@ -7,7 +7,7 @@
 namespace lacuna {
 namespace {
 
-/// What the instances of a scene really use, counted once.
+/// The materials, textures and lights that a scene's instances really use, counted once.
 struct Inventory {
     std::vector<const Material*> materials;  // used by at least one triangle
     std::size_t emissiveTriangles = 0, coloredPrimitives = 0;
@@ -42,7 +42,7 @@ struct Inventory {
     }
 };
 
-/// Of materials: how many may have lobes of a kind that are not left out by force.
+/// Predicate of materials: whether they may have lobes of the kind that are not left out.
 auto withLobes(LobeKind kind) {
     return [kind](const Material& m) {
         return lobeTable()[std::size_t(kind)].mayHave(m) && !m.without.has(kind);
@@ -51,7 +51,8 @@ auto withLobes(LobeKind kind) {
 
 class Table {
   public:
-    /// `found` of these `noun`s call for the effect (`rest` follows); zero: left out, `missing`.
+    /// Adds a row: `found` things of the name `noun` (followed by `rest`) need the effect. If there
+    /// are none, it is left out for the reason `missing`.
     void add(const char* name, std::size_t found, const std::string& noun, const std::string& rest,
              const std::string& missing) {
         const std::string text =

@@ -1,4 +1,4 @@
-// Which effects a scene calls for, what is therefore simulated and what is left out, with reasons.
+// The effects that a scene needs: which are simulated, which are left out, and why.
 #pragma once
 
 #include <span>
@@ -13,17 +13,17 @@ namespace lacuna {
 struct Effect {
     std::string name;  ///< stable, for scripts: "rough_refraction"
     bool simulated = false;
-    std::string reason;   ///< what in the scene calls for it, or what is missing
-    bool forced = false;  ///< on or off against what the scene calls for
-    bool ofScene = true;  ///< not one of the method's techniques
+    std::string reason;   ///< what in the scene needs it, or what is missing
+    bool forced = false;  ///< on or off against the scene's needs
+    bool ofScene = true;  ///< false: one of the method's techniques
 };
 
-/// One row per effect, always all of them, in a fixed order. `lensRadius` as it will be rendered.
-/// With a method: its techniques as well.
+/// One row per effect, always all of them, in a fixed order. `lensRadius`: that of the render. With
+/// a method, its techniques follow.
 std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
                               const MethodRow* method);
 
-/// The rows of a method's techniques, from those of the scene.
+/// The rows of a method's techniques, derived from those of the scene.
 std::vector<Effect> techniqueEffects(const MethodRow& method, const SceneDescription& scene,
                                      std::span<const Effect> ofScene);
 

@@ -29,8 +29,8 @@ void addHelpForms(CLI::App& app, ValueWords words) {
         } else {
             throw UsageError("--help-as: expected man, bash or zsh, found '" + form + "'");
         }
-        text.pop_back();                     // CLI11 ends the line
-        throw CLI::CallForVersion(text, 0);  // printed like any help
+        text.pop_back();                     // CLI11 adds the newline
+        throw CLI::CallForVersion(text, 0);  // CLI11 prints it like any help
     };
     app.add_option_function<std::string>(
            "--help-as", print, "Print this as a manual page, or as completion for a shell")

@@ -30,8 +30,8 @@ extern "C" void lacunaOnInterrupt(int) {
     if (interruptRequested.exchange(true)) _exit(kInterruptedExit);
 }
 
-/// Leaves a hang-up alone that is ignored: nohup. An interrupt that is ignored is not: scripts start
-/// what runs in the background so.
+/// Installs the handler. A SIGHUP that is ignored stays ignored (nohup). An ignored SIGINT does
+/// not: scripts start background processes in this way.
 void handle(int number) {
     struct sigaction action {};
     if (number == SIGHUP && sigaction(SIGHUP, nullptr, &action) == 0 &&
@@ -40,7 +40,7 @@ void handle(int number) {
     }
     action = {};
     action.sa_handler = lacunaOnInterrupt;
-    action.sa_flags = SA_RESTART;  // no library of ours has to know about EINTR
+    action.sa_flags = SA_RESTART;  // libraries need not handle EINTR
     sigemptyset(&action.sa_mask);
     sigaction(number, &action, nullptr);
 }

@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM: the first asks for an orderly end, the second ends the process at once.
+// SIGINT and SIGTERM: the first signal asks for an orderly end, the second ends the process at
+// once.
 #pragma once
 
 #include <signal.h>
@@ -7,7 +8,7 @@
 
 namespace lacuna {
 
-/// Installs the handlers for its lifetime; one at a time.
+/// Installs the handlers for its lifetime. There must be only one at a time.
 class InterruptGuard {
   public:
     InterruptGuard();

@@ -13,7 +13,7 @@ constexpr const char* kPrograms[] = {"lacuna-compare", "lacuna-merge",       "la
                                      "lacuna-render",  "lacuna-skeletonize", "lacuna-study",
                                      "lacuna-train",   "lacuna-voxelize"};
 
-/// Text as roff takes it, whatever characters it has.
+/// Text escaped for roff.
 std::string roff(const std::string& text) {
     std::string safe;
     for (const char c : text) {
@@ -30,7 +30,7 @@ std::string roff(const std::string& text) {
     return safe;
 }
 
-/// Footers are broken at a terminal's width and indent what is to stay as it is.
+/// The footer as roff. Footers are broken at a terminal's width; indented lines stay as they are.
 std::string paragraphs(const std::string& text) {
     std::string page;
     bool asItIs = false;
@@ -94,7 +94,7 @@ std::string exitStatus(const std::string& text) {
     return page;
 }
 
-/// What stands from `heading` on, taken out of `text`.
+/// Removes `heading` and all that follows from `text`. Returns the part after `heading`.
 std::string takeFrom(std::string& text, const std::string& heading) {
     const std::size_t at = text.find(heading);
     if (at == std::string::npos) return {};

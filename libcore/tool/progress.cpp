@@ -8,8 +8,8 @@
 namespace lacuna {
 namespace {
 
-constexpr auto kTick = std::chrono::milliseconds(200);  // refreshed line, look for interrupts
-constexpr auto kPlainEvery = std::chrono::seconds(10);  // lines where there is no terminal
+constexpr auto kTick = std::chrono::milliseconds(200);  // refreshes the line, checks for interrupts
+constexpr auto kPlainEvery = std::chrono::seconds(10);  // lines without a terminal
 
 std::string rateText(double perSecond) {
     const bool mega = perSecond >= 1e5;

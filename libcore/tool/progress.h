@@ -1,5 +1,4 @@
-// What a tool does right now, told to whoever wants to know: a person at a terminal, or a program
-// that uses the library.
+// Reports of a tool's progress to a person at a terminal or to a program that uses the library.
 #pragma once
 
 #include <atomic>
@@ -15,7 +14,7 @@
 
 namespace lacuna {
 
-// What is said at an interrupt.
+// Messages at an interrupt.
 inline constexpr const char* kNothingWritten =
     "interrupted: ending, nothing will be written (again: exit at once)";
 inline constexpr const char* kBeingSaved =
@@ -28,8 +27,8 @@ class Progress {
   public:
     virtual ~Progress() = default;
 
-    /// What is being done: "loading", "rendering", ... `atInterrupt` is said if one comes meanwhile;
-    /// null: what the listener says by itself.
+    /// A phase begins: "loading", "rendering", .. `atInterrupt` is the message if an interrupt
+    /// comes during it; null: the listener's own message.
     virtual void phase(const std::string& name, const char* atInterrupt = nullptr) = 0;
 
     struct Iterations {
@@ -38,37 +37,36 @@ class Progress {
         std::uint64_t rays = 0;   ///< so far
         double seconds = 0.0;     ///< so far
         double timeLimit = 0.0;   ///< seconds; 0: none
-        std::string accuracy;     ///< the error now and when it will be less; empty: not known
+        std::string accuracy;     ///< current error and time until it is reached; empty: unknown
     };
     virtual void iterations(const Iterations& iterations) = 0;
-    /// Called between iterations: `picture` makes the picture as it is now, for whoever asks it.
+    /// Called between iterations. `picture` makes the current picture if the listener calls it.
     virtual void picture(const std::function<Image()>& picture) { (void)picture; }
 
-    /// Good to know.
+    /// Information for the user.
     virtual void remark(const std::string& text) = 0;
     /// The picture may not be what was meant.
     virtual void warning(const std::string& text) = 0;
 };
 
-/// On stderr: one refreshed line on a terminal, else a line every 10 seconds.
+/// Reports on stderr: one refreshed line on a terminal, else a line every 10 seconds.
 class TerminalProgress final : public Progress {
   public:
-    /// `quiet`: prints nothing but warnings. A thread of its own watches the clock and
-    /// `interrupted`, which must outlive the object. `onInterrupt` is said then, where no iteration
-    /// is done.
+    /// `quiet`: prints only warnings. A thread watches the clock and `interrupted`, which must
+    /// outlive the object. `onInterrupt`: message at an interrupt before an iteration is done.
     TerminalProgress(bool quiet, const std::atomic<bool>& interrupted,
                      const char* onInterrupt = kFirstIteration);
     ~TerminalProgress() override;
     TerminalProgress(const TerminalProgress&) = delete;
     TerminalProgress& operator=(const TerminalProgress&) = delete;
 
-    /// Nothing at all is printed from now on: another process speaks.
+    /// Prints nothing from now on: another process prints the messages.
     void mute();
     void phase(const std::string& name, const char* atInterrupt = nullptr) override;
     void iterations(const Iterations& iterations) override;
-    /// A line of its own; nothing if quiet.
+    /// Prints a separate line; nothing if quiet.
     void remark(const std::string& text) override;
-    /// A line of its own, quiet or not, in yellow on a terminal.
+    /// Prints a separate line, quiet or not, in yellow on a terminal.
     void warning(const std::string& text) override;
 
   private:

@@ -110,8 +110,8 @@ void requireSaneFilm(std::int64_t width, std::int64_t height) {
 
 namespace {
 
-/// Before the scene is loaded: readImage reads pictures of eight bits too, whose lamps are cut off
-/// at white.
+/// Checked before the scene is loaded. readImage would also accept pictures of eight bits, in which
+/// lamps are clipped to white.
 void requireEnvironmentEnding(const std::string& file) {
     const std::string ending = endingOf(file);
     if (ending == ".exr" || ending == ".hdr") return;
@@ -119,7 +119,7 @@ void requireEnvironmentEnding(const std::string& file) {
                      "'; convert the image");
 }
 
-/// Options as text, in the order of their declaration.
+/// Options as text for a shell, in the order of their declaration.
 class Arguments {
   public:
     void add(const char* option, const std::string& value) {
@@ -141,7 +141,7 @@ class Arguments {
 
 namespace {
 
-/// "50%", or "640x360", which is --width and --height.
+/// Parses "50%", or "640x360", which sets --width and --height.
 void parseScale(SceneOptions& o) {
     const std::string& text = o.scaleText;
     const auto fail = [&]() -> double {
@@ -172,7 +172,7 @@ void parseScale(SceneOptions& o) {
     o.scale = numberIn(text.substr(0, text.size() - 1)) / 100.0;
 }
 
-/// "0.1,-0.25": so many numbers from `low` to `high`.
+/// Parses `count` numbers from `low` to `high`, such as "0.1,-0.25".
 template <std::size_t count>
 std::array<double, count> parseNumbers(const char* option, const std::string& text, double low,
                                        double high, const char* expected) {
@@ -219,7 +219,7 @@ void checkSceneOptions(SceneOptions& o) {
     requireSaneFilm(o.width.value_or(1), o.height.value_or(1));
     requireRange("--max-depth", o.maxDepth, 1, kMaxEdges);
     requireRange("--rr-depth", o.rouletteDepth, 0, 1'000'000);
-    // The bounds of the scene's extras: products of what lies inside are floats still.
+    // The bounds are those of the scene's extras: within them, products fit into a float.
     requireReal("--aperture", o.aperture, 0.0, kFarthest, "a radius from 0 to 1e17");
     requireReal("--focus", o.focus, kNearestFocus, kFarthest, "a distance from 1e-15 to 1e17");
     requireReal("--env-rotate", o.environmentRotation, -1e6, 1e6, "an angle in degrees up to 1e6");

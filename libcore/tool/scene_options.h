@@ -1,5 +1,5 @@
-// What a command line says about the scene and how it is looked at: the same options for every tool
-// that loads one, so that what is learned of a scene beforehand is learned of what is rendered.
+// Command-line options of the scene and the view. All tools that load a scene have the same
+// options, so that preprocessing uses the same scene as rendering.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace lacuna {
 struct SceneOptions {
     CommonOptions common;
     std::string scene;
-    /// The content of the .glb `scene`, where it lies in memory alone; null: it is a file.
+    /// The content of the .glb `scene` if it is only in memory; null: it is a file.
     std::shared_ptr<const std::vector<std::uint8_t>> sceneBytes;
 
     std::string environment, environmentColourText;
@@ -34,12 +34,12 @@ struct SceneOptions {
     std::string scaleText, shiftText;
     std::optional<std::int64_t> maxDepth, rouletteDepth;
 
-    // By checkSceneOptions.
-    std::vector<EffectSwitch> effectSwitches;  ///< of effectTexts
-    double scale = 1.0;                        ///< of the picture's sides, of scaleText
+    // Set by checkSceneOptions.
+    std::vector<EffectSwitch> effectSwitches;  ///< from effectTexts
+    double scale = 1.0;                        ///< factor of the picture's sides, from scaleText
     std::optional<std::array<double, 2>> shift;
     std::optional<Rgb> environmentColour;
-    LampUnits units = LampUnits::Radiometric;  ///< of unitsText
+    LampUnits units = LampUnits::Radiometric;  ///< from unitsText
 };
 
 /// Declares --env, --env-colour, --env-rotate, --env-scale, --units, --effect and --tolerance. Both must
@@ -48,23 +48,23 @@ void addSceneOptions(CLI::App& app, SceneOptions& options);
 /// Declares --width, --height, --scale, --camera, --shift, --aperture, --focus, --max-depth and --rr-depth.
 void addViewOptions(CLI::App& app, SceneOptions& options);
 
-/// Parses the switches and checks every range that the scene has no say in. Throws UsageError, and
-/// InputError for an environment of another format.
+/// Parses texts and checks every range that does not depend on the scene. Throws UsageError, and
+/// InputError for an environment of an unsupported format.
 void checkSceneOptions(SceneOptions& options);
 
 /// Throws UsageError for a picture without pixels or beyond kMaxImageSide, kMaxImagePixels.
 void requireSaneFilm(std::int64_t width, std::int64_t height);
 
-/// The options of addSceneOptions that were given, as a shell takes them: " --env sky.hdr", or
+/// The options of addSceneOptions that were given, as text for a shell: " --env sky.hdr", or
 /// nothing.
 std::string sceneArguments(const SceneOptions& options);
-/// Likewise those of addViewOptions.
+/// The same for the options of addViewOptions.
 std::string viewArguments(const SceneOptions& options);
 
-/// Throws UsageError unless low <= value <= high, if there is one.
+/// Throws UsageError if there is a value and it is not in [low, high].
 void requireRange(const char* option, const std::optional<std::int64_t>& value, std::int64_t low,
                   std::int64_t high);
-/// Likewise; `expected` says in words what is.
+/// Likewise; `expected` describes the range in words.
 void requireReal(const char* option, const std::optional<double>& value, double low, double high,
                  const char* expected);
 

@@ -15,7 +15,7 @@ namespace lacuna {
 namespace {
 
 constexpr int kDefaultWidth = 1280;
-constexpr double kDefaultAspect = 16.0 / 9.0;  // for cameras that state none
+constexpr double kDefaultAspect = 16.0 / 9.0;  // for cameras without an aspect
 
 using Clock = std::chrono::steady_clock;
 
@@ -33,7 +33,7 @@ const CameraDescription& chosenCamera(const SceneDescription& scene, const std::
     throw UsageError("--camera: expected one of " + names + ", found '" + name + "'");
 }
 
-/// Of both options, else of the extras where they name both sides, else the camera's.
+/// The aspect of both options, else of the extras if they name both sides, else of the camera.
 double chooseAspect(const SceneOptions& options, const SceneDescription& scene,
                     const CameraDescription& camera) {
     if (options.width && options.height) return double(*options.width) / double(*options.height);
@@ -41,8 +41,8 @@ double chooseAspect(const SceneOptions& options, const SceneDescription& scene,
     return camera.aspectRatio > 0.0 ? camera.aspectRatio : kDefaultAspect;
 }
 
-/// The options' sides; without any the extras'; without those 1280 wide. One side alone is given
-/// the other by the aspect. Then the share of them that is asked for.
+/// The sides are those of the options, else those of the extras, else the width is 1280. A single
+/// side determines the other by the aspect. Then both are scaled.
 Camera::Film chooseFilm(const SceneOptions& options, const SceneDescription& scene,
                         const CameraDescription& camera) {
     const double aspect = chooseAspect(options, scene, camera);
@@ -51,7 +51,7 @@ Camera::Film chooseFilm(const SceneOptions& options, const SceneDescription& sce
         width = scene.width;
         height = scene.height;
     }
-    // Far-fetched aspects end in requireSaneFilm, not in a conversion that overflows.
+    // Clamped, so that extreme aspects end in requireSaneFilm and not in an overflow.
     const auto side = [](double pixels) {
         return std::int64_t(std::clamp(std::round(pixels), 1.0, 1e9));
     };
@@ -64,7 +64,7 @@ Camera::Film chooseFilm(const SceneOptions& options, const SceneDescription& sce
     return {int(*width), int(*height)};
 }
 
-/// Of a scene without light. Blender leaves lights out unasked.
+/// The warning for a scene without light. Blender leaves lights out by default.
 std::string noLightText(const Scene& scene) {
     std::string text = "no light in the scene: the picture is black";
     if (scene.lights().size() > 0) {
@@ -89,7 +89,7 @@ Camera::Lens chooseLens(const SceneOptions& options, const SceneDescription& sce
     return lens;
 }
 
-/// `camera` by its place in the file, because names need not differ.
+/// `camera` is identified by its position in the file, because names need not differ.
 Settings viewInputsOf(const SceneDescription& scene, const CameraDescription& camera, double aspect,
                       Camera::Lens lens, const WalkLimits& limits) {
     Settings inputs;
@@ -192,7 +192,7 @@ SceneStage buildStage(SceneDescription description, const SceneOptions& options,
     };
     for (const std::string& text : description.warnings) warn(text);
 
-    // Everything that may refuse the command line comes before the long work.
+    // Everything that may reject the command line comes before the long work.
     const bool looks = looksAt == LooksAt::Camera;
     const Camera::Film film = looks ? filmOf(options, description) : Camera::Film{};
     Camera::Lens lens = looks ? chooseLens(options, description) : Camera::Lens{};
@@ -241,7 +241,7 @@ void useMethod(SceneStage& stage, const SceneOptions& options, const MethodRow& 
         return std::ranges::find(rows, s.name, &Effect::name) == rows.end();
     });
     stage.techniques = method.techniques;
-    // Switches of techniques change nothing else.
+    // Switches of techniques do not change the scene.
     SceneDescription untouched;
     double noLens = 0.0;
     forceEffects(switches, {untouched, noLens, &stage.techniques}, rows);

@@ -1,4 +1,5 @@
-// Command-line options from a table of options (options.h): `light_paths` becomes --light-paths.
+// Command-line options made from a table of options (options.h): `light_paths` becomes
+// --light-paths.
 #pragma once
 
 #include <deque>
@@ -13,24 +14,25 @@ class App;
 
 namespace lacuna {
 
-/// The texts that a command line gives for options; declared on construction. It must be there
-/// while `app` parses.
+/// The texts that a command line gives for options. The constructor declares the options. The
+/// object must exist while `app` parses.
 class OptionTexts {
   public:
     OptionTexts(CLI::App& app, std::vector<Option> options);
 
-    /// Complete and checked. Throws UsageError that names the option with its dashes.
+    /// The values of all options, checked. Throws UsageError, which names the option with its
+    /// dashes.
     Settings settings() const;
 
   private:
     std::vector<Option> options_;
-    std::deque<std::string> texts_;  // by option; where CLI11 writes
+    std::deque<std::string> texts_;  // by option; CLI11 writes to them
 };
 
 /// "--light-paths"
 std::string optionName(const std::string& name);
 
-/// A record's values that are not the defaults.
+/// A record's values that differ from the defaults.
 template <class Record>
 Settings changedValues(const OptionTable<Record>& table, const Record& record) {
     Settings changed;
@@ -40,10 +42,10 @@ Settings changedValues(const OptionTable<Record>& table, const Record& record) {
     }
     return changed;
 }
-/// Settings as a shell takes them: " --light-paths 1000", or nothing.
+/// Settings as text for a shell: " --light-paths 1000", or nothing.
 std::string optionArguments(const Settings& settings);
 
-/// The same for a table: its record, read.
+/// OptionTexts for a table; read() returns its record.
 template <class Record>
 class TableOptions {
   public:

@@ -18,9 +18,9 @@ std::string shortNumber(double x) {
 
 /// A factor of materials that weighs a layer or a lobe.
 struct Weight {
-    const char* name;  ///< of one, with `s` of many
+    const char* name;  ///< singular; the plural has `s`
     float Material::*factor;
-    TextureUse Material::*texture;  ///< that lowers it, and has no other use; null: there is none
+    TextureUse Material::*texture;  ///< texture of the factor alone; null: none
 };
 
 constexpr Weight kWeights[] = {
@@ -31,7 +31,7 @@ constexpr Weight kWeights[] = {
     {"diffuse transmission", &Material::diffuseTransmission, &Material::diffuseTransmissionTexture},
 };
 
-/// "2 clearcoats of weight up to 0.0001", or nothing.
+/// Leaves out factors up to `tolerance`. Returns "2 clearcoats of weight up to 0.0001", or nothing.
 std::string leaveOut(const Weight& weight, double tolerance, std::vector<Material>& materials) {
     std::size_t count = 0;
     float largest = 0.0f;
@@ -63,7 +63,7 @@ double largestOf(const Power& p) {
     return std::max({p[0], p[1], p[2]});
 }
 
-/// Something that can be left out by making it black.
+/// A lamp, which can be left out by making it black.
 struct Lamp {
     Rgb* colour;
     Power most, least;
@@ -105,7 +105,8 @@ std::vector<Lamp> lampsOf(SceneDescription& scene) {
     return lamps;
 }
 
-/// "1 of 3 lights with 2e-07 of the power", or nothing.
+/// Leaves out the weakest lamps. Returns "1 of 3 lamps with at most 2e-07 of the others' power", or
+/// nothing.
 std::string leaveOutLights(double tolerance, SceneDescription& scene) {
     std::vector<Lamp> lamps = lampsOf(scene);
     std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) {
@@ -120,7 +121,7 @@ std::string leaveOutLights(double tolerance, SceneDescription& scene) {
         double nowShare = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
             if (nowOut[c] == 0.0) continue;
-            // What stays may be nothing, and rounding may bring it below that.
+            // The remaining power may be zero, or negative by rounding.
             if (!(nowStaying[c] > 0.0)) nowShare = std::numeric_limits<double>::infinity();
             nowShare = std::max(nowShare, nowOut[c] / nowStaying[c]);
         }

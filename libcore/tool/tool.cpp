@@ -20,7 +20,7 @@
 namespace lacuna {
 namespace {
 
-/// One error, one line, whatever a library or a file name put into the text.
+/// Prints an error as one line, whatever a library or a file name has put into the text.
 int report(std::string message, int exitCode) {
     for (char& c : message) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
@@ -29,7 +29,7 @@ int report(std::string message, int exitCode) {
     return exitCode;
 }
 
-/// Whether all of `text` is an integer of 64 bits as people write it.
+/// Whether all of `text` is a 64-bit integer in ordinary decimal notation.
 bool isDecimal(const std::string& text) {
     const char *begin = text.data(), *end = begin + text.size();
     const std::size_t sign = text.starts_with('-') ? 1 : 0;
@@ -40,11 +40,11 @@ bool isDecimal(const std::string& text) {
     return fits(std::from_chars(begin, end, natural)) || fits(std::from_chars(begin, end, integer));
 }
 
-/// What CLI11 takes without a word: nothing for a text, 0640 as octal, and the largest integer
-/// there is for a larger one.
+/// Rejects values that CLI11 accepts silently: an empty text, 0640 (as octal), and integers that
+/// are too large (as the largest one).
 void checkValues(const CLI::Option& option) {
     const std::string type = option.get_type_name();
-    const bool isInteger = type == "N" || type.starts_with("N:");  // validators add their own
+    const bool isInteger = type == "N" || type.starts_with("N:");  // validators append text
     for (const std::string& value : option.results()) {
         if (value.empty()) {
             throw UsageError(option.get_name() +
@@ -59,24 +59,27 @@ void checkValues(const CLI::Option& option) {
     }
 }
 
-/// What a thread says that the system does not let start: oneTBB's has no type of its own.
+/// Whether the exception means that the system could not start a thread. That of oneTBB has no type
+/// of its own.
 bool isLackOfThreads(const std::exception& e) {
     const auto* system = dynamic_cast<const std::system_error*>(&e);
     return (system && system->code() == std::errc::resource_unavailable_try_again) ||
            std::string_view(e.what()).starts_with("pthread_create");
 }
 
-/// For what is thrown where nobody can catch it: in threads of libraries, in destructors.
+/// The terminate handler, for exceptions that nobody can catch: in threads of libraries, in
+/// destructors.
 [[noreturn]] void endWithOneLine() {
     static std::atomic_flag ending = ATOMIC_FLAG_INIT;
-    while (ending.test_and_set()) pause();  // another thread has the word
+    while (ending.test_and_set()) pause();  // another thread is reporting
     if (!std::current_exception()) std::abort();
     const Failure failure = failureOfCurrentException();
-    // Threads are still at work: nothing is destroyed. Files without a commit have no name.
+    // Other threads are still running, so that nothing is destroyed. Files without a commit have no
+    // name.
     _exit(report(failure.text, failure.exitCode));
 }
 
-/// Writing to a file that may not grow, or to nobody, fails like any other writing then.
+/// Makes writing to a file that may not grow, or to a closed pipe, fail like other write errors.
 void ignoreSignalsOfWriting() {
     for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
@@ -92,7 +95,7 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->check(CLI::Range(1, 4096));
     app.add_option("--seed", options.seed, "Seed of all random numbers (default: 1)")
         ->type_name("N")
-        ->check(CLI::NonNegativeNumber);  // CLI11 would wrap -1 around
+        ->check(CLI::NonNegativeNumber);  // CLI11 would wrap -1
     app.add_option("--json", options.json, "Write everything measured to this file")
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "No progress and no remarks on stderr");

@@ -1,4 +1,4 @@
-// What every command-line tool of ours shares: options, exit codes, one line per error.
+// Shared parts of all command-line tools: options, exit codes, one line per error.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct CommonOptions {
     std::string cacheDirectory;  // empty: beside the scene
     int threads = 0;             // 0: all
     std::uint64_t seed = 1;
-    std::string json;  // empty: none
+    std::string json;  // empty: not written
     bool quiet = false;
     bool verbose = false;
 };
@@ -23,28 +23,29 @@ struct CommonOptions {
 /// --cache --threads --seed --json --quiet -v. `app` and `options` must outlive the parsing.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
-/// Parses, after adding --version and --help-as; `words` complete values in shells. nullopt: go on.
-/// A value: help or version was printed, exit with it. Throws UsageError for a wrong command line.
+/// Adds --version and --help-as and parses the command line. `words` complete values in shells.
+/// Returns an exit code if help or version was printed; else nullopt. Throws UsageError for a wrong
+/// command line.
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,
                                     const ValueWords& words = {});
 
-/// A text as a shell takes it, in quotes where it needs them.
+/// A text quoted for a shell where needed.
 std::string shellQuoted(const std::string& text);
-/// The arguments joined, as a shell would take them again.
+/// The command line as text that can be given to a shell again.
 std::string commandLineText(int argc, const char* const* argv);
 
-/// How a tool ends that an exception ends.
+/// The exit code and message for an exception that ends a tool.
 struct Failure {
     int exitCode = 1;
     std::string text;  ///< one line for stderr
 };
-/// To be called where one was caught.
+/// To be called while an exception is being handled.
 Failure failureOfCurrentException();
 
-/// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and the
-/// code of its kind: Error its own, everything else 1. Results that could not reach stdout are a
-/// failure (1) as well. What libraries throw in threads of theirs ends the same way. A file that
-/// may not grow (ulimit -f) or a pipe that nobody reads is an error of writing and no signal.
+/// Runs a tool's body and returns its exit code. An exception becomes one line on stderr and an
+/// exit code: that of an Error, 1 for all others. Results that could not be written to stdout are a
+/// failure (1) as well. Exceptions in threads of libraries end the same way. Writing to a file that
+/// may not grow (ulimit -f) or to a pipe without a reader is an error and not a signal.
 int runTool(const std::function<int()>& body);
 
 }  // namespace lacuna

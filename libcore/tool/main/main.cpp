@@ -1,5 +1,5 @@
-// The main of every tool; LACUNA_TOOL is the tool's function. What a tool does is part of the library: the
-// headers of command lines take seconds in every file that includes them.
+// The main function of every tool; LACUNA_TOOL is the tool's function. The tools themselves are part of the library:
+// the headers of command lines take seconds in every file that includes them.
 #include "libcore/tool/tool.h"
 
 namespace lacuna {
