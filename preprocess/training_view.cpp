@@ -1,3 +1,4 @@
+// (theory.md, "Subspaces")
 #include "preprocess/training_view.h"
 
 #include <algorithm>
