@@ -8,9 +8,8 @@
 namespace lacuna {
 
 namespace {
-/// W. The guide serves methods whose light subpaths stand for many samples each; by bpt's own count
-/// of one, what they bring looks too small to be worth going for. (8 is worse than 32 and 128, which
-/// are alike.)
+/// W. The guide serves methods whose light subpaths stand for many samples each. By bpt's own count of one they would
+/// seem to bring too little to be worth learning. (8 is worse than 32 and 128, which are alike.)
 constexpr double kWorth = TechniqueWorth::kOfPool;
 }  // namespace
 

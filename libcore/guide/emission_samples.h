@@ -1,12 +1,12 @@
-// Paths as learned emission sees them: where on the light they begin, along which ray they leave, and
-// how much of the picture's second moment hangs on that. (theory.md, "Learned emission")
+// Paths as learned emission sees them: where on the light they begin, along which ray they leave, and how much of the
+// picture's second moment depends on that. (theory.md, "Learned emission")
 //
 // Paths come from bidirectional path tracing with all its strategies, each sampled path once, under
 // p_D = sum_i p_i. A strategy of s >= 2 light vertices draws both y_0 and the ray, one of s = 1 draws
-// y_0 alone. Let w be the weights of the former together. Where each of them stands for W samples, the
-// density of the path is p_D d with d = 1 - w + W w. With g = f / (p_D d) relative to the pixel, their
-// second moment is the mean over the paths of g^2 W w, and what it would be had y_0 and the ray another
-// density p' instead of today's p is the same mean with a factor p / p'.
+// y_0 alone. Let w be the sum of the weights of the former. If each of them stands for W samples, the density of the
+// path is p_D d with d = 1 - w + W w. With g = f / (p_D d) relative to the pixel, their second moment is the mean over
+// the paths of g^2 W w. If y_0 and the ray had another density p' instead of today's p, it would be the same mean with
+// a factor p / p'.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class EmissionSamples {
         SquarePoint point, ray;  ///< on the light's squares (Lights::pointSquare, raySquare)
         float contribution;      ///< f / p_D; relative to the pixel once relate() was called
         float withRay, alone;    ///< weights of the strategies of s >= 2, of s = 1
-        float pdfPoint, pdfRay;  ///< that the sample was found with, relative to plain emission
+        float pdfPoint, pdfRay;  ///< when it was found, relative to plain emission
     };
 
     /// Adds a path that bidirectional path tracing made with `lights`, with its weighted
@@ -46,8 +46,8 @@ class EmissionSamples {
     std::vector<Sample> samples_;
 };
 
-/// The second moment of a sample's contribution had its point and its ray the density of plain
-/// emission: of the strategies that draw both, and of those that draw the point alone.
+/// The second moment of a sample's contribution if its point and its ray had the density of plain
+/// emission: for the strategies that draw both, and for those that draw the point alone.
 struct PlainMoments {
     double withRay, alone;
 };

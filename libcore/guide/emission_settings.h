@@ -15,7 +15,7 @@ struct EmissionSettings {
     std::uint64_t paths = 0;  ///< 0: as many as go with the rest (guidePaths)
 };
 
-/// `standard`: what a row does where nobody says anything.
+/// `standard` is the row's default.
 inline OptionTable<EmissionSettings> emissionOptions(Emission standard) {
     return withGuidePaths(
         OptionTable<EmissionSettings>({.emission = standard})

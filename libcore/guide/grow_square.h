@@ -1,6 +1,6 @@
-// Trees on the unit square from samples, as emission and walks learn them: halved while enough samples
-// speak for it. A part gets a share in proportion to the root of its second moment times its size: that
-// is where the sum of moment / probability is least. (theory.md, "Learned emission")
+// Trees on the unit square that are grown from samples, for learned emission and guided walks. A part is halved as long
+// as it has enough samples. Its probability is proportional to the root of its second moment times its size: then the
+// sum of moment / probability is least. (theory.md, "Learned emission")
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace lacuna {
 
-/// How many samples of one size would know as much as those with these sums of values and squares.
+/// How many equal samples would know as much as samples with these sums of values and squares.
 inline double effectiveSamples(double sum, double squares) {
     return squares > 0.0 ? sum * sum / squares : 0.0;
 }
@@ -22,7 +22,7 @@ inline double effectiveSamples(double sum, double squares) {
 struct SquareShape {
     double fewest;  ///< effective samples from which a part is halved
     int mostLevels;
-    double virtualSamples;  ///< that speak for evenness in every split
+    double virtualSamples;  ///< for an even split, added to every split
     double evenShare;       ///< of the even density in a mixture with what was learned
 };
 
@@ -31,7 +31,7 @@ struct GrownSquare {
     double mass;  ///< the root of the second moment that is left, all parts together
 };
 
-/// A tree over the samples `of`, which are put in another order. Asks of them, by index:
+/// Grows a tree over the samples `of`, which are put in another order. It asks of samples, by index:
 ///
 ///     SquarePoint pointOf(Index)
 ///     double effective(std::span<const Index>)                 effective samples
@@ -54,10 +54,9 @@ class SquareGrower {
     }
 
   private:
-    static constexpr double kLeastProbability =
-        1e-6;  // of either half: rounding must not make it zero
+    static constexpr double kLeastProbability = 1e-6;  // of a half: rounding must not make it zero
 
-    /// A node that knows its mass, before it is made a probability.
+    /// A node with its mass, which is not made a probability yet.
     struct Part {
         double mass = 0.0, effective = 0.0;
         std::uint32_t code = 0;
@@ -88,7 +87,8 @@ class SquareGrower {
         parts_[node].mass = parts_[child].mass + parts_[child + 1].mass;
     }
 
-    /// `learned`, `size`: of the node's part, without and with the even share to come.
+    /// Sets the probabilities below a node. `learned` is the learned probability of its part,
+    /// `size` that of the even density.
     void finish(std::size_t node, double learned, double size,
                 std::vector<SquareDensity::Node>& nodes) const {
         const Part& part = parts_[node];

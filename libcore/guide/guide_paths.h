@@ -8,7 +8,8 @@
 
 namespace lacuna {
 
-/// So many as are asked for, or (0) what goes with so many for subspaces (0: none).
+/// The number of paths that is asked for. If that is 0, half of those that subspaces are trained
+/// with, or 500 000 if no subspaces are trained.
 inline std::uint64_t guidePaths(std::uint64_t asked, std::uint64_t trainingPaths) {
     if (asked > 0) return asked;
     return trainingPaths > 0 ? (trainingPaths + 1) / 2 : 500'000;

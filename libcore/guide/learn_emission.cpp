@@ -34,11 +34,11 @@ struct Moments {
         alone += m.alone;
         squares += (m.withRay + m.alone) * (m.withRay + m.alone);
     }
-    /// How many samples of one size would know as much.
+    /// How many equal samples would know as much.
     double effective() const { return effectiveSamples(withRay + alone, squares); }
 };
 
-/// For SquareGrower.
+/// What SquareGrower asks of all samples.
 class Samples {
   public:
     explicit Samples(std::span<const Sample> samples) : samples_(samples) {}
@@ -67,7 +67,7 @@ class Rays : public Samples {
     }
 };
 
-/// Every leaf with samples enough has a tree of rays.
+/// Points on a light. Every leaf with enough samples gets a tree of rays.
 class Points : public Samples {
   public:
     Points(std::span<const Sample> samples, const Shape& shape,
@@ -88,14 +88,14 @@ class Points : public Samples {
         rayTree_.push_back(tree);
         return std::sqrt((m.alone + ofRays * ofRays) * size);
     }
-    /// `levels`: none for a light without an extent.
+    /// `levels` is zero for a light without an extent.
     GrownSquare grow(std::span<Index> of, int levels) {
         rayTree_.clear();
         return SquareGrower(*this,
                             {kFewestOfPoints, levels, shape_.virtualSamples, shape_.plainShare})
             .grow(of);
     }
-    /// By leaf of the tree that was grown last.
+    /// The tree of rays, or kNone, by leaf of the tree that was grown last.
     std::span<const Index> rayTree() const { return rayTree_; }
 
   private:
@@ -105,13 +105,13 @@ class Points : public Samples {
     std::vector<Index> rayTree_;
 };
 
-/// By light: what speaks for it.
+/// The mass of a light, and the effective samples that it comes from.
 struct LightMass {
     double mass = 0.0, effective = 0.0;
 };
 
-/// Shares out the probability of lights [begin, end): halves by halves, those of few samples as
-/// their power says.
+/// Shares out the probability `whole` among lights, by halving their list again and again. Halves
+/// with few samples share by power.
 void shareOut(std::span<const LightMass> masses, std::span<const double> power, double whole,
               const Shape& shape, std::span<double> pmf) {
     if (masses.size() == 1) {
@@ -128,7 +128,7 @@ void shareOut(std::span<const LightMass> masses, std::span<const double> power, 
     const double allWatts = watts[0] + watts[1], allMass = mass[0] + mass[1];
     const double byPower = allWatts > 0.0 ? watts[0] / allWatts : 0.5;
     const double byMass = allMass > 0.0 ? mass[0] / allMass : byPower;
-    // At most 1, rounding and all: a half of no power must not get less than nothing.
+    // At most 1, in spite of rounding: a half without power must not get a negative probability.
     const double share =
         (effective * byMass + shape.virtualSamples * byPower) / (effective + shape.virtualSamples);
     const double lower = whole * share;

@@ -19,16 +19,16 @@ constexpr std::size_t kSides = 2;
 constexpr double kFewestOfDirections = 8.0;  // effective samples from which a part is halved
 constexpr int kMostDirectionLevels = 12;
 constexpr int kMostRegionLevels = 20;
-constexpr double kNormalsApart = 0.25;  // standard deviation of them from which a region is halved
+constexpr double kNormalsApart = 0.25;  // standard deviation from which normals halve a region
 constexpr std::array<float, 5> kShares = {0.0f, 0.25f, 0.5f, 0.75f, WalkGuide::kMostShare};
-constexpr double kKindSamples = 8.0;  // that speak for the share that is best for the whole kind
+constexpr double kKindSamples = 8.0;  // virtual ones, for the share that is best for the whole kind
 constexpr Index kOnePathIn = 4;       // chooses shares, the others directions
 
-/// A step with what the whole learning asks of it.
+/// A step with the data that learning needs of it.
 struct Record {
     const Step* step;
-    double moment;  ///< divide by the density per solid angle
-    bool chooses;   ///< shares, not directions
+    double moment;  ///< to be divided by the pdfW of its direction
+    bool chooses;   ///< whether it chooses shares, not directions
 };
 
 std::vector<Record> recordsOf(const WalkSamples& samples) {
@@ -41,7 +41,7 @@ std::vector<Record> recordsOf(const WalkSamples& samples) {
     return records;
 }
 
-/// Sums of what steps carry with BSDFs alone.
+/// Sums of values, and of their squares.
 struct Sums {
     double sum = 0.0, squares = 0.0;
     void add(double value) {
@@ -51,11 +51,11 @@ struct Sums {
     double effective() const { return effectiveSamples(sum, squares); }
 };
 
-/// Where the BSDF cannot go the share says nothing.
+/// Whether the share matters to a step: not where the BSDF cannot go.
 bool countsBySharing(const Record& r) {
     return r.step->pdfBsdf > 0.0f;
 }
-/// What the step carries where the guide's density has this share.
+/// The step's second moment if the guide's density has this share.
 double sharedMoment(const Record& r, double share, double guidePdf) {
     return r.moment / ((1.0 - share) * double(r.step->pdfBsdf) + share * guidePdf);
 }
@@ -63,12 +63,12 @@ double plainMoment(const Record& r) {
     return countsBySharing(r) ? r.moment / double(r.step->pdfBsdf) : 0.0;
 }
 
-/// Steps of one side in one region, on its square.
+/// Steps of one side in one region, as points on its square.
 class Directions {
   public:
     explicit Directions(const DirectionSquare& square) : square_(square) {}
 
-    /// Those that have no point on the square are left to BSDFs.
+    /// Adds a step. Steps that have no point on the square are left to BSDFs.
     void add(const Record& r) {
         const float even = square_.pdfW(r.step->to);
         if (!(even > 0.0f) || r.step->delta) return;
@@ -95,7 +95,7 @@ class Directions {
     const DirectionSquare& square_;
     std::vector<Index> all_;
     std::vector<SquarePoint> points_;
-    std::vector<double> moments_;  // divide by the density on the square
+    std::vector<double> moments_;  // to be divided by the density on the square
 };
 
 struct Shape {
@@ -114,7 +114,7 @@ struct ShareCurve {
         }
         plain.add(plainMoment(r));
     }
-    /// Relative to no guide.
+    /// Second moment with share number c, relative to no guide.
     double at(std::size_t c) const { return moment[0] > 0.0 ? moment[c] / moment[0] : 1.0; }
 };
 
@@ -187,7 +187,8 @@ class Learner {
     float numberOf(Index i, std::uint32_t number) const {
         return records_[i].step->place.numbers[number];
     }
-    /// Walls are told apart first; then the longest of three edges is cut, through the middle one.
+    /// Cuts by normal first, which tells walls apart. Otherwise it cuts the axis along which
+    /// positions deviate most, at their median.
     Cut cutOf(std::span<const Index> of) const {
         std::array<Sums, 6> sums;
         for (const Index i : of) {
@@ -242,7 +243,7 @@ class Learner {
         }
     }
 
-    /// Of the regions from `first` on, all of one kind.
+    /// Sets the shares of the regions from `first` on, which are all of one kind.
     void setShares(std::size_t first) {
         for (std::size_t side = 0; side < kSides; ++side) {
             ShareCurve all;

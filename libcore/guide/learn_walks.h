@@ -1,4 +1,4 @@
-// The guide that makes the second moment of walks small, from paths that reached the picture. (theory.md,
+// Learns the guide that makes the second moment of walks small, from paths that reached the picture. (theory.md,
 // "Guided walks")
 #pragma once
 
@@ -13,9 +13,9 @@ class ThreadPool;
 
 struct LearnedWalks {
     std::shared_ptr<const WalkGuide> guide;
-    /// By Side: second moments on the paths that were held out, of the guide over those of BSDFs alone.
+    /// By Side: second moment of the guide over that of BSDFs alone, on the paths that were held out.
     std::array<double, 2> heldOutLoss{1.0, 1.0};
-    double virtualSamples = 0.0;    ///< that speak for cosine-distributed directions in every split
+    double virtualSamples = 0.0;    ///< for cosine-distributed directions, in every split
     double samplesPerRegion = 0.0;  ///< both as held-out paths chose them
 };
 

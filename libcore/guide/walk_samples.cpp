@@ -8,8 +8,7 @@
 namespace lacuna {
 
 namespace {
-constexpr double kLeastWeight =
-    1e-6;  // of a step, of all strategies': differences of sums know no less
+constexpr double kLeastWeight = 1e-6;  // of a step, over that of all strategies: rounding of sums
 }
 
 void WalkSamples::add(FullPath& path, const TechniqueCounts& counts, const Walker& walker,

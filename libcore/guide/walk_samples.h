@@ -1,10 +1,10 @@
-// Paths as guided walks see them: at each vertex that scatters smoothly, or may, where either walk goes
-// on to, and how much of the picture's second moment hangs on that. (theory.md, "Guided walks")
+// Paths as guided walks see them: at each vertex that scatters smoothly, or may do so, the direction in which either
+// walk goes on, and how much of the picture's second moment depends on it. (theory.md, "Guided walks")
 //
 // Paths come from bidirectional path tracing with all its strategies, each sampled path once under
-// p_D = sum_t p_t, with the weights w_t. Where strategy t of the method that is to be guided stands for
-// W_t samples, its paths have the density p_D d, d = sum_t W_t w_t. With g = f / (p_D d), the second
-// moment of those strategies that drew a step is the mean over the paths of g^2 times their W_t w_t.
+// p_D = sum_t p_t, with the weights w_t. If strategy t of the method that is to be guided stands for W_t samples, the
+// method's paths have the density p_D d, d = sum_t W_t w_t. With g = f / (p_D d), the second moment of those strategies
+// that drew a step is the mean over the paths of g^2 times their W_t w_t.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,10 @@ class WalkSamples {
     /// A walk's step away from a vertex.
     struct Step {
         WalkGuide::Place place;
-        Vec3 to;       ///< unit
-        float weight;  ///< sum of W_t w_t over the strategies that drew it
-        float
-            pdfBsdf;  ///< per solid angle, of the BSDF alone; of a delta event the generalised one
-        float pdfFound;  ///< that it was found with
+        Vec3 to;         ///< unit
+        float weight;    ///< sum of W_t w_t over the strategies that drew it
+        float pdfBsdf;   ///< pdfW of the BSDF alone; of a delta event the generalised one
+        float pdfFound;  ///< pdfW that it was drawn with when it was found
         Side side;       ///< whose walk
         bool delta;
     };
@@ -43,7 +42,7 @@ class WalkSamples {
     void add(FullPath& path, const TechniqueCounts& counts, const Walker& walker,
              const TechniqueWorth& worth, float contribution, std::uint32_t pixel);
     void append(const WalkSamples& other, std::size_t index);
-    /// A path of these steps.
+    /// Adds a path of these steps. `contribution` is its g.
     void put(std::uint32_t pixel, float contribution, std::span<const Step> steps);
     void relate(const PixelScale& scale);
     float outlierLimit() const;
@@ -61,8 +60,8 @@ class WalkSamples {
     std::vector<Step> steps_;
 };
 
-/// What the step carries of the second moment had its direction density one per solid angle; divide by
-/// the density that it is to have.
+/// The step's second moment if its direction had the density pdfW = 1. It is to be divided by the density that the
+/// direction is to have.
 double momentOf(const WalkSamples::Path& path, const WalkSamples::Step& step);
 
 }  // namespace lacuna

@@ -15,7 +15,7 @@ struct WalkSettings {
     std::uint64_t paths = 0;  ///< 0: as many as go with the rest (guidePaths)
 };
 
-/// `standard`: what a row does where nobody says anything.
+/// `standard` is the row's default.
 inline OptionTable<WalkSettings> walkOptions(Walks standard) {
     return withGuidePaths(
         OptionTable<WalkSettings>({.walks = standard})
