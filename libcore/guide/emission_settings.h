@@ -21,8 +21,8 @@ inline OptionTable<EmissionSettings> emissionOptions(Emission standard) {
         OptionTable<EmissionSettings>({.emission = standard})
             .choice<Emission>("emission", &EmissionSettings::emission,
                               {{"plain", Emission::Plain}, {"learned", Emission::Learned}},
-                              "light paths leave lamps by power and in all directions, or as paths "
-                              "that reached the picture taught beforehand"),
+                              "how light paths begin: by power and in all directions, or as "
+                              "learned beforehand from paths that reached the picture"),
         "emission_paths", &EmissionSettings::paths, "emission");
 }
 

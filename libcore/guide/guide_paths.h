@@ -22,7 +22,7 @@ OptionTable<Record> withGuidePaths(OptionTable<Record> table, const std::string&
     table
         .integer(name, field, 0, 1e8, "full paths",
                  "to learn " + what +
-                     " from; 0: half as many as train.paths, 500000 where nothing else is trained")
+                     " from; 0: half as many as train.paths, or 500000 if there is no train.paths")
         .standardText("half of train.paths");
     return table;
 }

@@ -21,8 +21,8 @@ inline OptionTable<WalkSettings> walkOptions(Walks standard) {
         OptionTable<WalkSettings>({.walks = standard})
             .choice<Walks>("walks", &WalkSettings::walks,
                            {{"plain", Walks::Plain}, {"guided", Walks::Guided}},
-                           "walks go on where BSDFs send them, or by a learned share as paths that "
-                           "reached the picture taught beforehand"),
+                           "how walks go on: as BSDFs sample them, or by a learned share along a "
+                           "guide, learned beforehand from paths that reached the picture"),
         "walk_paths", &WalkSettings::paths, "walks");
 }
 

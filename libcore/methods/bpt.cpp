@@ -13,8 +13,8 @@ MethodRow bptRow() {
     return methodRow(
         {.name = "bpt",
          .reference = "Veach97",
-         .summary =
-             "bidirectional path tracing: every eye vertex with the pixel's own light subpath",
+         .summary = "bidirectional path tracing: joins every eye vertex with the pixel's own light "
+                    "subpath",
          .techniques = {.hits = true, .connects = true, .splats = true, .ownLightPath = true}},
         table, makeOwnLightPath);
 }

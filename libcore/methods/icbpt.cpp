@@ -126,7 +126,7 @@ MethodRow icbptRow() {
     addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow({.name = "icbpt",
                       .reference = "Georgiev12",
-                      .summary = "light vertices resampled at importance records on surfaces",
+                      .summary = "resamples light vertices at importance records on surfaces",
                       .techniques = {.hits = true, .connects = true, .splats = true},
                       .proposalLabels = {"full", "unoccluded", "bounded", "uniform", "fallback"},
                       .paper = {"eye_share=0", "first_connections=0", "lamps=power",

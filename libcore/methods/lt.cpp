@@ -25,8 +25,7 @@ MethodRow ltRow() {
     return methodRow(
         {.name = "lt",
          .reference = "Dutre93",
-         .summary =
-             "light tracing: light paths splatted to the lens (nothing seen through mirrors)",
+         .summary = "light tracing: splats light paths to the lens (what mirrors show stays black)",
          .techniques = {.splats = true}},
         OptionTable<NoOptions>(), [](NoOptions) { return std::make_unique<LightTracing>(); });
 }

@@ -88,7 +88,8 @@ MethodRow lvcbptRow() {
     return methodRow(
         {.name = "lvcbpt",
          .reference = "Davidovic14",
-         .summary = "light vertex cache: eye vertices with random vertices of many light subpaths",
+         .summary =
+             "light vertex cache: joins eye vertices with random vertices of many light subpaths",
          .techniques = {.hits = true, .connects = true, .splats = true}},
         table, [](const Options& o) { return std::make_unique<LightVertexCache>(o); });
 }

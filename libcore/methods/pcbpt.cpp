@@ -11,7 +11,7 @@ MethodRow pcbptRow() {
     return methodRow(
         {.name = "pcbpt",
          .reference = "Popov15",
-         .summary = "probabilistic connections: light vertices resampled at nearby cache points",
+         .summary = "probabilistic connections: resamples light vertices at nearby cache points",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .paper = {"first_connections=0", "lamps=power", "next_event=off", "target=flow-bsdf"}},
         cacheResamplingOptions({.subpaths = 100}), makeCacheResampling);

@@ -41,13 +41,12 @@ MethodRow ppmRow() {
             "image")
         .standardText("width x height");
     addMergeRadius(table, &Options::radius);
-    return methodRow(
-        {.name = "ppm",
-         .reference = "Hachisuka08",
-         .summary = "photon mapping: eye vertices up to the first that scatters widely with "
-                    "photons around them",
-         .techniques = {.hits = true}},
-        table, [](const Options& o) { return std::make_unique<PhotonMapping>(o); });
+    return methodRow({.name = "ppm",
+                      .reference = "Hachisuka08",
+                      .summary = "photon mapping: merges eye vertices, up to the first that "
+                                 "scatters widely, with photons around them",
+                      .techniques = {.hits = true}},
+                     table, [](const Options& o) { return std::make_unique<PhotonMapping>(o); });
 }
 
 }  // namespace lacuna

@@ -85,10 +85,9 @@ void complete(MethodRow& row, std::vector<Option> own) {
         }
     }
     if (!row.paper.empty()) {
-        Option preset{
-            kPreset, Option::Kind::Choice,
-            "our defaults, which measured best, or the paper's values; parameters that are given "
-            "override it"};
+        Option preset{kPreset, Option::Kind::Choice,
+                      "our defaults, which measured best, or the paper's values; parameters that "
+                      "you set override both"};
         preset.choices = {"measured", "paper"};
         preset.standard = "measured";
         all.push_back(std::move(preset));

@@ -19,11 +19,12 @@ MethodRow risbptRow() {
     table.choice<Options::Weights>(
         "weights", &Options::weights,
         {{"ris", Options::Weights::Ris}, {"plain", Options::Weights::Plain}},
-        "density that the weights see: resampling-aware, or r = 1");
+        "density that the weights use: resampling-aware, or r = 1");
     return methodRow(
         {.name = "risbpt",
          .reference = "Nabata20a",
-         .summary = "light vertices resampled at cache points, weights aware of the resampling",
+         .summary =
+             "resamples light vertices at cache points, with weights that know of the resampling",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off",
                    "q_iterations=1"}},
@@ -34,7 +35,8 @@ MethodRow risbptCurrentRow() {
     return methodRow(
         {.name = "risbpt-current",
          .reference = "Nabata20a",
-         .summary = "risbpt with Q of the light paths that it weighs, to show the bias (Fig. 3)",
+         .summary =
+             "risbpt that takes Q from the light paths that it weighs, to show the bias (Fig. 3)",
          // Splats come before the pool is complete: they would see another Q, and the weights
          // of a path would not add up to one. Without splats, Q alone causes the bias.
          .techniques = {.hits = true, .connects = true},

@@ -17,14 +17,14 @@ MethodRow sharebptRow() {
         subspaceOptions({.subpaths = 30'000, .sharedPixels = 16, .sharedSamples = 4.0});
     table.choice<int>("share", &SubspaceOptions::sharedPixels,
                       {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
-                      "pixels beside each other that go on along each other's walks; 1: none");
+                      "number of neighbouring pixels that share their eye walks; 1: no sharing");
     table.real("share_samples", &SubspaceOptions::sharedSamples, 1, 16, "samples",
-               "that weights believe a shared walk to be worth");
+               "that a shared walk counts as in the weights");
     table.include("", &SubspaceOptions::merging, mergeOptions());
     return methodRow(
         {.name = "sharebpt",
          .reference = "Bekaert02",
-         .summary = "spcbpt whose pixels share eye walks with those beside them",
+         .summary = "spcbpt whose neighbouring pixels share eye walks",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .emission = Emission::Learned,
          .sampling = Sampling::Sobol,

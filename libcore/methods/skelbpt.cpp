@@ -210,19 +210,19 @@ MethodRow skelbptRow() {
     table.include("", &Options::picks, pickOptions(Options{}.picks));
     table.real(
         "node_acceptance", [](auto& o) -> auto& { return o.nodes.acceptance; }, 0, 1e6, "",
-        "a node has distributions where more than so many times the mean number of eye "
-        "vertices belong to it");
+        "a node has distributions if the number of its eye vertices is above this multiple of the "
+        "mean");
     table.choice<Set>(
         "distributions", [](auto& o) -> auto& { return o.nodes.set; },
         {{"vuc", Set::Vuc}, {"uc", Set::Uc}, {"vc", Set::Vc}, {"c", Set::C}},
-        "which of visible (v), unoccluded (u) and uniform (c) there are at a node");
+        "distributions of a node: visible (v), unoccluded (u), uniform (c)");
     addBelieved(table, &Options::weights);
     addLengths(table, &Options::lengths);
     addNextEvent(table, &Options::nextEvent, &Options::lamps);
     return methodRow(
         {.name = "skelbpt",
          .reference = "Noel15",
-         .summary = "light vertices resampled at the nodes of the empty space's skeleton",
+         .summary = "resamples light vertices at the nodes of the empty space's skeleton",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .needs = {{"skeleton", "voxels.", voxelOptions().options()}},
          .proposalLabels = {"visible", "unoccluded", "uniform", "fallback"},

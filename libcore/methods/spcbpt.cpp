@@ -259,7 +259,7 @@ OptionTable<SubspaceOptions> subspaceOptions(const SubspaceOptions& defaults) {
     table.choice<SubspaceWeights>(
         "weights", &SubspaceOptions::weights,
         {{"ris", SubspaceWeights::Ris}, {"paper", SubspaceWeights::Paper}},
-        "density that the weights see: resampling-aware, or the target alone (the paper)");
+        "density that the weights use: resampling-aware, or the target alone (the paper)");
     return table;
 }
 
@@ -272,10 +272,10 @@ MethodRow spcbptRow() {
     table.integer("reuse", &SubspaceOptions::reuse, 0, 1e6, "light vertices",
                   "kept per subspace across iterations, M_0; 0: none");
     table.include("", &SubspaceOptions::merging, mergeOptions());
-    return subspaceRow("spcbpt",
-                       "light vertices resampled in two stages, by trained subspaces of light "
-                       "subpaths",
-                       false, table);
+    return subspaceRow(
+        "spcbpt",
+        "resamples light vertices in two stages, by trained subspaces of light and eye subpaths",
+        false, table);
 }
 
 MethodRow spcbptFifoRow() {

@@ -375,20 +375,21 @@ MethodRow tsrbptRow() {
     table.include("", &Options::picks, pickOptions(Options{}.picks));
     table.integer("second_candidates", &Options::clusters, 1, 1e6, "clusters", "of a cut, M2");
     addCachePoints(table, &Options::cacheDensity, &Options::cachePoints);
-    table.choice<Points>(
-        "points", &Options::points, {{"even", Points::Even}, {"weighted", Points::Weighted}},
-        "how the cache points around an eye vertex share its picks: each alike; or by "
-        "what the weights believe of each, together with one more that picks "
-        "evenly from the pool (the paper)");
+    table.choice<Points>("points", &Options::points,
+                         {{"even", Points::Even}, {"weighted", Points::Weighted}},
+                         "how the cache points around an eye vertex share its picks: equally; or "
+                         "by the density that the weights give to each, with one more point that "
+                         "picks uniformly from the pool (the paper)");
     table.real("defensive", &Options::defensive, 0, 0.99, "share",
-               "of the second stage that goes by power and distance alone; 0 only with "
-               "points=weighted");
+               "of the second stage's probability that follows power and distance alone; 0 only "
+               "with points=weighted");
     table.choice<SecondStage>("target", &Options::secondStage,
                               {{"energy", SecondStage::Energy}, {"printed", SecondStage::Printed}},
-                              "second stage: target over proposal, or q2/q1 as printed");
+                              "what the second stage is proportional to: target over proposal, or "
+                              "q2/q1 as the paper prints it");
     table.choice<Weights>("weights", &Options::weights,
                           {{"tsr", Weights::Tsr}, {"ris", Weights::Ris}, {"plain", Weights::Plain}},
-                          "density that the weights see: both stages, the second alone, or r = 1");
+                          "density that the weights use: both stages, the second alone, or r = 1");
     addClamp(table, &Options::clamp);
     addEarlierIterations(table, &Options::earlierIterations);
     addEyeShare(table, &Options::eyeShare);
@@ -397,7 +398,7 @@ MethodRow tsrbptRow() {
     return methodRow(
         {.name = "tsrbpt",
          .reference = "Nabata20b",
-         .summary = "two-stage resampling: a light tree's cut at every cache point, then its pmf",
+         .summary = "two-stage resampling at cache points: by a cut of a light tree, then by a pmf",
          .techniques = {.hits = true, .connects = true, .splats = true},
          .paper = {"first_connections=0", "eye_share=0", "lamps=power", "next_event=off",
                    "q_iterations=1", "cache_points=3", "points=weighted", "target=printed",
@@ -405,8 +406,8 @@ MethodRow tsrbptRow() {
         table, [](const Options& o) {
             if (o.defensive == 0.0 && o.points == Points::Even) {
                 throw UsageError(
-                    "defensive: expected a share above 0 with points=even, found 0: "
-                    "what one cache point does not see, nothing would pick");
+                    "defensive: expected a share above 0 with points=even, found 0: nothing would "
+                    "pick light vertices that a cache point does not see");
             }
             return std::make_unique<TwoStageResampling>(o);
         });

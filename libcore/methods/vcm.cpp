@@ -25,7 +25,8 @@ MethodRow vcmRow() {
     return methodRow(
         {.name = "vcm",
          .reference = "Georgiev12b",
-         .summary = "vertex connection and merging: bpt, and eye vertices with photons around them",
+         .summary =
+             "vertex connection and merging: bpt, and merges eye vertices with photons around them",
          .techniques = {.hits = true,
                         .connects = true,
                         .splats = true,

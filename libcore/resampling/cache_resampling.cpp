@@ -193,8 +193,8 @@ OptionTable<CacheResamplingOptions> cacheResamplingOptions(const CacheResampling
     table.choice<CacheTarget>(
         "target", &O::target,
         {{"flow", CacheTarget::Flow}, {"flow-bsdf", CacheTarget::FlowThrough}},
-        "what pmfs are proportional to: light that arrives at the cache point, or what "
-        "its BSDF scatters of that towards the eye");
+        "what pmfs are proportional to: light that arrives at the cache point, or the part of it "
+        "that the BSDF there scatters towards the eye");
     addNextEvent(table, &O::nextEvent, &O::lamps);
     return table;
 }

@@ -93,8 +93,8 @@ template <class Record, class Field>
 void addLengths(OptionTable<Record>& table, Field field) {
     table.template choice<Lengths>(
         "lengths", field, {{"every", Lengths::Every}, {"share", Lengths::Share}},
-        "for which s a vertex is picked: every one (the paper), or with a probability that follows "
-        "the share of light subpaths that are so long");
+        "for which s a vertex is picked: for every s (the paper), or with a probability that "
+        "follows the share of light subpaths of that length");
 }
 
 /// What the weights believe of a connection.
@@ -108,7 +108,7 @@ template <class Record, class Field>
 void addBelieved(OptionTable<Record>& table, Field field) {
     table.template choice<Believed>(
         "weights", field, {{"credit", Believed::Credit}, {"aware", Believed::Aware}},
-        "what the weights believe: M samples per connection (the paper), or the resampling");
+        "density that the weights use: M samples per connection (the paper), or resampling-aware");
 }
 
 /// One pmf made of several over the same outcomes, with the maximum heuristic [Veach97 9.2.3]

@@ -10,11 +10,10 @@ namespace lacuna {
 template <class Record, class Field>
 void addMergeRadius(OptionTable<Record>& table, Field field) {
     table
-        .real(
-            "radius", field, 0, 1e9, "scene units",
-            "around an eye vertex in which photons are merged with it, in the first iteration; it "
-            "shrinks from one to the next; 0: of two pixels")
-        .standardText("of two pixels");
+        .real("radius", field, 0, 1e9, "scene units",
+              "within which photons are merged with an eye vertex, in the first iteration; it "
+              "shrinks with each iteration; 0: two footprints of a pixel")
+        .standardText("two footprints of a pixel");
 }
 
 /// Merging of rows with a pool, for paths that their connections cannot make.

@@ -48,8 +48,8 @@ void addLamps(OptionTable<Record>& table, Field field) {
 template <class Record, class Field, class LampsField>
 void addNextEvent(OptionTable<Record>& table, Field field, LampsField lamps) {
     table.onOff("next_event", field,
-                "on: s = 1 by one fresh light point per eye vertex; off: by the pool's own light "
-                "points");
+                "on: s = 1 takes a fresh light point for each eye vertex; off: it takes the light "
+                "points of the light paths");
     addLamps(table, lamps);
 }
 /// ConnectionDensity::lamps of those methods.
@@ -60,10 +60,9 @@ inline Lamps lampsOf(bool nextEvent, Lamps lamps) {
 /// `eye_share`: see withEyeShare.
 template <class Record, class Field>
 void addEyeShare(OptionTable<Record>& table, Field field) {
-    table.real(
-        "eye_share", field, 0, 1, "share",
-        "of the variance that all picks at one eye vertex have in common; the weights believe it "
-        "of all but the first eye vertex; 0: none (the paper)");
+    table.real("eye_share", field, 0, 1, "share",
+               "of the variance that all picks at one eye vertex have in common, as the weights "
+               "assume at all but the first eye vertex; 0: none (the paper)");
 }
 
 /// n r of picks that differ in their light subpath alone. `share` of a connection's variance is

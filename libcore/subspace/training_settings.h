@@ -26,8 +26,8 @@ inline OptionTable<TrainingSettings> trainingOptions(const TrainingSettings& def
         .integer("epochs", &TrainingSettings::epochs, 0, 10'000, "passes",
                  "over the paths to optimise Gamma")
         .onOff("borrow", &TrainingSettings::borrow,
-               "columns of Gamma that few paths speak for borrow from their neighbours; off, with "
-               "epochs=0: Gamma^full as the paper counts it");
+               "columns of Gamma with few paths borrow from their neighbours; off, with epochs=0: "
+               "Gamma^full as the paper counts it");
 }
 
 }  // namespace lacuna
