@@ -22,7 +22,7 @@ std::string text(const char* format, Values... values) {
     return line;
 }
 
-/// mape in per cent, the others as they are.
+/// An error as text: mape in per cent, other measures as they are.
 std::string figure(const std::string& measure, double error, const char* digits) {
     return measure == "mape" ? text((std::string(digits) + " %%").c_str(), 100.0 * error)
                              : text(digits, error);

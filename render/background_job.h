@@ -1,4 +1,4 @@
-// Something that is done beside the render every so often, one at a time.
+// A recurring job in the background of the render, one at a time.
 #pragma once
 
 #include <chrono>
@@ -11,19 +11,19 @@ namespace lacuna {
 
 class BackgroundJob {
   public:
-    /// `seconds` between two begins, at least.
+    /// `seconds`: least time between two starts.
     explicit BackgroundJob(double seconds);
-    /// Waits for what is being done.
+    /// Waits for the running job.
     ~BackgroundJob();
     BackgroundJob(const BackgroundJob&) = delete;
     BackgroundJob& operator=(const BackgroundJob&) = delete;
 
-    /// Whether it is time, and the last one is done.
+    /// Whether it is time for the next job and the last one is done.
     bool due() const;
-    /// In the background. `due` or never begun.
+    /// Starts `work` in the background. Requires that no job is running.
     void begin(std::function<void()> work);
     void wait();
-    /// Why the last one failed. Told once, and not again until one succeeds: a disk that is full
+    /// Why the last job failed. Reported once, and not again until a job has succeeded: a full disk
     /// stays full.
     std::optional<std::string> failure();
 
@@ -34,7 +34,7 @@ class BackgroundJob {
     std::chrono::duration<double> every_;
     Clock::time_point last_ = Clock::now();
     std::future<void> doing_;
-    bool told_ = false;  ///< that the one before failed
+    bool told_ = false;  ///< a failure has been reported
 };
 
 }  // namespace lacuna

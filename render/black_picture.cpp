@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int kPaths = 4096;  // of each kind, and eye paths of one small render
+constexpr int kPaths = 4096;  // subpaths of each kind, and eye paths of one small render
 constexpr int kIterations = 16;
 constexpr int kAmpleDepth = WalkLimits{}.maxDepth;
 
@@ -34,14 +34,14 @@ bool bptFindsLight(const Stage& stage, const SmallFilm& small, int maxDepth,
     return false;
 }
 
-/// What subpaths of the scene meet, kPaths of either kind.
+/// Counts of what subpaths in the scene meet; kPaths of each kind.
 struct Encounters {
-    int lit = 0;                ///< light subpaths that begin with any light
-    int lightMeets = 0;         ///< that meet a surface,
-    int lightRough = 0;         ///< and first one that is no mirror and no smooth glass
-    int eyeMeets = 0;           ///< eye subpaths that meet a surface,
-    int eyeRough = 0;           ///< and first one that is no mirror and no smooth glass
-    int front = 0, behind = 0;  ///< lamps that eye subpaths ran into, by their side
+    int lit = 0;                ///< light subpaths that begin with power
+    int lightMeets = 0;         ///< those that meet a surface
+    int lightRough = 0;         ///< those whose first surface is rough or diffuse
+    int eyeMeets = 0;           ///< eye subpaths that meet a surface
+    int eyeRough = 0;           ///< those whose first surface is rough or diffuse
+    int front = 0, behind = 0;  ///< lamps that eye subpaths hit, by their side
 };
 
 Encounters meet(const Stage& stage, const SmallFilm& small) {
@@ -51,7 +51,7 @@ Encounters meet(const Stage& stage, const SmallFilm& small) {
     limits.maxDepth = std::max(limits.maxDepth, kAmpleDepth);
     const Camera camera = stage.camera->withFilm(small.film);
     const Walker walker(scene, camera, limits);
-    RayTally tally;  // of nothing that is rendered
+    RayTally tally;  // not part of any render
     std::vector<PathVertex> path;
     const PixelRect& crop = small.crop;
     for (int i = 0; i < kPaths; ++i) {
@@ -84,7 +84,7 @@ bool anyHittable(const Lights& lights) {
     return false;
 }
 
-/// Why the method makes nothing of paths on which bpt finds light.
+/// Why the method cannot use the paths on which bpt finds light.
 std::string whyNotByThisMethod(const MethodRow& method, const Encounters& e, bool hittable) {
     const std::string bpt = "; a test with bpt finds light here";
     const Techniques& t = method.techniques;
@@ -106,7 +106,7 @@ std::string paths(int n) {
     return std::to_string(n) + " of " + std::to_string(kPaths);
 }
 
-/// What the scene is like where bpt finds nothing either.
+/// The causes in the scene if bpt finds no light either.
 std::string whyNotAtAll(const Encounters& e, bool hittable) {
     if (e.lit == 0) return "the emission of every lamp is black, which is no light";
     std::string text;

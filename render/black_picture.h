@@ -1,4 +1,4 @@
-// What to say of a picture that is black although the scene has lights.
+// Diagnosis of a picture that is black although the scene has lights.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace lacuna {
 
-/// The causes that experiments with the scene bear out (small renders by bpt, light and eye paths
-/// traced by themselves), and what was found where they bear out none. Takes about a second.
+/// The causes that experiments with the scene confirm: small renders by bpt, and separately traced
+/// light and eye paths. If they confirm none, the text reports what they found. Takes about a
+/// second.
 std::string whyBlack(const Stage& stage, const MethodRow& method, const ThreadPool& pool);
 
 }  // namespace lacuna

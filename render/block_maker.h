@@ -1,4 +1,4 @@
-// Makes iterations: the integrator with the method of the open block.
+// Makes iterations with the integrator and the method of the open block.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,7 @@
 
 namespace lacuna {
 
-/// What iterations cost and counted, with their blocks' warm-ups.
+/// Time and statistics of iterations, with their blocks' warm-ups.
 struct Totals {
     double seconds = 0.0;
     IterationStatistics statistics;
@@ -31,36 +31,36 @@ struct Totals {
     }
 };
 
-/// What must be finished whatever is asked for.
+/// The cancel flag of work that must be finished.
 inline const std::atomic<bool> kNeverCancelled{false};
 
 class BlockMaker {
   public:
-    /// Those that are passed by reference must outlive the maker. Tells `stage` how large blocks
-    /// are.
+    /// The arguments passed by reference must outlive the maker. Sets the size of blocks in
+    /// `stage`.
     BlockMaker(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                Stage& stage, const Caches& caches, const ThreadPool& pool);
     BlockMaker(const BlockMaker&) = delete;
     BlockMaker& operator=(const BlockMaker&) = delete;
 
     const BlockPlan& plan() const { return plan_; }
-    /// Whether a block's iterations can only be made from its first one on, and all in one place:
-    /// the method learns from them, or layers hold them together.
+    /// Whether the iterations of a block must be made in order from the first one, and all in one
+    /// process: because the method learns from them, or because layers accumulate them.
     bool blocksAreWhole() const { return learns_ || !layers_.empty(); }
     int warmupIterations() const { return warmupIterations_; }
-    /// L.
+    /// L: light subpaths per iteration.
     std::uint64_t lightPaths() const { return integrator_->lightPaths(); }
-    /// Of the open block.
+    /// Layers of the open block.
     std::span<BlockLayers* const> layers() const { return layers_; }
     std::optional<WeightVerifier::Result> verified() const;
 
-    /// Opens the block of `iteration`, which is to be rendered next: a method as new, warmed up.
-    /// Whoever goes on in the middle of a block does not count its warm-up: that is counted once.
-    /// False if cancelled; then the block is not open.
+    /// Opens the block of `iteration`, the next one to be rendered, with a new method that is
+    /// warmed up. If the block is continued in the middle, `totals` does not count its warm-up
+    /// again. False if cancelled; then the block is not open.
     bool beginBlock(std::uint64_t iteration, const std::atomic<bool>& cancel, Totals& totals);
-    /// Renders an iteration of the open block into `pixels`, one per pixel of the crop. Where blocks
-    /// are whole, they must come in order. False if cancelled; then `pixels` are not finished,
-    /// and layers, if there are some, hold parts of it that cannot be taken out again.
+    /// Renders an iteration of the open block into `pixels`, one per pixel of the crop. If
+    /// blocksAreWhole(), iterations must come in order. False if cancelled; then `pixels` are
+    /// unfinished, and layers, if any, contain parts of the iteration that cannot be removed.
     bool render(std::uint64_t iteration, std::span<Rgb> pixels, const std::atomic<bool>& cancel,
                 Totals& totals);
 
@@ -70,8 +70,8 @@ class BlockMaker {
     const MethodRow& row_;
     const Settings& settings_;
     const AssetSet assets_;
-    std::unique_ptr<Method> method_;  ///< of the open block
-    // What all of them say: asked for by other threads while a block is opened.
+    std::unique_ptr<Method> method_;  ///< method of the open block
+    // Properties of all methods of the render. Other threads read them while a block is opened.
     const bool learns_;
     const int warmupIterations_;
     BlockPlan plan_;

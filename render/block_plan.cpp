@@ -9,12 +9,12 @@
 namespace lacuna {
 namespace {
 
-/// Large enough that a warm-up costs below 1 % (theory.md, "Blocks").
+/// Large enough for a warm-up to cost less than 1 % (theory.md, "Blocks").
 constexpr std::uint64_t kBlockIterations = 64;
-/// Where the method learns: an interrupted block is begun anew, so that it should be small, but
-/// what is forgotten between blocks should cost little.
+/// For methods that learn. Blocks should be small, because an interrupted block starts anew, but
+/// large enough that forgetting between blocks costs little.
 constexpr std::uint64_t kLearningBlockIterations = 16;
-/// Where iterations share light paths: eight samples of the default number of iterations.
+/// For iterations that share light paths: eight samples in the default number of iterations.
 constexpr std::uint64_t kSharingBlockIterations = 8;
 
 }  // namespace

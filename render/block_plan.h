@@ -1,5 +1,5 @@
-// How a render's iterations are cut into blocks, and which of them are asked for. (theory.md,
-// "Blocks")
+// The division of a render's iterations into blocks, and the range of iterations to render.
+// (theory.md, "Blocks")
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace lacuna {
 
-/// Of a picture, where no option says how many.
+/// Iterations of a picture if no option determines the number.
 constexpr std::uint64_t kDefaultIterations = 64;
 
-/// The method's blocks, or those of --block-iterations.
+/// The plan of the method, or of --block-iterations.
 BlockPlan planOf(const RenderOptions& options, const Method& method);
 
-/// Behind the last iteration that is asked for; 0: time or error alone end the render. Throws UsageError
-/// for blocks behind the picture's end.
+/// One past the last requested iteration; 0: only time or error end the render. Throws UsageError for blocks beyond the
+/// picture's end.
 std::uint64_t endOf(const RenderOptions& options, const BlockPlan& plan);
 
 }  // namespace lacuna

@@ -13,7 +13,7 @@
 namespace lacuna {
 
 struct Caches {
-    std::vector<std::unique_ptr<Asset>> assets;  ///< in the order of their making
+    std::vector<std::unique_ptr<Asset>> assets;  ///< in the order in which they are made
     std::map<std::string, std::string> hashes;   ///< of their content, by name
     std::map<std::string, double> phaseSeconds;
     double seconds = 0.0;
@@ -21,9 +21,9 @@ struct Caches {
     AssetSet all() const;
 };
 
-/// Reads what `row` needs. A missing or stale cache is an InputError that names the command that
-/// makes it; with options.prepare it is made and written instead. Throws Error 130 if `cancel` is
-/// set meanwhile.
+/// Reads the assets that `row` needs. A missing or stale cache causes an InputError that names the
+/// command to make it; with options.prepare it is made and written instead. Throws InterruptedError
+/// if `cancel` is set meanwhile.
 Caches loadCaches(const RenderOptions& options, const MethodRow& row, const Settings& settings,
                   const SceneStage& stage, const ThreadPool& pool, const std::atomic<bool>& cancel,
                   Progress& progress);

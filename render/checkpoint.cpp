@@ -15,7 +15,8 @@ void write(const std::string& path, const Part& part) {
     writeExr(path, image, {.compression = ExrCompression::None});
 }
 
-/// A checkpoint may be called anything: its name says nothing of what is wrong.
+/// The layers of a checkpoint, whose file may have any name. An error of readExrLayers would
+/// mislead.
 LayeredImage readLayers(const std::string& path) {
     try {
         return readExrLayers(path);
@@ -43,7 +44,7 @@ std::optional<Part> Checkpoint::load(const CacheStamp& inputs, std::uint64_t fir
     if (!std::filesystem::exists(path_, ignored)) return std::nullopt;
     LayeredImage image = readLayers(path_);
     Part part = takePart(image, path_);
-    // As a file holds them: a line break in a camera's name is none there.
+    // Parsed from text like those of a file, where line breaks in a camera's name are replaced.
     std::string different = differencesText(CacheStamp::parse(inputs.text()), part.inputs);
     if (different.empty() && part.firstBlock != firstBlock) {
         different = "first block (there " + std::to_string(part.firstBlock) + ", here " +

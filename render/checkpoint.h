@@ -1,5 +1,5 @@
-// --checkpoint: what there is of a picture goes to a file now and then, and a later run of the same
-// command goes on from it.
+// --checkpoint: saves the unfinished picture to a file at intervals. A later run of the same
+// command continues from it.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-/// What the checkpoint `path` is of; empty if there is no file. Throws InputError if it is damaged or
-/// another file.
+/// The inputs of the render of the checkpoint `path`; empty if there is no file. Throws InputError if the file is
+/// damaged or no checkpoint.
 std::optional<CacheStamp> checkpointInputs(const std::string& path);
 
 class Checkpoint {
@@ -19,19 +19,19 @@ class Checkpoint {
     /// `seconds` between two saves.
     Checkpoint(std::string path, double seconds);
 
-    /// What the file holds; empty if there is none. Throws InputError if it is no checkpoint, is
-    /// damaged, of another render than `inputs` or begins with another block: the message says what
-    /// differs.
+    /// The content of the file; empty if there is none. Throws InputError if it is no checkpoint,
+    /// is damaged, belongs to another render than `inputs`, or begins with another block. The
+    /// message tells what differs.
     std::optional<Part> load(const CacheStamp& inputs, std::uint64_t firstBlock) const;
 
     /// Whether it is time to save and the last save is done.
     bool due() const { return saving_.due(); }
-    /// Writes in the background: whole or not at all. Rendering may go on meanwhile, the part's
-    /// sums are not changed.
+    /// Writes the part in the background, whole or not at all. Rendering may go on meanwhile: it
+    /// does not change the part's sums.
     void save(Part part);
-    /// Writes and waits. Throws RunError.
+    /// Writes the part and waits. Throws RunError.
     void finish(Part part);
-    /// Why the last save in the background failed; told once (background_job.h).
+    /// Why the last save in the background failed; reported once (background_job.h).
     std::optional<std::string> failure() { return saving_.failure(); }
 
   private:

@@ -1,12 +1,12 @@
-// Which build it is that renders: programs are small, the library has the code.
+// Identifies the build that renders: programs are small, and the library contains the code.
 #pragma once
 
 #include <string>
 
 namespace lacuna {
 
-/// The path of the file that holds the code which renders: the library, or a program that it is
-/// linked into.
+/// The path of the file with the rendering code: the shared library, or the program into which it
+/// is linked.
 std::string codeFile();
 
 }  // namespace lacuna

@@ -18,7 +18,7 @@ Alone::Alone(BlockMaker& maker, const std::atomic<bool>& interrupted, const Thre
 bool Alone::advance(Film& film, Totals& totals) {
     if (stopped_ || cut_) return false;
     if (film.iterations() > 0) {
-        // Layers hold parts of an iteration that could not be taken out again.
+        // With layers an iteration must be finished: parts of it could not be removed from them.
         return make(film, totals, maker_.layers().empty() ? interrupted_ : kNeverCancelled);
     }
     bool made = false;
@@ -26,7 +26,7 @@ bool Alone::advance(Film& film, Totals& totals) {
         const Grace grace(interrupted_, cut_, kGrace);
         made = make(film, totals, cut_);
     }
-    if (made) cut_ = false;  // it ended while the time did
+    if (made) cut_ = false;  // it was finished as the time ran out
     return made;
 }
 
@@ -54,7 +54,7 @@ bool Alone::make(Film& film, Totals& totals, const std::atomic<bool>& cancel) {
     return true;
 }
 
-/// Layers have parts of an iteration in them that cannot be told apart from what is missing.
+/// Adds an unfinished iteration, but not with layers: their parts of the iteration are undefined.
 void Alone::addUnfinished(Film& film) {
     const auto black = [](const Rgb& value) { return isBlack(value); };
     if (maker_.layers().empty() && !std::ranges::all_of(pixels_, black)) film.add(pixels_, pool_);

@@ -1,4 +1,4 @@
-// Who makes the iterations of a picture: this process alone, or several together (render/ranks).
+// The makers of a picture's iterations: this process alone, or several together (render/ranks).
 #pragma once
 
 #include <atomic>
@@ -13,25 +13,25 @@ namespace lacuna {
 class Crew {
   public:
     virtual ~Crew() = default;
-    /// Adds the film's next iterations to it, those of one block at most, and to `totals` what they
-    /// counted and the time that has gone. False: there are none, because of an interrupt or because
-    /// they are not made yet. Throws what stopped a member of the crew.
+    /// Adds the next iterations, at most those of one block, to the film, and their statistics and
+    /// time to `totals`. False if there are none, because of an interrupt or because they are not
+    /// finished yet. Rethrows the exception that stopped a member of the crew.
     virtual bool advance(Film& film, Totals& totals) = 0;
-    /// Nothing new begins from now on.
+    /// From now on, no new iterations begin.
     virtual void stop() = 0;
-    /// Whether something is still being made.
+    /// Whether iterations are still being made.
     virtual bool busy() const { return false; }
-    /// Whether a member was asked to end, who is not asked here.
+    /// Whether another member was asked to end.
     virtual bool interrupted() const { return false; }
     /// Whether the first iteration was not finished in the time that an interrupt leaves it. The
-    /// film then has what there is of it, as an iteration, or is empty where there is nothing.
+    /// film then contains the unfinished iteration, or is empty if nothing was made.
     virtual bool cutShort() const { return false; }
-    /// What a member takes for an iteration; 0: not known yet.
+    /// Time that a member takes for an iteration; 0: not known yet.
     virtual double iterationSeconds() const = 0;
 };
 
-/// One process. The film's first iteration has three seconds to end behind an interrupt, so that
-/// there is something to save.
+/// A crew of one process. After an interrupt, the film's first iteration has three seconds to end,
+/// so that there is something to save.
 class Alone final : public Crew {
   public:
     /// All references must outlive the crew.
@@ -52,7 +52,7 @@ class Alone final : public Crew {
     const ThreadPool& pool_;
     Progress& progress_;
     bool stopped_ = false;
-    bool begun_ = false;  ///< a block
+    bool begun_ = false;  ///< a block is open
     std::vector<Rgb> pixels_;
     double iterationSeconds_ = 0.0;
 };

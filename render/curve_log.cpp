@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-/// Shortest text that gives the same double again; "inf" as CSV readers know it.
+/// The shortest text that reads back as the same double; "inf" as CSV readers know it.
 std::string number(double value) {
     char text[40];
     for (int digits = 6; digits <= 17; ++digits) {
@@ -51,7 +51,7 @@ CurveLog::CurveLog(const std::string& path, std::uint64_t iteration) : path_(pat
     writeAll();
 }
 
-/// A device takes it at once, a file with the others by writeAll().
+/// Appends a line: a device gets it at once, a file with all others by writeAll().
 void CurveLog::append(const std::string& line) {
     if (isFile_) {
         text_ += line + '\n';
@@ -65,7 +65,7 @@ void CurveLog::append(const std::string& line) {
     }
 }
 
-/// Ten rows per decade of seconds are never many.
+/// Writes the whole file each time; there are at most ten rows per decade of seconds.
 void CurveLog::writeAll() {
     if (isFile_) writeFileAtomically(path_, text_);
 }

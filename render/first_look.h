@@ -1,4 +1,4 @@
-// What the lens sees first: layers of the picture, and what its error is measured by.
+// The first visible surfaces: their feature layers, and the error meter that uses them.
 #pragma once
 
 #include "libcore/bidir/error_estimate.h"
@@ -8,7 +8,7 @@
 namespace lacuna {
 
 struct FirstLook {
-    /// Times itself as the stage's phase "features".
+    /// Measures its time as the stage's phase "features".
     FirstLook(Stage& stage, const ThreadPool& pool);
 
     FeatureLayers features;

@@ -1,4 +1,4 @@
-// How long the first iteration may go on behind an interrupt.
+// Limits the time of the first iteration after an interrupt.
 #pragma once
 
 #include <atomic>

@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-/// What pictures and parts call channels and layers of their own.
+/// Names of channels and layers that pictures and parts use themselves.
 constexpr std::array kTaken = {"A",
                                "B",
                                "G",

@@ -1,4 +1,4 @@
-// --layer NAME=EXPRESSION and --cryptomatte, from text to what is rendered.
+// Parses --layer NAME=EXPRESSION and --cryptomatte.
 #pragma once
 
 #include <span>
@@ -9,16 +9,16 @@
 
 namespace lacuna {
 
-/// In the order of the command line. Throws UsageError for what is no NAME=EXPRESSION, for names that
-/// the picture has for something else or that are there twice, and for what is no expression.
+/// The layers in the order of the command line. Throws UsageError for a text that is not NAME=EXPRESSION, for a name
+/// that is reserved or occurs twice, and for an invalid expression.
 std::vector<LayerExpression> parseLayerExpressions(std::span<const std::string> texts);
 
-/// What there are ids of.
+/// The types of Cryptomattes to render.
 struct MatteTypes {
     bool objects = false, materials = false;
     bool any() const { return objects || materials; }
 };
-/// "object,material" or one of them. Throws UsageError.
+/// Parses "object,material" or one of them. Throws UsageError.
 MatteTypes parseMatteTypes(const std::string& text);
 
 }  // namespace lacuna

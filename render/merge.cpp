@@ -14,9 +14,9 @@ namespace {
 
 struct PartFile {
     std::string path;
-    Part part;  ///< without its sums' pixels: all parts at once may be more than memory holds
+    Part part;  ///< without the pixels of its sums: all parts together may exceed the memory
 
-    /// Behind its last block, whole or not.
+    /// One past its last block, whole or not.
     std::uint64_t end() const { return part.sums.openBlock + (part.sums.open.empty() ? 0 : 1); }
 };
 
@@ -36,7 +36,7 @@ void requireSameRender(const PartFile& first, const PartFile& other) {
                      ", found another " + different + "; merge parts of one command");
 }
 
-/// Neighbours in the order of their blocks.
+/// Checks two parts that are adjacent in the order of blocks.
 void requireNeighbours(const PartFile& left, const PartFile& right, bool gaps,
                        std::vector<std::string>& warnings) {
     if (right.part.firstBlock < left.end()) {
@@ -84,7 +84,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
 
     const BlockPlan plan = files.front().part.plan;
     SumTree blocks(1);
-    FilmSum last;  // the open block at the end: it is no item of the tree
+    FilmSum last;  // the open block at the end, which is not in the tree
     IterationStatistics statistics;
     double seconds = 0.0;
     for (std::size_t i = 0; i < files.size(); ++i) {

@@ -1,4 +1,4 @@
-// Parts of one picture, put together again.
+// Merges the parts of one picture.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@ namespace lacuna {
 class ThreadPool;
 
 struct Merged {
-    LayeredImage image;  ///< picture, variance, layers; features and header of the first part
+    LayeredImage image;  ///< picture, variance, layers; features and header are the first part's
     FilmSum::MeanColour mean;
-    std::uint64_t blocks = 0;  ///< begun ones
+    std::uint64_t blocks = 0;  ///< number of blocks begun
     std::uint64_t iterations = 0;
     std::vector<std::string> warnings;
 };
 
-/// The parts in any order. Throws InputError if one is no part, two are of different renders or
-/// hold the same block; without `gaps`, if a block is missing in front of another.
+/// Merges parts, given in any order. Throws InputError if a file is no part, or if two parts belong
+/// to different renders or contain the same block. Without `gaps`, also throws if a block is
+/// missing before another.
 Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const ThreadPool& pool);
 
 }  // namespace lacuna

@@ -9,9 +9,9 @@ namespace lacuna {
 
 /// All methods, a line each: name, summary, reference.
 std::string listMethods();
-/// What `auto` does.
+/// Help text of `auto`.
 std::string autoHelp();
-/// One method: what it is, which techniques it has, its parameters with ranges and defaults.
+/// Help text of one method: summary, techniques, and parameters with ranges and defaults.
 std::string methodHelp(const MethodRow& row);
 
 }  // namespace lacuna

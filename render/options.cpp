@@ -160,7 +160,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_flag("--effects", o.effects, "Print what the scene calls for; renders nothing")
         ->group(check);
     addCommonOptions(app, o.common);
-    app.add_flag("--denoise", o.denoise)->group("");  // says what to do instead
+    app.add_flag("--denoise", o.denoise)->group("");  // hidden; its error suggests an alternative
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
         "a second one exits at once. --width or --height alone keeps the picture's shape, that of\n"
@@ -186,14 +186,14 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
 
 namespace {
 
-/// All of `text` as a number of type T.
+/// Parses all of `text` as a number of type T.
 template <class T>
 bool parseNumber(std::string_view text, T& value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// The option that asks for layers beyond those that every .exr has; null: none does.
+/// The first option given for layers beyond those of every .exr; null: none.
 const char* layerOption(const RenderOptions& o) {
     if (o.techniques) return "--techniques";
     if (o.lightNoise) return "--light-noise";
@@ -202,12 +202,12 @@ const char* layerOption(const RenderOptions& o) {
     return o.layers.empty() ? nullptr : "--layer";
 }
 
-/// The option about how an .exr is written; null: there is none.
+/// The option given about the format of an .exr; null: none.
 const char* exrOption(const RenderOptions& o) {
     return o.exr.half ? "--half" : o.exr.multiPart ? "--multi-part" : nullptr;
 }
 
-/// --estimate writes no image, and --until judges the whole one.
+/// Checks --estimate, which writes no image, and --until, which needs the whole one.
 void checkAccuracy(const RenderOptions& o) {
     if (o.until && (o.blocks || o.estimate)) {
         throw UsageError("--until: expected a whole picture, found " +
@@ -231,7 +231,7 @@ void checkAccuracy(const RenderOptions& o) {
     }
 }
 
-/// Options of long renders that do not go together.
+/// Rejects options of long renders that exclude each other.
 void checkPieces(const RenderOptions& o) {
     const bool pieces = o.blocks || !o.checkpoint.empty();
     if (!o.checkpointEveryText.empty() && o.checkpoint.empty()) {
@@ -258,7 +258,7 @@ void checkPieces(const RenderOptions& o) {
     }
 }
 
-/// `auto` is the method where none is named.
+/// Sets the method to `auto` if none is named, and checks options that exclude it.
 void checkMethod(RenderOptions& o) {
     if (o.method.empty()) o.method = kAuto;
     if (o.method != kAuto) return;
@@ -273,7 +273,7 @@ void checkMethod(RenderOptions& o) {
     }
 }
 
-/// How a .png is made of the picture, and the page of its layers.
+/// Options of the conversion to .png and of the sheet of layers.
 void parsePng(RenderOptions& o) {
     o.png.exposure = parseExposure("--exposure", o.exposureText);
     o.png.tone = parseTone("--tone", o.toneText);
@@ -286,7 +286,8 @@ void parsePng(RenderOptions& o) {
     }
 }
 
-/// NAME.png beside the scene. What is there and is no picture of ours is somebody's: a texture, say.
+/// The default output is NAME.png beside the scene. An existing file that this program has not
+/// written is not replaced: it may be a texture.
 void nameOutput(RenderOptions& o) {
     o.output = std::filesystem::path(o.scene).replace_extension(".png");
     std::error_code ignored;
@@ -296,7 +297,7 @@ void nameOutput(RenderOptions& o) {
     }
 }
 
-/// What there is to see while it renders.
+/// Options of the live display.
 void parseLive(RenderOptions& o) {
     if (!o.displayServerText.empty()) {
         o.displayServer = parseServerAddress("--display-server", o.displayServerText);

@@ -1,4 +1,4 @@
-// What the command line of lacuna-render says, checked as far as it can be without the scene.
+// The command line of lacuna-render, checked as far as possible without the scene.
 #pragma once
 
 #include <cstdint>
@@ -33,11 +33,11 @@ struct BlockRange {
 };
 
 struct RenderOptions : SceneOptions {
-    std::string commandLine;  ///< as a shell would take it again
+    std::string commandLine;  ///< as text that can be given to a shell
 
     std::string output, method;
-    bool inMemory = false;                 ///< who has no output gets the picture itself
-    std::vector<MethodRow> ownMethods;     ///< beside those of the registry
+    bool inMemory = false;                 ///< the output is optional: the caller gets the picture
+    std::vector<MethodRow> ownMethods;     ///< in addition to those of the registry
     std::vector<std::string> assignments;  ///< --set
     std::optional<std::int64_t> iterations;
     std::string timeText, cropText, replayText, samplerText;
@@ -51,14 +51,14 @@ struct RenderOptions : SceneOptions {
     std::vector<std::string> layerTexts;
     bool transparentBackground = false;
     std::string cryptomatteText;
-    bool allowBias = false;  ///< `auto` may choose rows that merge
+    bool allowBias = false;  ///< `auto` may choose methods that merge
     bool listMethods = false, effects = false;
     std::string helpMethod;
     std::string displayServerText, displayLayersText, writeEveryText;
     std::string checkpoint, checkpointEveryText, blocksText;
     std::optional<std::int64_t> blockIterations;
 
-    // Made from the texts above by checkOptions.
+    // Parsed from the texts above by checkOptions.
     std::vector<LayerExpression> layers;
     MatteTypes mattes;  ///< --cryptomatte
     std::optional<double> timeSeconds;
@@ -75,31 +75,32 @@ struct RenderOptions : SceneOptions {
     std::optional<double> writeEverySeconds;
 };
 
-/// Declares every option. Both must outlive the parsing.
+/// Declares every option. Both arguments must outlive the parsing.
 void declareOptions(CLI::App& app, RenderOptions& options);
 
-/// --half and --multi-part, of lacuna-merge as well.
+/// Declares --half and --multi-part, also for lacuna-merge.
 void addExrOptions(CLI::App& app, ExrStyle& style, const std::string& group);
 
-/// Parses the texts and checks every range that the scene has no say in. Throws UsageError, and
-/// InputError for an environment of another format.
+/// Parses the texts and checks every range that does not depend on the scene. Throws UsageError,
+/// and InputError for an environment of an unsupported format.
 void checkOptions(RenderOptions& options);
 
-/// The row of --method, or what stands for it until `auto` has chosen: a row with all techniques.
-/// Throws UsageError for a name that no row has, those of options.ownMethods included.
+/// The row of --method, also among options.ownMethods. Until `auto` has chosen, it is a stand-in
+/// row with all techniques. Throws UsageError for an unknown name.
 const MethodRow& namedRow(const RenderOptions& options);
 
-/// Throws UsageError where the result and an input, or two results, would be the same file;
-/// RunError where a result cannot be written. Leaves no file behind.
+/// Throws UsageError if a result and an input, or two results, are the same file; RunError if a
+/// result cannot be written. Leaves no file behind.
 void checkOutputs(const RenderOptions& options);
 
-/// "90s", "90", "10m", "1h" (decimals allowed) in seconds. Throws UsageError that names `option`.
+/// Seconds of "90s", "90", "10m" or "1h" (decimals allowed). Throws UsageError, which names
+/// `option`.
 double parseDuration(const std::string& option, const std::string& text);
-/// "A,B", half open, not empty. Throws UsageError.
+/// Parses "A,B", half open and not empty. Throws UsageError.
 BlockRange parseBlocks(const std::string& text);
 /// Throws UsageError.
 Sampling parseSampler(const std::string& text);
-/// "x0,x1,y0,y1", half open, not empty. Throws UsageError.
+/// Parses "x0,x1,y0,y1", half open and not empty. Throws UsageError.
 PixelRect parseCrop(const std::string& text);
 /// Throws UsageError.
 ReplayRequest parseReplay(const std::string& text);

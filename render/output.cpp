@@ -20,7 +20,7 @@ std::uint64_t peakBytes() {
     return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-/// JSON has no infinity: the text "inf" or "nan" stands for it.
+/// A number, or the text "inf" or "nan", because JSON has no such numbers.
 json jsonNumber(double value) {
     return std::isfinite(value) ? json(value) : json(std::isnan(value) ? "nan" : "inf");
 }
@@ -30,7 +30,7 @@ std::string rectText(const PixelRect& r) {
            std::to_string(r.y1);
 }
 
-/// File names need not be UTF-8; JSON has to be.
+/// JSON as text. File names need not be UTF-8, but JSON must be.
 std::string utf8Text(const json& object, int indent) {
     return object.dump(indent, ' ', false, json::error_handler_t::replace);
 }
@@ -38,7 +38,7 @@ std::string utf8Text(const json& object, int indent) {
 void setHeader(LayeredImage& image, const RenderReport& r) {
     auto& a = image.attributes;
     a["software"] = std::string("Lacuna");
-    a["softwareVersion"] = std::string(LACUNA_VERSION);  // `version` is a word of OpenEXR's own
+    a["softwareVersion"] = std::string(LACUNA_VERSION);  // OpenEXR reserves `version`
     a["commandLine"] = r.commandLine;
     a["method"] = r.method->name;
     a["parameters"] = parametersJson(*r.method, r.settings).dump();

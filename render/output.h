@@ -1,4 +1,4 @@
-// What a render leaves behind: the image with its layers and header, and the JSON.
+// The results of a render: the image with its layers and header, and the JSON.
 #pragma once
 
 #include <map>
@@ -20,11 +20,11 @@
 
 namespace lacuna {
 
-/// Everything that header and JSON say.
+/// The content of header and JSON.
 struct RenderReport {
     std::string commandLine;
     const MethodRow* method = nullptr;
-    std::optional<RowChoice> choice;  ///< where `auto` chose the method
+    std::optional<RowChoice> choice;  ///< if `auto` chose the method
     Settings settings;
     std::uint64_t seed = 1;
     Sampling sampling = Sampling::Independent;
@@ -41,11 +41,11 @@ struct RenderReport {
     BlockPlan blocks;
     std::uint64_t firstBlock = 0;
     bool techniques = false;
-    std::vector<std::string> lightGroups;       ///< where they have layers
+    std::vector<std::string> lightGroups;       ///< if they have layers
     std::map<std::string, std::string> layers;  ///< expressions by name
     std::vector<TechniqueCost> techniqueCosts;  ///< --techniques
-    int warmupIterations = 0;                   ///< of each block
-    double seconds = 0.0;  ///< warm-ups and iterations; no comparing, logging, saving
+    int warmupIterations = 0;                   ///< per block
+    double seconds = 0.0;  ///< of warm-ups and iterations, without comparing, logging, saving
     double setupSeconds = 0.0;
     IterationStatistics statistics;
     std::map<std::string, double> phaseSeconds;
@@ -66,32 +66,33 @@ struct RenderReport {
 /// The method's parameters with their values.
 nlohmann::json parametersJson(const MethodRow& row, const Settings& settings);
 
-/// The picture with its variance and layers. `lightGroups`: names, where they have layers.
+/// Sets the picture, its variance and its layers. `lightGroups`: names of groups if they have
+/// layers.
 void setPicture(LayeredImage& image, const FilmSum& sum, std::span<const std::string> lightGroups);
 
-/// Adds layers albedo, normal and position, and Z.
+/// Adds the layers albedo, normal and position, and Z.
 void setFeatures(LayeredImage& image, const FeatureLayers& features);
 
-/// The picture with header; `still`: layers that no iteration changes, may be null.
+/// The picture with its header. `still`: layers that do not depend on iterations; may be null.
 LayeredImage composeImage(const RenderReport& report, const FilmSum& sum,
                           const LayeredImage* still);
 
-/// Three numbers; what is not finite is the text "inf" or "nan", which JSON has no number for.
+/// An array of three numbers. Those that are not finite become the text "inf" or "nan".
 nlohmann::json numbersJson(const double (&values)[3]);
 
-/// EXR has 32-bit integers: larger ones become text.
+/// EXR has 32-bit integers. Larger ones become text.
 Attribute integerAttribute(std::uint64_t value);
 
 /// {"simulated": [names], "left_out": [names], "reasons": {name: text}}
 nlohmann::json effectsJson(const std::vector<Effect>& effects);
 
-/// The keys that README.md, "--json" lists.
+/// The report with the keys that README.md, "--json", lists.
 nlohmann::json reportJson(const RenderReport& report);
 
-/// The same as text that people can read.
+/// The same as indented text.
 std::string reportText(const RenderReport& report);
 
-/// Atomically, as text that people can read. Throws RunError.
+/// Writes indented JSON atomically. Throws RunError.
 void writeJson(const std::string& path, const nlohmann::json& json);
 
 }  // namespace lacuna

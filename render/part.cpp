@@ -20,7 +20,7 @@ constexpr const char* kAttributes[] = {"partInputs", "partSums", "partTotals"};
 constexpr const char* kHash = "partHash";
 const std::string kLayer = "sum.";
 
-/// Hexadecimal: exact, and there are infinities.
+/// A double as hexadecimal text, which is exact and can be infinite.
 json exactText(double value) {
     char text[40];
     std::snprintf(text, sizeof text, "%a", value);
@@ -30,7 +30,7 @@ double numberOf(const json& text) {
     return std::strtod(text.get<std::string>().c_str(), nullptr);
 }
 
-/// json would cast what is no such number without a word.
+/// A count in JSON. Throws std::invalid_argument for other values, which json would silently cast.
 std::uint64_t countOf(const json& number) {
     if (!number.is_number_unsigned()) throw std::invalid_argument("no count");
     return number.get<std::uint64_t>();
@@ -79,7 +79,7 @@ std::vector<HalfDifference> halvesOf(const json& list) {
     return differences;
 }
 
-/// `layer`: "sum.0."
+/// Adds a node's channels and returns its description. `layer`: the prefix of names, "sum.0."
 json addNode(LayeredImage& image, const std::string& layer, const SumTree::Node& node) {
     const FilmSum& sum = *node.sum;
     setPlanes(image, layer + "mean", sum.mean);
@@ -227,7 +227,7 @@ Part takePart(LayeredImage& image, const std::string& path) {
     try {
         return readPart(image);
     } catch (const std::bad_alloc&) {
-        throw;  // says nothing about the file
+        throw;  // not the file's fault
     } catch (const std::exception& e) {
         throw InputError(path + ": expected a part of a picture as it was written, found " +
                          "a damaged one (" + e.what() + "); delete it, or name another file");

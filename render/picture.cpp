@@ -18,7 +18,7 @@
 namespace lacuna {
 namespace {
 
-/// The ranks' parts of a picture are of one program, scene and command, or are none.
+/// Checks that all ranks have the same program, scene and command.
 void compareInputs(const Ranks& ranks, const CacheStamp& own) {
     if (!ranks.leads()) {
         ranks.send(0, Ranks::Tag::Inputs, own.text());
@@ -35,7 +35,7 @@ void compareInputs(const Ranks& ranks, const CacheStamp& own) {
     }
 }
 
-/// Whoever looks at the file while it renders need not wait for training.
+/// With --write-every, writes a first small picture, so that viewers need not wait for training.
 void showFirst(const RenderOptions& options, const Image& small) {
     if (!options.writeEverySeconds) return;
     LayeredImage image(small.width, small.height);
@@ -44,7 +44,7 @@ void showFirst(const RenderOptions& options, const Image& small) {
     writeImage(options.output, image, options.png);
 }
 
-/// What `auto` means for this picture: rank 0 finds out, or reads what a checkpoint is of.
+/// The choice of `auto` for this picture. Rank 0 chooses, or reads the choice from a checkpoint.
 RowChoice choose(const RenderOptions& options, Stage& stage, const Ranks& ranks,
                  const ThreadPool& pool, const std::atomic<bool>& interrupted, Progress& progress) {
     if (!ranks.leads()) return RowChoice::ofText(textOf(ranks.wait()));
@@ -86,7 +86,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
     std::optional<FirstLook> look;
     const bool loaded = ranks.agree([&] {
         stage = loadStage(options, *row, settings, pool, progress);
-        // Nothing is saved of a render that is still to be prepared.
+        // Before the preparation is done, an interrupt saves nothing.
         const bool prepares = options.method == kAuto || !needsOf(*row, settings).empty();
         progress.phase("features", prepares ? kNothingWritten : nullptr);
         look.emplace(*stage, pool);
@@ -110,7 +110,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
         }
         options.prepare = !needsOf(*row, settings).empty();
     }
-    // Rank 0 makes the caches that are missing, the others read them.
+    // Rank 0 makes missing caches; the others read them.
     Caches caches;
     if (!ranks.leads()) options.prepare = false;
     for (const bool leaders : {true, false}) {

@@ -1,4 +1,4 @@
-// A picture from what a command says: everything that lacuna-render does once its options are read.
+// Makes a picture from a command: all work of lacuna-render after its options are read.
 #pragma once
 
 #include <atomic>
@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-/// Chooses a method where none is named, loads or makes the caches it needs, renders, and writes
-/// what the options ask for. On ranks other than the first: works for rank 0, then nothing. Once
-/// `interrupted` is set it ends with what there is. Throws UsageError, InputError, RunError;
-/// InterruptedError where nothing is there yet.
+/// Chooses a method if none is named, loads or makes the caches that it needs, renders, and writes
+/// the results that the options request. On ranks other than the first it works for rank 0 and
+/// returns nothing. Once `interrupted` is set, it ends with the picture so far. Throws UsageError,
+/// InputError, RunError, and InterruptedError if there is no picture yet.
 std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks,
                                       const std::atomic<bool>& interrupted, Progress& progress);
 

@@ -1,4 +1,4 @@
-// Layers that show what a method's distributions did: the share of each in the picture.
+// Layers that show how much each proposal distribution of a method contributes to the picture.
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace lacuna {
 
-/// Contributions of connections by the label of their proposal, weighted by MIS.
+/// Sums of the MIS-weighted contributions of connections, by the label of their proposal.
 class ProposalLayers final : public BlockLayers {
   public:
-    /// `names`: of the labels.
+    /// `names`: names of the labels.
     ProposalLayers(std::vector<std::string> names, int width, int height);
 
-    /// Different pixels may be added to at the same time. What no connection made is left out.
+    /// Adds a contribution, unless no connection made it. Threads may add to different pixels at
+    /// the same time.
     void add(const PathEvent& event);
     void countIteration() { ++iterations_; }
-    /// Layers part.NAME.
+    /// The layers part.NAME.
     Layers means() const override;
     void clear() override;
 

@@ -24,7 +24,7 @@ const std::string* textOf(const LayeredImage& image, const char* attribute) {
     return found == image.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
-/// A header's JSON as a T. Throws InputError.
+/// JSON of the header as a T. Throws InputError.
 template <class T>
 T parsed(const std::string& text, const char* attribute, const std::string& path) {
     try {
@@ -35,7 +35,8 @@ T parsed(const std::string& text, const char* attribute, const std::string& path
     }
 }
 
-/// What is said of how the light was found, or of the light itself: true of the old light alone.
+/// Whether a layer depends on the light or on how it was found, so that it is valid for the old
+/// light only.
 bool isOfTheOldLight(const std::string& layer, const std::map<std::string, std::string>& layers) {
     constexpr const char* kKinds[] = {
         "weighted",   "unweighted", "variance", "share",         "part",     "sum",  "product",
@@ -44,7 +45,7 @@ bool isOfTheOldLight(const std::string& layer, const std::map<std::string, std::
     return std::ranges::find(kKinds, kind) != std::end(kKinds) || layers.contains(layer);
 }
 
-/// Geometry, and the header but for what is no longer so.
+/// A copy with the layers of geometry and the attributes that remain valid.
 LayeredImage withoutLight(const LayeredImage& image, const std::string& path) {
     std::map<std::string, std::string> layers;
     if (const std::string* text = textOf(image, "layers")) {
@@ -65,7 +66,7 @@ LayeredImage withoutLight(const LayeredImage& image, const std::string& path) {
     return result;
 }
 
-/// The factor of each group, 1 where none is given.
+/// The factor of each group; 1 if none is given.
 std::vector<LightFactor> factorsOf(const std::vector<std::string>& groups,
                                    const LightFactors& given) {
     for (const auto& [group, factor] : given) {
@@ -126,7 +127,7 @@ class Channel {
             lights.push_back(scaled(*image_.find(name), factors_[g]));
             result.channel(name) = lights.back();
         }
-        // What all groups are multiplied by multiplies the picture: by 1 it stays the same bit for bit.
+        // A factor common to all groups multiplies the picture itself, so that a factor of 1 preserves every bit.
         const std::vector<float>& old = *image_.find(kPictureChannels[channel_]);
         std::vector<float>& picture = result.channel(kPictureChannels[channel_]);
         picture = sameForAll() ? scaled(old, factors_.front()) : sumOf(lights);
@@ -153,7 +154,7 @@ class Channel {
         }
     }
 
-    /// Of the sum of the groups: all their variances, and each covariance twice.
+    /// The variance of the sum of the groups: the sum of their variances and twice each covariance.
     std::optional<std::vector<float>> variance(const LayeredImage& result) const {
         const std::vector<float>* old = image_.find(std::string("variance") + kSuffixes[channel_]);
         if (old && sameForAll()) return scaled(*old, factors_.front() * factors_.front());
@@ -177,7 +178,7 @@ class Channel {
     std::vector<double> factors_;
 };
 
-/// By what each group has been multiplied since it was rendered.
+/// The total factors of all groups since the render, as text.
 std::string relitText(const LayeredImage& image, const std::vector<std::string>& groups,
                       const std::vector<LightFactor>& factors, const std::string& path) {
     LightFactors all;
@@ -194,7 +195,7 @@ std::string relitText(const LayeredImage& image, const std::vector<std::string>&
 }  // namespace
 
 void addLightFactor(LightFactors& factors, const std::string& option, const std::string& text) {
-    const std::size_t equals = text.rfind('=');  // names may have one
+    const std::size_t equals = text.rfind('=');  // names may contain one
     const std::string group = text.substr(0, equals);
     const std::vector<std::string_view> parts = splitAtCommas(
         std::string_view(text).substr(equals == text.npos ? text.size() : equals + 1));

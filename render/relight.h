@@ -1,4 +1,4 @@
-// New intensities and colours for the lamps of a picture that has a layer for each group of lights.
+// Changes intensities and colours of the lamps in a picture with a layer for each light group.
 #pragma once
 
 #include <array>
@@ -10,26 +10,25 @@
 
 namespace lacuna {
 
-/// What the light of a group is multiplied by: R, G, B; finite, none below 0.
+/// The factors of a group's light: R, G, B; finite and not below 0.
 using LightFactor = std::array<double, 3>;
-/// By group.
+/// Factors by name of the group.
 using LightFactors = std::map<std::string, LightFactor>;
 
-/// "sun=0.1", "lamps=2,1.8,1", added to `factors`. `option` begins the error. Throws UsageError, for a
-/// group that is there already as well.
+/// Parses "sun=0.1" or "lamps=2,1.8,1" and adds it to `factors`. Throws UsageError, whose message begins with `option`,
+/// also for a group that has a factor already.
 void addLightFactor(LightFactors& factors, const std::string& option, const std::string& text);
 
-/// The groups that have layers, in the order of their covariances; none where the header names none.
-/// Throws InputError where the header is damaged or a layer is missing; `path` is the file's.
+/// The groups with layers, in the order of their covariances; empty if the header names none.
+/// Throws InputError, which names the file `path`, if the header is damaged or a layer is missing.
 std::vector<std::string> lightGroupsOf(const LayeredImage& image, const std::string& path);
 
-/// The picture under other light: each group's layer times its factor, and their sum. Groups without a
-/// factor stay as they are. The variance is kept where it is known: from the covariances of
-/// --light-noise, or where all factors are the same. Layers and attributes are left out that are of the
-/// other light; the attribute `relit` says by what each group was multiplied.
+/// The picture under changed light: the sum of the groups' layers, each times its factor. Groups without a factor stay
+/// as they are. The variance is kept if it is known, from the covariances of --light-noise or because all factors are
+/// equal. Layers and attributes that depend on the old light are left out. The attribute `relit` holds the factors.
 ///
-/// Throws InputError where the image has no groups (`path` is the file's), UsageError for a group that
-/// it does not have or a pixel that is too bright for a float.
+/// Throws InputError, which names the file `path`, if the image has no groups; UsageError for an unknown group or if a
+/// pixel becomes too bright for a float.
 LayeredImage relight(const LayeredImage& image, const LightFactors& factors,
                      const std::string& path);
 

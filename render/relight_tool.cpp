@@ -72,7 +72,7 @@ double meanOf(const LayeredImage& image, const std::string& layer) {
     return sum / (double(image.width()) * double(image.height()));
 }
 
-/// By group, its share of the picture's light.
+/// Each group's share of the picture's light.
 nlohmann::json sharesOf(const LayeredImage& image, const std::vector<std::string>& groups) {
     const double all = meanOf(image, "");
     nlohmann::json shares = nlohmann::json::object();
@@ -99,7 +99,8 @@ int relightTool(int argc, char** argv) {
     LightFactors factors;
     for (const std::string& text : options.lights) addLightFactor(factors, "--light", text);
 
-    // Without -o nothing is multiplied, and what cannot be relit is refused all the same.
+    // Called also without -o, when there are no factors, so that pictures that cannot be relit are
+    // refused.
     const LayeredImage image = relight(readExrLayers(options.image), factors, options.image);
     if (!options.output.empty()) writeImage(options.output, image);
     const std::vector<std::string> groups = lightGroupsOf(image, options.image);

@@ -10,7 +10,8 @@
 namespace lacuna {
 namespace {
 
-/// As glibc names them. A package holds the library for several: the processor decides.
+/// The names are glibc's. A package contains the library for several instruction sets, and the
+/// processor selects one.
 constexpr const char* kInstructionSet =
 #if defined(__AVX512F__)
     "x86-64-v4";
@@ -38,7 +39,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
     const Camera::Film film = stage.camera->film();
     const PixelRect& crop = stage.settings.crop;
     add("version", LACUNA_VERSION);
-    // Another build may round in another way, and so may one with fused multiplications.
+    // Another build may round differently, as may one with fused multiply-add.
     add("program", hashOfFile(codeFile()));
     add("instruction set", kInstructionSet);
     add("method", row.name);
@@ -52,7 +53,7 @@ CacheStamp renderInputs(const RenderOptions& options, const MethodRow& row,
                                   : options.lightGroups ? "yes"
                                                         : "no");
     add("background", options.transparentBackground ? "transparent" : "shown");
-    std::set<std::string> layers;  // whatever their order
+    std::set<std::string> layers;  // sorted: their order does not matter
     for (const LayerExpression& layer : options.layers) {
         layers.insert(layer.name);
         add("layer " + layer.name, layer.text);

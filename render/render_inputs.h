@@ -1,5 +1,5 @@
-// Whatever the pixels of a render depend on but the number of its iterations: parts of one picture
-// agree in it.
+// Everything that the pixels of a render depend on, except the number of iterations. All parts of
+// one picture have the same inputs.
 #pragma once
 
 #include "libcore/cache/cache_name.h"

@@ -18,7 +18,7 @@ namespace lacuna {
 namespace {
 
 int printEffects(const RenderOptions& options) {
-    // Here the method is optional, but not arbitrary.
+    // The method is optional here, but must be valid.
     const bool named = !options.method.empty() && options.method != kAuto;
     const MethodRow* row = named ? &findMethod(options.method, "--method") : nullptr;
     if (row) resolve(*row, options.assignments, "--set ");
@@ -38,7 +38,7 @@ int printEffects(const RenderOptions& options) {
     return 0;
 }
 
-/// Whether no picture is to be made.
+/// Whether the command only prints something and makes no picture.
 bool onlyPrints(const RenderOptions& options) {
     return options.listMethods || !options.helpMethod.empty() || options.effects || options.replay;
 }
@@ -66,7 +66,7 @@ int print(const RenderOptions& options) {
 
 int renderTool(int argc, char** argv) {
     const Ranks ranks;
-    // One voice is enough.
+    // Only rank 0 prints.
     if (!ranks.leads()) {
         endSilentlyAtInterrupts();
         if (!std::freopen("/dev/null", "w", stdout)) return 1;

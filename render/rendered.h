@@ -1,4 +1,4 @@
-// What a render made.
+// The result of a render.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace lacuna {
 struct Rendered {
     RenderReport report;
     LayeredImage image;   ///< empty for --estimate
-    std::string text;     ///< for stdout: what was written, or what accuracy costs
-    std::string failure;  ///< of a log, a checkpoint: the picture is there all the same
+    std::string text;     ///< for stdout: the files written, or the result of --estimate
+    std::string failure;  ///< of a log or checkpoint; the picture exists nevertheless
 
     bool interrupted() const { return report.stopped == "interrupt"; }
     int exitCode() const { return interrupted() ? kInterruptedExit : 0; }

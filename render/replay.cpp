@@ -43,7 +43,7 @@ class Printer {
   public:
     Printer(const Walker& walker) : walker_(walker) {}
 
-    /// z_0 .. or y_0 .., as the walk left them.
+    /// Prints the vertices z_0 .. or y_0 .. of a walk.
     void subpath(const char* title, char letter, Subpath path) const {
         std::printf("%s: %zu vertices\n", title, path.size());
         for (const PathVertex& v : path) vertex(letter, v);
@@ -81,7 +81,7 @@ class Printer {
     }
 
   private:
-    /// In the file's coordinates; directions at infinity as they are.
+    /// Position in the file's coordinates; directions at infinity are unchanged.
     Vec3d placeOf(const PathVertex& v) const {
         return v.infinite() ? Vec3d(v.position) : Vec3d(v.position) + walker_.scene().centre();
     }
@@ -99,7 +99,7 @@ class Printer {
                     double(throughput.g), double(throughput.b));
     }
 
-    /// A vertex of a closed path with the densities that its weight is made from.
+    /// Prints a vertex of a complete path with the densities that determine its weight.
     void pathVertex(const PathEvent& e, int i) const {
         const auto n = std::size_t(i);
         const PathVertex& v = *e.path.vertex[n];
@@ -157,10 +157,10 @@ int replay(const RenderOptions& options, const MethodRow& row, const Settings& s
     BidirIntegrator integrator(*stage.scene, *stage.camera, stage.techniques, *method, whole, pool);
     requireSample(sample, film, std::max(integrator.lightPaths(), method->pool().subpaths));
 
-    // Streams are addressed, so a sample needs nothing of the iterations before it but what the
-    // method learned in its block. The warm-up is always run (it is part of every method's
-    // beginning); the block's iterations before it only for methods that say they learn from them:
-    // they cost as much as rendering them.
+    // Streams are addressed, so that a sample depends on earlier iterations only through what the
+    // method learned in its block. The warm-up always runs, because every method begins with it.
+    // The block's earlier iterations run only for methods that learn from them, because they cost
+    // as much as rendering.
     IterationStatistics ignored;
     progress.phase("warm-up");
     const std::uint64_t block = sample.iteration / blockIterations;

@@ -1,4 +1,4 @@
-// --replay: one sample run alone, printed vertex by vertex and contribution by contribution.
+// --replay: computes one sample alone and prints its vertices and contributions.
 #pragma once
 
 #include "libcore/base/parallel.h"
@@ -7,7 +7,8 @@
 
 namespace lacuna {
 
-/// Prints to stdout; needs no output file. Throws UsageError where there is no such sample.
+/// Prints to stdout and needs no output file. Returns the exit code. Throws UsageError if there is
+/// no such sample.
 int replay(const RenderOptions& options, const MethodRow& row, const Settings& settings,
            const ThreadPool& pool);
 

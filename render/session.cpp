@@ -26,7 +26,7 @@ namespace lacuna {
 namespace {
 
 constexpr double kVerifyTolerance = 1e-4;
-constexpr double kEstimateSeconds = 5.0;  // of rendering, before --estimate says something
+constexpr double kEstimateSeconds = 5.0;  // least time of rendering for --estimate
 
 Image cropped(const Image& image, const PixelRect& rect) {
     Image part(rect.width(), rect.height());
@@ -36,7 +36,7 @@ Image cropped(const Image& image, const PixelRect& rect) {
     return part;
 }
 
-/// Checks what the picture alone needs against what the machine has: better an error now than being
+/// Makes the film. Checks its memory against that of the machine: an error now is better than being
 /// killed by the system after hours.
 Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) {
     const RenderSettings& settings = stage.settings;
@@ -46,7 +46,7 @@ Film makeFilm(const RenderOptions& options, const Stage& stage, BlockPlan plan) 
     const double layers = (options.techniques ? depth * (depth + 3.0) : 0.0) +
                           double(stage.layers.names().size()) + groups * (groups + 1.0) / 2.0 +
                           (options.transparentBackground ? 1.0 / 3.0 : 0.0);
-    // Means and spreads of a dozen nodes of the tree, an iteration, and the layers on their way to
+    // Means and spreads of a dozen nodes of the tree, one iteration, and copies of the layers for
     // the file.
     const bool beside = options.displayServer || options.writeEverySeconds;
     const double perPixel = 12.0 * 24.0 + 12.0 + 104.0 + layers * 4.0 * sizeof(Rgb) +
@@ -141,7 +141,7 @@ Session::Session(const RenderOptions& options, const MethodRow& row, const Setti
 
 Session::~Session() = default;
 
-/// From what a checkpoint holds.
+/// Continues from a checkpoint.
 void Session::goOn(Part part) {
     totals_ = {part.seconds, part.statistics};
     if (part.sums.open.empty()) ofBlocks_ = totals_;
@@ -201,7 +201,7 @@ Rendered Session::run() {
     return finished(savedText());
 }
 
-/// What messages and viewers call it: it need not be a file.
+/// The picture's name in messages and viewers; it need not be a file.
 const std::string& Session::pictureName() const {
     return options_.output.empty() ? options_.scene : options_.output;
 }
@@ -210,8 +210,8 @@ Rendered Session::finished(std::string text) {
     return {std::move(report_), std::move(image_), std::move(text), std::move(failure_)};
 }
 
-/// What there is of the first iteration is a picture for people, and no more: no part, no checkpoint
-/// and no figures can be made of it.
+/// Saves the unfinished first iteration as a picture. It is only good for viewing: no part,
+/// checkpoint or estimate can be made from it.
 void Session::saveUnfinished() {
     if (film_.iterations() == 0 || options_.blocks || options_.estimate) {
         throw InterruptedError(
@@ -225,15 +225,15 @@ void Session::saveUnfinished() {
     save();
 }
 
-/// The next iteration is taken to last as long as the last ones. It is begun if it ends in time, or
-/// passes the limit by no more than half of itself and a tenth of the limit.
+/// Whether another iteration may begin. It is assumed to take as long as the last ones. It begins
+/// if it ends in time, or exceeds the limit by at most half its duration and a tenth of the limit.
 bool Session::mayBegin() const {
     const double limit = *options_.timeSeconds, expected = crew_->iterationSeconds();
     const double spent = totals_.seconds + (options_.countSetup ? report_.setupSeconds : 0.0);
     return spent < limit && spent + expected <= limit + std::min(0.5 * expected, 0.1 * limit);
 }
 
-/// Empty: nothing yet.
+/// The reason to stop; empty: none yet.
 std::string Session::whyStop() {
     if (crew_->cutShort()) return "interrupt";
     const bool some = film_.iterations() > 0;
@@ -245,7 +245,7 @@ std::string Session::whyStop() {
     return "";
 }
 
-/// What there is now, for everyone who is told while the render goes on.
+/// Reports the current state to all listeners.
 void Session::tell() {
     report_.iterations = film_.iterations();
     report_.seconds = totals_.seconds;
@@ -257,7 +257,7 @@ void Session::tell() {
                           estimateSeconds_ > 0.0 ? accuracyText(now, bound) : ""});
 }
 
-/// Behind iterations that are new in the film.
+/// Called after iterations were added to the film: estimates, logs and saves.
 void Session::keep() {
     if (film_.inBlock() == 0) ofBlocks_ = totals_;
     if (isMeasured(film_.iterations())) estimateErrorNow();
@@ -277,8 +277,8 @@ void Session::render() {
         if (crew_->advance(film_, totals_)) keep();
     }
     crew_->stop();
-    // What is still being made when the time is over is added as well; who stops by the error does so
-    // where one process would.
+    // Iterations still being made when the time is over are added as well. A stop by error, however, happens after the
+    // same iteration as with one process.
     const bool more = report_.stopped == "time" || report_.stopped == "interrupt";
     while (more) {
         if (crew_->advance(film_, totals_)) {
@@ -294,15 +294,15 @@ void Session::render() {
     report_.phaseSeconds["pieces"] = together_->piecesSeconds();
 }
 
-/// At set times only, from what a checkpoint holds as well: where a render stops by its error, it
-/// does so on any machine.
+/// Estimates the error. This happens at fixed iterations only, from data that checkpoints also
+/// hold, so that a stop by error happens after the same iteration on any machine.
 void Session::estimateErrorNow() {
     double seconds = 0.0;
     {
         const Stopwatch watch(seconds);
         report_.estimate = estimateError(film_.pictureSum(idlePool()), look_.meter, idlePool());
     }
-    if (!together_) totals_.seconds += seconds;  // else others have gone on meanwhile
+    if (!together_) totals_.seconds += seconds;  // else other ranks rendered meanwhile
     estimateSeconds_ = totals_.seconds;
 }
 
@@ -312,10 +312,10 @@ ErrorNow Session::errorNow() const {
     return {measure, m.error, estimateSeconds_, !m.doubt.empty()};
 }
 
-/// Whether --until is reached. A picture without light is black, and that is known.
+/// Whether --until is reached. A picture without light is black and exact.
 bool Session::isAccurate() {
     if (!options_.until || !isMeasured(film_.iterations())) return false;
-    // Ranks bring such blocks as a whole.
+    // Ranks deliver such blocks as a whole.
     if (maker_.blocksAreWhole() && film_.inBlock() > 0) return false;
     if (stage_.scene->lights().empty()) return true;
     const Measured& m = *report_.estimate.find(options_.until->measure);
@@ -327,7 +327,8 @@ bool Session::isAccurate() {
     return m.doubt.empty();
 }
 
-/// Whether --estimate has seen enough: some seconds, and more where they do not suffice.
+/// Whether --estimate has rendered long enough: some seconds, and four times as many if the
+/// estimate is doubtful.
 bool Session::isEstimated() const {
     if (!options_.estimate || !isMeasured(film_.iterations())) return false;
     const double seconds = report_.seconds,
@@ -343,7 +344,8 @@ Rendered Session::costs() {
     return finished(costTable(cost));
 }
 
-/// Layers that no iteration changes: what the lens sees first, and what belongs to it.
+/// Layers that do not depend on iterations: features of the first visible surfaces, and those of
+/// assets.
 const LayeredImage& Session::still() {
     if (still_) return *still_;
     still_.emplace(film_.width(), film_.height());
@@ -363,7 +365,7 @@ void Session::addMattes(LayeredImage& image) {
     if (options_.mattes.materials) addCryptomatte(image, mattes.materials);
 }
 
-/// Of every channel that the picture may come to have.
+/// Names of all channels that the picture may have.
 std::vector<std::string> Session::channelNames() {
     std::vector<std::string> names;
     const auto addRgb = [&](const std::string& layer) {
@@ -395,7 +397,7 @@ void Session::beginLiveView() {
                   [this](const std::string& text) { progress_.warning(text); });
 }
 
-/// What the viewer shows of it, and maybe more.
+/// The image for the viewer; it may contain more channels than shown.
 LayeredImage Session::shown(const FilmSum& sum) {
     if (!options_.displayLayers.empty()) return composeImage(report_, sum, &still());
     LayeredImage image(film_.width(), film_.height());
@@ -413,7 +415,7 @@ void Session::showLive() {
     live_->show(std::move(image), LiveView::Seconds(seconds));
 }
 
-/// --write-every: as it would be saved now.
+/// --write-every: writes the current picture to the output.
 void Session::refreshOutput() {
     if (const auto failure = refresh_->failure()) {
         progress_.warning("warning: " + *failure + " (the render goes on)");
@@ -424,7 +426,7 @@ void Session::refreshOutput() {
     refresh_->begin([this, image = output(now, film_.sum(idlePool()))] {
         if (endingOf(options_.output) == ".exr") {
             ExrStyle style = options_.exr;
-            style.compression = ExrCompression::None;  // the last one is compressed
+            style.compression = ExrCompression::None;  // only the final one is compressed
             writeExr(options_.output, image, style);
         } else {
             writeImage(options_.output, image, options_.png);
@@ -432,7 +434,7 @@ void Session::refreshOutput() {
     });
 }
 
-/// What is written.
+/// The image to be written.
 LayeredImage Session::output(const RenderReport& report, const FilmSum& sum) {
     const bool layers =
         options_.output.empty() || endingOf(options_.output) == ".exr" || !options_.sheet.empty();
@@ -444,14 +446,14 @@ LayeredImage Session::output(const RenderReport& report, const FilmSum& sum) {
     return image;
 }
 
-/// For sums between iterations; null where this process makes pieces meanwhile.
+/// The pool for sums between iterations; null if this process makes pieces meanwhile.
 const ThreadPool* Session::idlePool() const {
     return together_ ? nullptr : &pool_;
 }
 
-/// What the checkpoint holds now.
+/// The current part for a checkpoint or --blocks.
 Part Session::part() const {
-    // What a method has learned in an open block, and what the layers hold of it, is not saved.
+    // An open block is not saved if the method learns in it or layers accumulate it.
     const bool withOpen = !maker_.blocksAreWhole();
     const Totals& totals = withOpen ? totals_ : ofBlocks_;
     return {inputs_,        film_.width(),      film_.height(),
@@ -480,7 +482,8 @@ void Session::finishCheckpoint() {
     }
 }
 
-/// A picture that cannot be compared (an overflow to infinity) still is one: it is kept.
+/// Compares with the reference. A picture that cannot be compared (because of an infinite pixel) is
+/// kept.
 void Session::measure() {
     if (!reference_) return;
     const Stopwatch watch(report_.phaseSeconds["compare"]);
@@ -503,13 +506,13 @@ void Session::logRow() {
     }
 }
 
-/// The style of .png with stops, also where `auto` finds them: for the report, and for whoever wants
-/// the next picture alike.
+/// The .png style with definite stops, also for `auto`. They are reported, so that the user can
+/// give the next picture the same exposure.
 PngStyle Session::fixedExposure(const LayeredImage& image) {
     PngStyle png = options_.png;
     if (endingOf(options_.output) != ".png" && options_.sheet.empty()) return png;
     if (!png.exposure) {
-        // To hundredths, so that what is said makes the same picture.
+        // Rounded to hundredths, so that the printed number makes the same picture.
         png.exposure = std::round(png.stopsFor(image.rgb()) * 100.0) / 100.0;
         progress_.remark("--exposure auto: " + numberText(*png.exposure) + " stops");
     }
@@ -543,10 +546,10 @@ void Session::save() {
     const PngStyle png = fixedExposure(image_);
     {
         const Stopwatch watch(report_.phaseSeconds["save"]);
-        if (refresh_) refresh_->wait();  // or the older image would come last
+        if (refresh_) refresh_->wait();  // otherwise the older image could be written last
         if (!options_.output.empty()) writeImage(options_.output, image_, png, options_.exr);
         if (!options_.sheet.empty()) {
-            // A part's sums are no layers.
+            // The sums of a part are not layers to show.
             const Canvas sheet =
                 layerSheet(options_.blocks ? composeImage(report_, sum, &still()) : image_, png);
             writePngBytes(options_.sheet, sheet.width(), sheet.height(), sheet.bytes());
@@ -558,7 +561,7 @@ void Session::save() {
     if (live_) live_->leave();
 }
 
-/// What was saved, in a line, and what was measured.
+/// A line about the saved picture, and the measured errors.
 std::string Session::savedText() const {
     char line[256];
     std::snprintf(line, sizeof line,
@@ -585,7 +588,8 @@ std::string Session::savedText() const {
     return text;
 }
 
-/// A scene without light was told so before. Nobody who interrupts wants to wait for causes.
+/// Warns of a black picture. For a scene without light there was a warning already. After an
+/// interrupt, nobody wants to wait for a diagnosis.
 void Session::warnIfBlack() {
     const auto& mean = report_.mean.mean;
     const bool black = mean[0] == 0.0 && mean[1] == 0.0 && mean[2] == 0.0;

@@ -1,4 +1,4 @@
-// One render from what is loaded to the saved image: iterations, curve, checkpoints, result.
+// One render, from the loaded data to the saved image: iterations, curve, checkpoints, result.
 #pragma once
 
 #include <memory>
@@ -25,15 +25,15 @@ class Together;
 
 class Session {
   public:
-    /// All references must outlive the session. With more than one rank: on rank 0, while the others
-    /// serve().
+    /// All references must outlive the session. With several ranks, it runs on rank 0 while the
+    /// others serve().
     Session(const RenderOptions& options, const MethodRow& row, const Settings& settings,
             const std::optional<RowChoice>& choice, const Stage& stage, const Caches& caches,
             const FirstLook& look, BlockMaker& maker, const Ranks& ranks, const ThreadPool& pool,
             const std::atomic<bool>& interrupted, Progress& progress);
     ~Session();
 
-    /// Renders and saves. Once.
+    /// Renders and saves. To be called once.
     Rendered run();
 
   private:
@@ -86,20 +86,20 @@ class Session {
     BlockPlan plan_;
     Film film_;
     std::unique_ptr<Crew> crew_;
-    Together* together_ = nullptr;  ///< the crew, where there are other ranks
+    Together* together_ = nullptr;  ///< the crew, if there are other ranks
     std::optional<ErrorReference> reference_;
     std::optional<CurveLog> log_;
-    CacheStamp inputs_;  ///< where parts are written or read
+    CacheStamp inputs_;  ///< if parts are written or read
     std::optional<Checkpoint> checkpoint_;
-    std::optional<LayeredImage> still_;     ///< layers that no iteration changes, once needed
+    std::optional<LayeredImage> still_;     ///< still(), once needed
     std::optional<BackgroundJob> refresh_;  ///< of the output
     std::optional<LiveView> live_;
     LayeredImage image_;            ///< as saved
-    std::string failure_;           ///< of log or checkpoint: a full disk must not cost the picture
-    std::uint64_t end_ = 0;         ///< iteration behind the last one; 0: none
-    Totals totals_;                 ///< of iterations that are in the film
-    Totals ofBlocks_;               ///< of whole blocks alone
-    double estimateSeconds_ = 0.0;  ///< of the totals, when the error was last estimated
+    std::string failure_;           ///< of log or checkpoint: a full disk must not lose the picture
+    std::uint64_t end_ = 0;         ///< one past the last iteration; 0: no limit
+    Totals totals_;                 ///< of the iterations in the film
+    Totals ofBlocks_;               ///< of whole blocks only
+    double estimateSeconds_ = 0.0;  ///< totals_.seconds at the last estimate of the error
     bool doubtSaid_ = false;
     RenderReport report_;
 };

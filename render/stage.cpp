@@ -33,7 +33,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     SceneDescription description;
     pool.run([&] { description = describeScene(options); });
     const double loadSeconds = secondsSince(start);
-    // Everything that may refuse the command line comes before the long work.
+    // Everything that may reject the command line comes before the long work.
     const PixelRect crop = chooseCrop(options, filmOf(options, description));
 
     const MethodRow row = asSet(method, settings);

@@ -1,4 +1,4 @@
-// The scene of a render with its method: the start of rendering and of replay.
+// The scene of a render with its method: the starting point of rendering and replay.
 #pragma once
 
 #include "libcore/bidir/integrator.h"
@@ -9,16 +9,17 @@
 namespace lacuna {
 
 struct Stage : SceneStage {
-    RenderSettings settings;  ///< limits, seed, crop (the whole film where none was asked for)
+    RenderSettings settings;  ///< limits, seed, crop (by default the whole film)
     double setupSeconds = 0.0;
-    PathLayers layers;  ///< of light groups and expressions, as far as they are asked for
+    PathLayers layers;  ///< of light groups and expressions, as requested
 };
 
-/// Loads and builds. Warnings go to `progress` as well. Throws InputError, UsageError, RunError.
+/// Loads and builds the scene. Warnings go to `progress` as well. Throws InputError, UsageError,
+/// RunError.
 Stage loadStage(const RenderOptions& options, const MethodRow& method, const Settings& settings,
                 const ThreadPool& pool, Progress& progress);
 
-/// Puts a method that was chosen afterwards in the place of that which the stage was loaded for.
+/// Replaces the method for which the stage was loaded by one that was chosen afterwards.
 void useMethod(Stage& stage, const RenderOptions& options, const MethodRow& method,
                const Settings& settings);
 

@@ -21,7 +21,7 @@ double phase(const IterationStatistics& statistics, const std::string& name) {
     return found == statistics.phaseSeconds.end() ? 0.0 : found->second;
 }
 
-/// "2", "3 and later"
+/// The order as text: "2", "3 and later".
 std::string orderText(int order) {
     if (order == 0) return "";
     return std::to_string(order) + (order == TechniqueGroup::kOrders ? " and later" : "");

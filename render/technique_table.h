@@ -1,4 +1,4 @@
-// What each group of techniques adds, how noisy that is, and what it costs: --techniques.
+// --techniques: contribution, noise and cost of each group of techniques.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,28 +10,28 @@
 
 namespace lacuna {
 
-/// A group of techniques, or what all of them share.
+/// A group of techniques, or work that all of them share.
 struct TechniqueCost {
     std::string name;       ///< "connections"; "eye walks"
-    int order = 0;          ///< of the eye's end, the last one and all behind it; 0: has none
-    bool technique = true;  ///< false: it makes no path by itself, and has its time alone
+    int order = 0;          ///< order of the eye's end, the last including all later ones; 0: none
+    bool technique = true;  ///< false: shared work, which makes no paths and has only a time
     double energy = 0.0;    ///< share of the picture's mean
-    double variance = 0.0;  ///< of the mean over R^2 + e^2, as relmse counts it
-    double share = 0.0;     ///< of the sum of all variances
-    double seconds = 0.0;   ///< of threads
+    double variance = 0.0;  ///< mean of variance / (R^2 + e^2), as in relmse
+    double share = 0.0;     ///< share of the sum of all variances
+    double seconds = 0.0;   ///< summed over threads
 };
 
-/// Techniques that added nothing and took no time are left out. `sum` has the layers of a
-/// TechniqueFilm, `statistics` are of the same iterations, made by so many threads.
+/// The costs of all techniques that contributed or took time. `sum` must have the layers of a
+/// TechniqueFilm; `statistics` are of the same iterations, which `threads` threads made.
 std::vector<TechniqueCost> techniqueCosts(const FilmSum& sum, const ErrorMeter& meter,
                                           const IterationStatistics& statistics, double threads,
                                           const ThreadPool* pool);
 
-/// Lines for people, the last one with a line feed as well.
+/// The table as text; each line ends with a line feed.
 std::string techniqueTable(const std::vector<TechniqueCost>& costs);
 
-/// [{"technique", "order", "energy", "variance", "variance_share", "seconds"}, ...]; what is no
-/// technique has "technique" and "seconds" alone.
+/// [{"technique", "order", "energy", "variance", "variance_share", "seconds"}, ...]. Shared work
+/// has only "technique" and "seconds".
 nlohmann::json techniqueCostsJson(const std::vector<TechniqueCost>& costs);
 
 }  // namespace lacuna

@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-/// `key=`, or `key=value` for each where they are counted.
+/// Appends `key=`, or `key=value` for each value if the values are listed.
 void append(std::vector<std::string>& words, const Option& option) {
     const bool onOff = option.kind == Option::Kind::Switch;
     std::vector<std::string> values = option.choices;
@@ -35,7 +35,7 @@ ValueWords renderWords() {
     for (const LampUnits units : {LampUnits::Radiometric, LampUnits::Photometric}) {
         words.byOption["--units"].push_back(nameOf(units));
     }
-    // Those of one method with all techniques are all that there are.
+    // The first method has all techniques, so that its effects are all effects.
     for (const Effect& e : effectsOf({}, 0.0, &methods().front())) {
         for (const char* state : {"=on", "=off"}) {
             words.byOption["--effect"].push_back(e.name + state);

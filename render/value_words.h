@@ -1,4 +1,4 @@
-// What shells complete behind lacuna-render's options: the registry's names, not a list of their own.
+// Words with which shells complete the values of lacuna-render's options, taken from the registry.
 #pragma once
 
 #include "libcore/tool/help_forms.h"
