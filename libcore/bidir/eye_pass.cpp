@@ -217,7 +217,7 @@ void EyePass::chain(const PixelPaths& paths, const Iteration& iteration, Worker&
         const auto bring = [&](const Closed& closed) {
             deliver(closed, paths, iteration, worker, result);
         };
-        // By reference: a copy would be allocated.
+        // Passed by reference: a copy would be allocated.
         chains_->sample(eye, rng, result.tally, worker.chain, worker.fullPath, std::ref(bring));
         result.clock.lap([&] { return TechniqueGroup::ofChain(connectionOrder(eye)); });
     }

@@ -1,4 +1,4 @@
-// What a picture shows, without light: the layers albedo, normal, Z and position beside it.
+// Features of what a picture shows, without light: the layers albedo, normal, Z and position.
 //
 // Z and position are of the first surface that the lens sees. A compositor needs them to put things in front of it or
 // behind it. Albedo and normal are for denoisers, which need the surface that a pixel's pattern comes from. That is the

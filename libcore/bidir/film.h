@@ -58,7 +58,7 @@ struct BlockPlan {
 
     /// Iterations of an independent sample.
     std::uint64_t sampleIterations() const { return areSamples ? iterations : groupIterations; }
-    /// What the iterations of a sample are to each other.
+    /// How the iterations of a sample relate to each other.
     Parts partsOfSample() const { return areSamples ? Parts::OfAlikeSample : Parts::OfEvenSample; }
 };
 

@@ -70,7 +70,7 @@ struct FilmSum {
 /// Whether sums hold their layers or the picture alone, which is quicker.
 enum class Layered { Yes, No };
 
-/// What two sums are to each other.
+/// How two sums relate to each other.
 enum class Parts {
     Samples,       ///< independent of each other
     OfEvenSample,  ///< parts of one sample, farther apart than independent samples

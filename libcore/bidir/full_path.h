@@ -108,6 +108,7 @@ struct FullPath {
     /// `beta` at x_i, i < k: what light tracing would carry there. Filled by fillLightThroughputs.
     PerVertex<Rgb> beta;
     PerVertex<double> geometry;  ///< geometryOf; filled likewise
+    /// Fills beta and geometry from the densities, BSDF values and survivals of the path.
     void fillLightThroughputs(int rouletteDepth);
 
   private:

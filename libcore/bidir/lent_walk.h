@@ -32,7 +32,7 @@ class LentWalk {
     void add(Subpath borrower, RayTally& tally);
     /// Whether the walk that was added as number `i` could have gone this way.
     bool leadsFrom(std::size_t i) const { return from_[i].pdfA > 0.0; }
-    /// What walk number i carries to z_{h+1}, relative to number k. Zero where k carries nothing.
+    /// Ratio of what walks number i and k carry to z_{h+1}. Zero where k carries nothing.
     double brightness(std::size_t i, std::size_t k) const;
     /// Replaces `out` by z_0 .. z_{t-1}: number i's vertices up to z_h, the lent ones behind it. Throughputs are
     /// weighted by the balance heuristic over all walks that could have gone this way.

@@ -15,7 +15,7 @@ class LightPass {
     LightPass(const RenderSetup& setup, Delivery& delivery, const Workers& workers)
         : setup_(setup), delivery_(delivery), workers_(workers) {}
 
-    /// What light subpaths are traced for.
+    /// The purpose for which light subpaths are traced.
     struct Purpose {
         StreamKind stream;
         std::uint64_t pooled;  ///< subpaths [0, pooled) go into the pool

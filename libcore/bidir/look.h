@@ -1,4 +1,4 @@
-// What denoisers are told of a ray: the surface that a pixel's pattern comes from.
+// The surface that a pixel's pattern comes from, for denoisers: albedo and normal along a ray.
 #pragma once
 
 #include "libcore/bidir/first_seen.h"

@@ -32,7 +32,7 @@ struct Named {
     std::vector<std::uint32_t> ofObject;  // among the names
 };
 
-/// What the rays of a pixel met.
+/// The objects that the rays of a pixel met.
 class Met {
   public:
     void clear() {

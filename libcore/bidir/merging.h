@@ -20,7 +20,7 @@ enum class Merges : std::uint8_t {
     BetweenDeltas,  ///< x_{i-1} and x_{i+1} are deltas: no edge at x_i can be a connection
 };
 
-/// What a row merges, and how far it looks.
+/// Which vertices a row merges, and within which radius.
 struct Merging {
     Merges where = Merges::Nowhere;
     double radius = 0;  ///< R of iteration 0, in the scene's unit; 0: from the pixels' footprint

@@ -56,7 +56,7 @@ class ProposalSink {
     std::size_t freshCount_ = 0;
 };
 
-/// What a selector may look at.
+/// The data that a selector may look at.
 struct EyeContext {
     const PathVertex& vertex;  ///< z_{t-1}
     Subpath eyePath;           ///< z_0 .. z_{t-1}

@@ -24,7 +24,7 @@ enum class VertexKind : std::uint8_t {
     Infinite,     ///< y_0 of a light at infinity, or where an eye path left the scene
 };
 
-/// What a method's density knows a vertex by, in one role (ConnectionDensity::labelWalk).
+/// The label that a method's density knows a vertex by, in one role (ConnectionDensity::labelWalk).
 using Label = std::uint32_t;
 
 /// One vertex, as its own subpath's walk left it. Never written after the walk and its labels.
@@ -49,8 +49,8 @@ struct PathVertex {
     std::uint32_t light = kNone;  ///< light of this point, if it emits
     Vec2 lightUv;                 ///< barycentric on it
     Label asLight = kNone;        ///< label as the end of a light subpath, likewise
-    /// Of the surface that the vertex lies on, whose body may absorb (absorption.h); y_0 has it
-    /// only where something in the scene absorbs.
+    /// Material of the surface that the vertex lies on, whose body may absorb (absorption.h). y_0
+    /// has it only where something in the scene absorbs.
     std::uint32_t material = kNone;
     std::uint32_t region = kNone;  ///< of the walks' guide; kNone: none (walk_guide.h)
     std::uint32_t object = kNone;  ///< Surface only: index among the scene's objects

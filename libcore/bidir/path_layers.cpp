@@ -35,7 +35,7 @@ EventType typeOf(NamedLights::Kind kind) {
     return EventType::Lamp;
 }
 
-/// Those of `names` that expressions mention, in order. Other names tell nothing apart.
+/// The names among `names` that expressions mention, in order. Other names tell nothing apart.
 Names mentioned(const Names& names, const std::set<std::string>& mentions) {
     std::set<std::string> some;
     for (const std::string& name : names) {

@@ -20,8 +20,8 @@ class PathSpace {
     /// Replaces `out` by an eye subpath through a uniform point of the whole film.
     virtual void traceEye(Rng& rng, RayTally& tally, std::vector<PathVertex>& out) const = 0;
 
-    /// What arrives from a light subpath's last vertex at an eye subpath's last vertex, without
-    /// visibility and without absorption in coloured glass between the two.
+    /// The light that arrives from a light subpath's last vertex at an eye subpath's last vertex.
+    /// Visibility, and absorption in coloured glass between the two, are left out.
     struct Arrival {
         Rgb flow;             ///< beta rho at the light's end
         Rgb scattered;        ///< flow times rho at the eye's end, where asked for
@@ -36,7 +36,7 @@ class PathSpace {
     virtual float reach(const Vec3& origin, const Vec3& direction, RayTally& tally) const = 0;
 };
 
-/// What a method may use before and after an iteration's eye paths, and the statistics
+/// The data that a method may use before and after an iteration's eye paths, and the statistics
 /// that it adds to.
 struct IterationContext {
     const PathSpace& space;

@@ -1,4 +1,5 @@
-// What stays the same from the first iteration of a render to the last, and what belongs to one.
+// The data that stay the same from the first iteration of a render to the last, and the data of
+// one iteration.
 #pragma once
 
 #include <atomic>

@@ -11,7 +11,7 @@ enum class Sampling {
     Sobol,        ///< even over the iterations
     Independent,  ///< all of them independent
 };
-/// As --sampler names it.
+/// The name that --sampler has for it.
 constexpr const char* nameOf(Sampling sampling) {
     return sampling == Sampling::Sobol ? "sobol" : "independent";
 }

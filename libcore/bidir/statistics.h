@@ -1,4 +1,4 @@
-// What an iteration counted and where its time went.
+// Statistics of an iteration: its counts, and where its time went.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-/// What an iteration counted, merged in an order that does not depend on threads.
+/// Counts of an iteration, merged in an order that does not depend on threads.
 struct IterationStatistics {
     static constexpr std::size_t kReplaysKept = 8;
 
@@ -25,6 +25,7 @@ struct IterationStatistics {
     std::map<std::string, std::uint64_t> held;
 
     std::uint64_t totalRays() const;
+    /// Notes that `number` of `what` were held at one time. Keeps the largest number.
     void hold(const std::string& what, std::uint64_t number);
     void add(const IterationStatistics& other);
     void add(const RayTally& tally);

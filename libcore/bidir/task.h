@@ -1,5 +1,5 @@
-// What the passes of an iteration work with: scratch memory by thread, results by task. Results are
-// merged in the order of tasks, so that they are the same for any number of threads.
+// Memory of an iteration's passes: scratch memory by thread, results by task. Results are merged in
+// the order of tasks, so that they are the same for any number of threads.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct LayerSplat {
     PathLayers::Share share;
 };
 
-/// What one task leaves behind.
+/// The results of one task.
 struct TaskResult {
     std::vector<Splat> splats;
     std::vector<std::uint64_t> splatPaths;         // by splat: its light subpath
@@ -87,7 +87,7 @@ struct Worker {
     std::array<std::vector<PathVertex>, kTile> eye, light;
     std::vector<Rng> rngs;  // by subpath
     std::vector<Walk> walks;
-    /// What the vertices of an eye path are joined to.
+    /// The light vertices that those of an eye path are joined to.
     struct Joints {
         ProposalSink proposals;                 // for all vertices
         std::vector<std::size_t> proposalEnds;  // by t: how many there are up to z_{t-1}

@@ -1,4 +1,4 @@
-// What each technique (s, t) adds to the picture, and how noisy that is.
+// Layers of what each technique (s, t) adds to the picture, and of its variance.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-/// What a technique adds to a pixel.
+/// A contribution of one technique to a pixel.
 struct TechniqueSample {
     int s, t;  ///< merges: at x_s, the last of t vertices from the eye
     TechniqueGroup group;
@@ -40,6 +40,7 @@ class TechniqueFilm final : public BlockLayers {
     void countIteration();
     Layers means() const override;
     void clear() override;
+    /// Means per pixel of a technique's contributions, with and without their weights. For merges `s` is i.
     Image weighted(int s, int t, bool merged = false) const {
         return mean(of(s, t, merged).weighted);
     }

@@ -279,10 +279,10 @@ class Products {
     const int split_;  // x_0 .. x_{split-1} were made by the light's walk; merges: x_split by both
     const Lights& lights_;
     const LightPoint source_;
-    // By edge (that of x_i and x_{i+1}).
+    // Indexed by edge: edge i is that of x_i and x_{i+1}.
     PerVertex<Vec3> direction_;
     PerVertex<double> toLens_, toLight_, geometry_;
-    // By vertex.
+    // Indexed by vertex.
     PerVertex<double> lightPdfA_, eyePdfA_, survival_;
     PerVertex<Rgb> scatter_, beta_;
     PerVertex<ScatterEvent> event_;

@@ -24,7 +24,7 @@ double misWeightByProducts(const Walker& walker, const FullPath& path,
 /// Compares the weight of every path it is shown; called from many threads at once.
 class WeightVerifier {
   public:
-    /// What the walker refers to must outlive it.
+    /// The objects that the walker refers to must outlive the verifier.
     WeightVerifier(const Walker& walker, const ThreadPool& pool);
 
     void check(const PathEvent& event);
@@ -43,7 +43,7 @@ class WeightVerifier {
         double difference = -1.0;
         Sample sample;
 
-        /// By the larger difference; where two are equal, by the earlier sample.
+        /// Whether the difference is larger or, where two are equal, the sample is earlier.
         bool worseThan(const Worst& other) const;
     };
     struct alignas(64) Slot {  // one per thread

@@ -39,7 +39,9 @@ class DirectionSquare {
         const float cosine = dot(direction, frame_.n);
         return bothSides_ ? 0.5f * kInvPi * std::abs(cosine) : kInvPi * std::max(0.0f, cosine);
     }
+    /// The point of a unit direction that has one.
     SquarePoint pointOf(const Vec3& direction) const;
+    /// The unit direction of a point.
     Vec3 directionAt(SquarePoint point) const;
 
   private:
@@ -49,7 +51,7 @@ class DirectionSquare {
 
 class WalkGuide {
   public:
-    /// What a region has for one of the two walks.
+    /// The data of a region for one of the two walks.
     struct Field {
         float share = 0.0f;  ///< in [0, kMostShare]
         SquareDensity directions;
@@ -65,6 +67,7 @@ class WalkGuide {
             return even > 0.0f ? even * float(of(side).directions.at(square.pointOf(to)).pdf)
                                : 0.0f;
         }
+        /// Draws a unit direction with the density pdfW(side, .); u1, u2 in [0, 1).
         Vec3 sample(Side side, float u1, float u2) const {
             return square.directionAt(of(side).directions.warp({double(u1), double(u2)}));
         }
@@ -89,6 +92,7 @@ class WalkGuide {
     /// Surfaces that let light pass have regions of their own, and so have surfaces whose lobes
     /// are all narrow.
     static constexpr std::uint32_t kPasses = 1, kNarrow = 2, kKinds = 4;
+    /// The place of a surface vertex, the same for either walk's vertex.
     static Place placeOf(const PathVertex& surface);
 
     WalkGuide() = default;
@@ -105,6 +109,7 @@ class WalkGuide {
     /// of directions.
     void mix(std::uint32_t region, const Vec3& toEye, const Vec3& toLight, ScatterEvent event,
              BsdfEvaluation& e) const;
+    /// The index of the region of a place.
     std::uint32_t regionAt(const Place& place) const {
         const Node* node = &nodes_[place.kind];
         while (node->code & kInner) {

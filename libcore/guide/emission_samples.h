@@ -34,8 +34,11 @@ class EmissionSamples {
              float contribution, std::uint32_t pixel);
     void append(const EmissionSamples& other, std::size_t index) { put(other.samples_[index]); }
     void put(const Sample& sample) { samples_.push_back(sample); }
+    /// Divides contributions by what their pixels show.
     void relate(const PixelScale& scale);
+    /// The outlierLimit() of the contributions (relative_contribution.h).
     float outlierLimit() const;
+    /// Lowers larger contributions to the limit.
     void lowerTo(float limit);
 
     std::size_t size() const { return samples_.size(); }

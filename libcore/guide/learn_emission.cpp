@@ -38,7 +38,7 @@ struct Moments {
     double effective() const { return effectiveSamples(withRay + alone, squares); }
 };
 
-/// What SquareGrower asks of all samples.
+/// The answers to SquareGrower that are common to rays and points.
 class Samples {
   public:
     explicit Samples(std::span<const Sample> samples) : samples_(samples) {}

@@ -44,8 +44,11 @@ class WalkSamples {
     void append(const WalkSamples& other, std::size_t index);
     /// Adds a path of these steps. `contribution` is its g.
     void put(std::uint32_t pixel, float contribution, std::span<const Step> steps);
+    /// Divides contributions by what their pixels show.
     void relate(const PixelScale& scale);
+    /// The outlierLimit() of the contributions (relative_contribution.h).
     float outlierLimit() const;
+    /// Lowers larger contributions to the limit.
     void lowerTo(float limit);
 
     std::size_t size() const { return paths_.size(); }

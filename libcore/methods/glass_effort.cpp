@@ -53,7 +53,7 @@ double meanWithoutSparks(std::vector<double> values) {
 /// A picture of two iterations.
 struct PilotPicture {
     int width;
-    /// By iteration and pixel: what one kind of technique brings, and the rest.
+    /// By iteration and pixel: the contributions of one kind of technique, and the rest.
     std::array<std::vector<double>, 2> own, rest;
     double chainRays, otherRays;
 };

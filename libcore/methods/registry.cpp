@@ -44,7 +44,7 @@ namespace {
 const char* const kPreset = "preset";
 const char* const kPaper = "preset=paper";
 
-/// What every row that splats has; read by lightPathsOf.
+/// The options of every row that splats; read by lightPathsOf.
 struct SplatOptions {
     std::uint64_t lightPaths = 0;
 };

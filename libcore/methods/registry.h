@@ -26,7 +26,8 @@ struct AssetNeed {
     std::function<bool(const Settings&)> wanted = {};
 };
 
-/// What a method is, for the integrator, the command line, the documentation and the tests.
+/// The description of a method for the integrator, the command line, the documentation
+/// and the tests.
 struct MethodRow {
     std::string name = {};
     std::string reference = {};  ///< key in REFERENCES.md
@@ -38,7 +39,8 @@ struct MethodRow {
     std::vector<AssetNeed> needs = {};             ///< in the order in which they are made
     std::vector<std::string> proposalLabels = {};  ///< names of Proposal::label, for layers
     bool biased = false;  ///< an experiment of a paper: skipped by tests of unbiasedness
-    /// What `preset=paper` sets, where the paper's value is not our default: "name=value".
+    /// The values that `preset=paper` sets, where the paper's value is not our
+    /// default: "name=value".
     std::vector<std::string> paper = {};
     std::vector<Option> options = {};
     std::function<std::unique_ptr<Method>(const Settings&)> create = {};

@@ -3,7 +3,7 @@
 //
 //   pool      M = 1024 light subpaths, new in every iteration; L_s: their vertices y_{s-1}
 //   pick      N vertices y per s (the paper: one) at the eye vertex's node:  contribution
-//             h(y) / (M N P(y)) [eq 9]; at nodes that are not accepted y comes evenly from L_s
+//             h(y) / (M N P(y)) [eq 9]; at nodes that are not accepted, y comes evenly from L_s
 //   lengths   N picks for every s [4.3], or for s > 2 a share of N on average (LengthPicks), which
 //             then stands in the place of N
 //   MIS       credit:  r is one constant, M (the authors' code)

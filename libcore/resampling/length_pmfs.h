@@ -97,7 +97,7 @@ void addLengths(OptionTable<Record>& table, Field field) {
         "follows the share of light subpaths of that length");
 }
 
-/// What the weights believe of a connection.
+/// The number of samples that the weights believe of a connection.
 enum class Believed {
     Credit,  ///< M samples: the papers' constant
     Aware,   ///< the samples that the resampling is worth

@@ -28,6 +28,7 @@ class LightTree {
     LightTree(const LightPool& pool, std::span<const LightPool::Entry> candidates,
               const ThreadPool& threads);
 
+    /// Number of leaves.
     std::size_t size() const { return order_.size(); }
     /// Sum of mean(beta) over a cluster.
     double power(Cluster c) const { return nodes_[c].power; }

@@ -1,4 +1,4 @@
-// What rows that merge have in common. (theory.md, "Merging")
+// Options of the rows that merge. (theory.md, "Merging")
 #pragma once
 
 #include "libcore/base/options.h"

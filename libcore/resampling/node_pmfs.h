@@ -49,6 +49,7 @@ class NodePmfs {
     std::uint32_t slotOf(std::uint32_t node) const {
         return node < slot_.size() ? slot_[node] : kNone;
     }
+    /// The nodes that have pmfs, by slot.
     std::span<const std::uint32_t> accepted() const { return accepted_; }
     /// w_n(y), beta = mean(beta(y)).
     double weight(std::uint32_t node, const PathVertex& y, double beta) const;
@@ -57,6 +58,7 @@ class NodePmfs {
 
     /// Makes this iteration's pmfs. The first call finds out which nodes are accepted.
     void prepare(const VerticesByLength& vertices, IterationContext& context);
+    /// The pmf over the vertices of length s, by an accepted node's slot.
     const CombinedPmf& pmf(std::uint32_t slot, int s) const {
         return pmfs_[slot * lengths_ + std::size_t(s)];
     }

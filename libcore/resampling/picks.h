@@ -108,7 +108,8 @@ class ExpectedVertices {
     std::uint64_t vertices_ = 0, pools_ = 0;
 };
 
-/// Proposes one fresh light point: next event (s = 1). By power r = 1, else r = seenSamples.
+/// Proposes one fresh light point: next event (s = 1). With lamps=power r = 1, otherwise r
+/// = seenSamples.
 void proposeFreshLight(const EyeContext& context, Lamps lamps, Rng& rng, ProposalSink& sink);
 
 /// A density that depends on nothing but whether s = 1.

@@ -82,7 +82,8 @@ class Chain {
     /// Likewise by an event that is drawn by `u` in [0, 1). The probability of each event is its share of the sum of
     /// mean(through).
     bool extend(const Scene& scene, const Hit& hit, double u);
-    /// Where last() meets the triangle of another chain's vertex, if it does.
+    /// The hit of last() on the triangle of another chain's vertex; empty where it does not
+    /// meet the triangle.
     std::optional<Hit> meetAgain(const ChainVertex& vertex) const;
 
     /// Whether both chains have the same events in the same order.

@@ -108,7 +108,7 @@ class ChainSeeds {
     };
     static constexpr UsualKinds kOfPoints{1, WaysNearby::kMostUsual}, kOfLamps{2, 4};
 
-    /// What is known of kNear ways with successive codes.
+    /// The usual and the other ways of kNear ways with successive codes, and their ball.
     struct Window {
         std::array<std::uint32_t, WaysNearby::kMostUsual + WaysNearby::kMostOthers> ways;
         std::uint8_t usual = 0, others = 0;
@@ -135,7 +135,8 @@ class ChainSeeds {
     void joinLights(const Lights& lights);
 
     std::vector<Sorted> byLight_;  // of all lights; empty: none is without an extent
-    // Of all lights without an extent together, if there are several, in the order of the codes.
+    // The ways of all lights without an extent together, if there are several, in the
+    // order of the codes.
     std::vector<std::uint32_t> codes_;
     std::vector<LightShare> shares_;
     Sorted ofLamps_;

@@ -18,7 +18,7 @@ struct ChainStart {
     Vec3 side;  ///< unit, on the side that light comes from; zero: both
 };
 
-/// What is searched for.
+/// What to search for: the two ends of a chain, and its greatest length.
 struct ChainQuery {
     ChainStart start;
     ChainTarget target;

@@ -66,7 +66,7 @@ std::optional<FacetSlope> facetBetween(const Bsdf& bsdf, const Vec3& toEye, cons
     const bool eyeOutside = dot(eye, Vec3d(bsdf.ng())) > 0.0;
     Vec3d h;
     if (bsdf.bends()) {
-        // On the side of the lower index, the outside [Walter07 eq 16].
+        // h lies on the side of the lower index, the outside [Walter07 eq 16].
         h = (eye * double(bsdf.indexOn(eyeOutside)) + light * double(bsdf.indexOn(!eyeOutside))) *
             -1.0;
         const Vec3d outside = eyeOutside ? eye : light, inside = eyeOutside ? light : eye;

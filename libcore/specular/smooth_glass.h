@@ -1,5 +1,5 @@
-// What next event through glass knows of a scene's smooth and nearly smooth glass: made once for all renders of it.
-// (theory.md, "Next event through glass")
+// The tables of a scene's smooth and nearly smooth glass for next event through glass. They are made once for all
+// renders of the scene. (theory.md, "Next event through glass")
 #pragma once
 
 #include "libcore/specular/glass_bodies.h"

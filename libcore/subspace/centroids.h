@@ -30,6 +30,7 @@ class Centroids {
     /// Indices of the `most` nearest, or of all where there are fewer; nearest first, of equally
     /// near ones the first.
     std::vector<std::uint32_t> nearest(const SubpathEnd& end, std::size_t most) const;
+    /// d(C_index, end) as above.
     float distance(std::size_t index, const SubpathEnd& end) const;
 
   private:

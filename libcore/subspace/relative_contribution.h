@@ -16,7 +16,7 @@ class PixelScale {
   public:
     /// `image`: row-major; values that are not finite are left out.
     PixelScale(std::span<const Rgb> image, int width, int block);
-    /// What contributions to the pixel are divided by; zero where the picture is black.
+    /// The scale that contributions to the pixel are divided by; zero where the picture is black.
     double of(std::uint32_t pixel) const { return blocks_[blockOf(pixel)]; }
 
   private:

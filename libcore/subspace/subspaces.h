@@ -42,9 +42,11 @@ struct Subspaces {
         return predecessor ? DecisionTree::Descent(lightTree, subpathEnd(vertex, *predecessor))
                            : DecisionTree::Descent(cells.cellOf(vertex));
     }
+    /// kappa of z_0 .. z_{t-1} that ends with `vertex`.
     std::uint32_t eyeSubspace(const PathVertex& vertex, const PathVertex& predecessor) const {
         return eyeTree(subpathEnd(vertex, predecessor));
     }
+    /// The column of Gamma of an eye subspace: lightCount probabilities.
     std::span<const float> column(std::uint32_t eye) const {
         return std::span(gamma).subspan(std::size_t(eye) * lightCount, lightCount);
     }

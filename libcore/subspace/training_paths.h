@@ -45,6 +45,7 @@ class TrainingPaths {
 
     /// Divides contributions by what their pixels show.
     void relate(const PixelScale& scale);
+    /// The outlierLimit() of the contributions (relative_contribution.h).
     float outlierLimit() const;
     /// Lowers larger contributions to the limit. Returns how many there were.
     std::size_t lowerTo(float limit);
