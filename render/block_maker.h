@@ -31,9 +31,6 @@ struct Totals {
     }
 };
 
-/// The cancel flag of work that must be finished.
-inline const std::atomic<bool> kNeverCancelled{false};
-
 class BlockMaker {
   public:
     /// The arguments passed by reference must outlive the maker. Sets the size of blocks in

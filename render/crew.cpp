@@ -7,10 +7,6 @@
 
 namespace lacuna {
 
-namespace {
-constexpr std::chrono::milliseconds kGrace{3000};
-}
-
 Alone::Alone(BlockMaker& maker, const std::atomic<bool>& interrupted, const ThreadPool& pool,
              Progress& progress)
     : maker_(maker), interrupted_(interrupted), pool_(pool), progress_(progress) {}
@@ -23,7 +19,7 @@ bool Alone::advance(Film& film, Totals& totals) {
     }
     bool made = false;
     {
-        const Grace grace(interrupted_, cut_, kGrace);
+        const Grace grace(interrupted_, cut_);
         made = make(film, totals, cut_);
     }
     if (made) cut_ = false;  // it was finished as the time ran out

@@ -1,19 +1,23 @@
 #include "render/first_look.h"
 
 #include "libcore/base/stopwatch.h"
+#include "render/grace.h"
 
 namespace lacuna {
 namespace {
 
-FeatureLayers featuresOf(Stage& stage, const ThreadPool& pool) {
+FeatureLayers featuresOf(Stage& stage, const ThreadPool& pool,
+                         const std::atomic<bool>& interrupted) {
     const Stopwatch watch(stage.phaseSeconds["features"]);
+    std::atomic<bool> over = false;
+    const Grace grace(interrupted, over);
     return renderFeatures(*stage.scene, *stage.camera, stage.settings.crop, stage.settings.seed,
-                          pool);
+                          pool, over);
 }
 
 }  // namespace
 
-FirstLook::FirstLook(Stage& stage, const ThreadPool& pool)
-    : features(featuresOf(stage, pool)), meter(features) {}
+FirstLook::FirstLook(Stage& stage, const ThreadPool& pool, const std::atomic<bool>& interrupted)
+    : features(featuresOf(stage, pool, interrupted)), meter(features) {}
 
 }  // namespace lacuna

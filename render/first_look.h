@@ -8,8 +8,9 @@
 namespace lacuna {
 
 struct FirstLook {
-    /// Measures its time as the stage's phase "features".
-    FirstLook(Stage& stage, const ThreadPool& pool);
+    /// Measures its time as the stage's phase "features". Throws InterruptedError if it is not done three
+    /// seconds after `interrupted` became true (Grace).
+    FirstLook(Stage& stage, const ThreadPool& pool, const std::atomic<bool>& interrupted);
 
     FeatureLayers features;
     ErrorMeter meter;

@@ -1,4 +1,4 @@
-// Limits the time of the first iteration after an interrupt.
+// Limits the time of the feature layers, and of the first iteration, after an interrupt.
 #pragma once
 
 #include <atomic>
@@ -11,9 +11,8 @@ namespace lacuna {
 
 class Grace {
   public:
-    /// Sets `over` once `interrupted` has been true for `time`. Both must outlive the object.
-    Grace(const std::atomic<bool>& interrupted, std::atomic<bool>& over,
-          std::chrono::milliseconds time);
+    /// Sets `over` once `interrupted` has been true for three seconds. Both must outlive the object.
+    Grace(const std::atomic<bool>& interrupted, std::atomic<bool>& over);
     ~Grace();
     Grace(const Grace&) = delete;
     Grace& operator=(const Grace&) = delete;
@@ -23,7 +22,6 @@ class Grace {
 
     const std::atomic<bool>& interrupted_;
     std::atomic<bool>& over_;
-    const std::chrono::milliseconds time_;
     std::mutex mutex_;
     std::condition_variable wake_;
     bool stop_ = false;

@@ -89,7 +89,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
         // Before the preparation is done, an interrupt saves nothing.
         const bool prepares = options.method == kAuto || !needsOf(*row, settings).empty();
         progress.phase("features", prepares ? kNothingWritten : nullptr);
-        look.emplace(*stage, pool);
+        look.emplace(*stage, pool, interrupted);
     });
     if (!loaded) return std::nullopt;
     std::optional<RowChoice> choice;

@@ -2,11 +2,15 @@
 // alone, so that results never depend on the number of threads.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
 
 namespace lacuna {
+
+/// The cancel flag of work that must be finished.
+inline const std::atomic<bool> kNeverCancelled{false};
 
 /// The worker threads of one tool run. `threads` = 0 means one for each processor that the process
 /// may run on. The limit is 64 threads, or four per processor if that is more. Every worker keeps

@@ -1,6 +1,6 @@
 #include "libcore/bidir/features.h"
 
-#include "libcore/base/parallel.h"
+#include "libcore/base/error.h"
 #include "libcore/base/rng.h"
 #include "libcore/bidir/look.h"
 
@@ -11,7 +11,8 @@ constexpr int kSamples = 4;
 }
 
 FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const PixelRect& crop,
-                             std::uint64_t seed, const ThreadPool& pool) {
+                             std::uint64_t seed, const ThreadPool& pool,
+                             const std::atomic<bool>& cancel) {
     FeatureLayers layers{
         Image(crop.width(), crop.height()), Image(crop.width(), crop.height()), {}, {}};
     layers.z.resize(layers.albedo.pixels.size());
@@ -19,6 +20,7 @@ FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const Pix
     const auto filmWidth = std::uint64_t(camera.film().width);
 
     pool.forEach(std::size_t(crop.height()), [&](std::size_t row) {
+        if (cancel) return;
         RayTally tally;  // not part of the render: these rays are counted nowhere
         const int y = crop.y0 + int(row);
         for (int x = crop.x0; x < crop.x1; ++x) {
@@ -50,6 +52,7 @@ FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const Pix
             layers.position[pixel] = Vec3(position * (1.0 / hits));
         }
     });
+    if (cancel) throw InterruptedError("interrupted: nothing was written");
     return layers;
 }
 

@@ -8,12 +8,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "libcore/base/parallel.h"
 #include "libcore/bidir/film.h"
 #include "libcore/scene/scene.h"
 
 namespace lacuna {
-
-class ThreadPool;
 
 /// Means over a few primary rays per pixel; zero where nothing is hit (so every layer is finite).
 struct FeatureLayers {
@@ -24,8 +23,10 @@ struct FeatureLayers {
     std::vector<Vec3> position = {};  ///< in the file's coordinates, mean over the rays that hit
 };
 
-/// For the pixels of `crop`; a pixel's values do not depend on the crop.
+/// For the pixels of `crop`; a pixel's values do not depend on the crop. Throws InterruptedError soon
+/// after `cancel` became true.
 FeatureLayers renderFeatures(const Scene& scene, const Camera& camera, const PixelRect& crop,
-                             std::uint64_t seed, const ThreadPool& pool);
+                             std::uint64_t seed, const ThreadPool& pool,
+                             const std::atomic<bool>& cancel = kNeverCancelled);
 
 }  // namespace lacuna

@@ -141,8 +141,8 @@ auto asInputError(const std::string& path, Body body) {
         throw;
     } catch (const std::bad_alloc&) {
         throw InputError(path +
-                         ": expected an image that fits into memory, found too large a "
-                         "one; is the file damaged?");
+                         ": expected an image that fits into memory, found too large or too "
+                         "damaged a one; write it again, or raise the limit of memory (ulimit)");
     } catch (const std::exception& e) {
         throw InputError(path + ": expected an intact OpenEXR file, found: " +
                          printable(e.what(), 200) + "; write it again");

@@ -72,8 +72,14 @@ bool isLackOfThreads(const std::exception& e) {
 [[noreturn]] void endWithOneLine() {
     static std::atomic_flag ending = ATOMIC_FLAG_INIT;
     while (ending.test_and_set()) pause();  // another thread is reporting
-    if (!std::current_exception()) std::abort();
-    const Failure failure = failureOfCurrentException();
+    // There is no current exception where a destructor threw while another one was on its way. The
+    // destructors of JSON values allocate.
+    const Failure failure =
+        std::current_exception()
+            ? failureOfCurrentException()
+            : Failure{1,
+                      "internal error, most likely for want of memory: use a smaller image or "
+                      "scene, or raise its limit (ulimit -v); else please report it"};
     // Other threads are still running, so that nothing is destroyed. Files without a commit have no
     // name.
     _exit(report(failure.text, failure.exitCode));

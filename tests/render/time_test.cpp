@@ -119,6 +119,19 @@ TEST_F(RenderInterrupt, AFirstIterationOfMinutesIsCut) {
     EXPECT_TRUE(temporaries().empty());
 }
 
+/// The layers beside the picture have as long. Of so many pixels they take half a minute.
+TEST_F(RenderInterrupt, LayersOfMinutesAreCut) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome o = runAndSignal(
+        "@room.gltf -o @out.exr --method pt --width 6000 --height 4000 --threads 1 "
+        "--time 1h",
+        {SIGINT}, milliseconds(800));
+    EXPECT_EQ(o.exitCode, 130) << o.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_NE(o.err.find("nothing was written"), std::string::npos) << o.err;
+    EXPECT_FALSE(exists("out.exr"));
+}
+
 /// Eye paths that were made are a picture, but no part of one and no checkpoint.
 TEST_F(RenderInterrupt, WhatIsFinishedOfTheFirstIterationIsSaved) {
     const Outcome o = runAndSignal(
