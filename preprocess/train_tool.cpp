@@ -77,7 +77,7 @@ void printWalks(const WalkTraining& t) {
         "out), "
         "by %zu paths%s\n",
         l.heldOutLoss[std::size_t(Side::Light)], l.heldOutLoss[std::size_t(Side::Eye)],
-        t.trainPaths + t.heldOutPaths, l.guide ? "" : ": they stay as they are");
+        t.trainPaths + t.heldOutPaths, l.guide ? "" : ": walks by BSDFs are kept");
 }
 
 void print(const std::string& path, const Trained& t, const Phases& phases, double seconds) {
@@ -119,11 +119,10 @@ int trainTool(int argc, char** argv) {
     const TableOptions<WalkSettings> walkTable(app, walkOptions(Walks::Plain));
     const TableOptions<TrainingSettings> training(app, trainingOptions());
     app.footer(
-        "Writes KEY.emission, KEY.walks and KEY.subspaces into the scene's cache, for the methods "
-        "spcbpt\n"
-        "and sharebpt of lacuna-render with the same options of scene, picture and camera: what is "
-        "learned\n"
-        "is of what they show. Other methods take the former with --set emission=learned.\n"
+        "Writes KEY.emission, KEY.walks and KEY.subspaces into the scene's cache. spcbpt and\n"
+        "sharebpt of lacuna-render use them with the same options of scene, picture and camera,\n"
+        "because what is learned depends on these. Other methods use KEY.emission with\n"
+        "--set emission=learned.\n"
         "Examples:\n"
         "  lacuna-train door.glb --paths 200000\n"
         "  lacuna-render door.glb -o door.exr --method spcbpt --set train.paths=200000\n"

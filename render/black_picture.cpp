@@ -90,8 +90,8 @@ std::string whyNotByThisMethod(const MethodRow& method, const Encounters& e, boo
     const Techniques& t = method.techniques;
     if (t.splats && !t.connects && e.eyeRough == 0) {
         return method.name +
-               " joins surfaces with the camera alone, and it sees none that is no "
-               "mirror and no smooth glass" +
+               " joins surfaces with the camera alone, and the camera sees only mirrors and smooth "
+               "glass" +
                bpt;
     }
     if (t.connects && !t.splats && !hittable && e.lightRough == 0) {
@@ -99,7 +99,7 @@ std::string whyNotByThisMethod(const MethodRow& method, const Encounters& e, boo
                "first, over which " +
                method.name + " finds few ways" + bpt;
     }
-    return method.name + " found no light, a test with bpt finds some: use that, or give it time";
+    return method.name + " found no light; a test with bpt found some: use bpt, or render longer";
 }
 
 std::string paths(int n) {
@@ -119,8 +119,8 @@ std::string whyNotAtAll(const Encounters& e, bool hittable) {
         "every lamp that eye paths ran into was seen from behind, where it does not shine: turn it "
         "round or make its material doubleSided");
     add(!hittable && e.lightMeets > 0 && e.lightRough == 0 && e.eyeMeets > 0 && e.eyeRough == 0,
-        "the lamps have no size, and there are mirrors or smooth glass before them and before the "
-        "camera: a way over more than six in a row is not found; use vcm if anything else lies "
+        "the lamps have no size, and mirrors or smooth glass are in front of them and of the "
+        "camera: ways over more than six in a row are not found; use vcm if anything else lies "
         "between them, or small emissive spheres, or make the glass a little rough");
     if (!text.empty()) return text;
     return "light meets surfaces (" + paths(e.lightMeets) +
@@ -140,7 +140,7 @@ std::string cause(const Stage& stage, const MethodRow& method, const ThreadPool&
     if (depth < kAmpleDepth && bptFindsLight(stage, small, kAmpleDepth, pool)) {
         return "no light was found on paths of up to " + std::to_string(depth) +
                (depth == 1 ? " edge" : " edges") + ", a test with " + std::to_string(kAmpleDepth) +
-               " finds some: raise --max-depth";
+               " found some: raise --max-depth";
     }
     return whyNotAtAll(encounters, hittable);
 }

@@ -25,7 +25,8 @@ struct CompareCommand {
 
 void declare(CLI::App& app, CompareCommand& options) {
     app.add_option("IMAGE", options.image, "Image: .exr (R, G, B), .hdr, .pfm or .png")->required();
-    app.add_option("REFERENCE", options.reference, "What it should be; the same size")->required();
+    app.add_option("REFERENCE", options.reference, "Image that it should be, of the same size")
+        ->required();
     app.add_option("--error-map", options.errorMap,
                    std::string("False-colour picture of ") + kErrorMapScale)
         ->type_name("FILE.png");
@@ -75,7 +76,7 @@ void writeMeasures(const std::string& path, const ErrorMeasures& m) {
 }  // namespace
 
 int compareTool(int argc, char** argv) {
-    CLI::App app("How far an image is from a reference", "lacuna-compare");
+    CLI::App app("Measures how far an image is from a reference", "lacuna-compare");
     CompareCommand options;
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;

@@ -28,13 +28,13 @@ struct MergeCommand {
 };
 
 void declare(CLI::App& app, MergeCommand& options) {
-    app.add_option("PART", options.parts, "What lacuna-render --blocks wrote, in any order")
+    app.add_option("PART", options.parts, "Parts written by lacuna-render --blocks, in any order")
         ->required()
         ->type_name("PART.exr");
     app.add_option("-o,--output", options.output, "The picture: .exr")
         ->required()
         ->type_name("OUT.exr");
-    app.add_flag("--gaps", options.gaps, "Blocks may be missing");
+    app.add_flag("--gaps", options.gaps, "Allow missing blocks");
     addExrOptions(app, options.exr, "Options");
     addCommonOptions(app, options.common);
     app.footer(

@@ -8,7 +8,8 @@
 namespace lacuna {
 namespace {
 
-constexpr const char* kAutoSummary = "chooses one of these for the scene, with what it needs";
+constexpr const char* kAutoSummary =
+    "chooses one of these for the scene, and prepares what it needs";
 
 std::string padded(std::string text, std::size_t width) {
     text.resize(std::max(text.size(), width), ' ');
@@ -34,9 +35,12 @@ std::string listMethods() {
 std::string autoHelp() {
     return std::string(kAuto) + ": " + kAutoSummary + "\nTries " + triedMethods() +
            " on a small picture, whose samples are thrown away; those that merge only with "
-           "--allow-bias.\nWith --time the clock has a say; else the choice depends on the "
-           "command and the scene alone.\nWhat was chosen, why, and how to ask for the same by "
-           "name: on stderr, in the header (`chosen`)\nand in the JSON.\n";
+           "--allow-bias.\n"
+           "With --time the choice depends on the clock too, else on the command and the scene "
+           "alone.\n"
+           "stderr, the header (`chosen`) and the JSON say what was chosen and why, and how to ask "
+           "for\n"
+           "the same by name.\n";
 }
 
 std::string methodHelp(const MethodRow& row) {
@@ -59,9 +63,10 @@ std::string methodHelp(const MethodRow& row) {
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {
         text += merges == Merges::FirstFromEye
-                    ? "\n  merges         the first eye vertices with photons around them"
-                    : "\n  merges         eye vertices with photons around them";
-        text += "\nconsistent, not unbiased: what merging blurs goes away as iterations go on";
+                    ? "\n  merges         eye vertices up to the first that scatters widely, "
+                      "merged with photons"
+                    : "\n  merges         eye vertices merged with photons around them";
+        text += "\nconsistent, not unbiased: merging blurs the picture, less with every iteration";
     }
     if (row.biased) text += "\nbiased: an experiment of a paper, not for pictures";
     text += "\nrandom numbers (--sampler): " + std::string(nameOf(row.sampling)) +

@@ -25,15 +25,16 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("SCENE", o.scene, "Scene: .glb or .gltf")->type_name("SCENE.glb");
     app.add_option("-o,--output", o.output, "Image: .exr (layers, statistics), .png or .pfm")
         ->type_name("FILE");
-    app.add_option("--method", o.method,
-                   "How to render (default: auto, which chooses for the scene): see --list-methods")
+    app.add_option(
+           "--method", o.method,
+           "Method (default: auto, which chooses one for the scene); --list-methods lists them")
         ->type_name("NAME")
         ->take_last();
     app.add_flag("--list-methods", o.listMethods, "Print all methods, a line each");
     app.add_option("--help-method", o.helpMethod, "Print a method's parameters for --set")
         ->type_name("NAME");
     app.add_flag("--allow-bias", o.allowBias,
-                 "auto may choose methods that are consistent, not unbiased: merging");
+                 "auto may also choose methods that merge, which are consistent, not unbiased");
     app.add_option("--set", o.assignments, "Set a parameter of the method; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
@@ -45,8 +46,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("x0,x1,y0,y1")
         ->group(picture);
     app.add_option("--exposure", o.exposureText,
-                   "Stops, or auto: what there is to see becomes mid-grey; for .png only (default: "
-                   "auto)")
+                   "Stops, or auto, which maps the mean luminance to mid-grey; for .png only "
+                   "(default: auto)")
         ->type_name("E|auto")
         ->group(picture);
     app.add_option("--tone", o.toneText,
@@ -58,55 +59,57 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("N")
         ->group(picture);
     app.add_flag("--light-groups", o.lightGroups,
-                 "A layer of the .exr for each group of lights; together they are the picture")
+                 "A layer of the .exr for each group of lights; the layers add up to the picture")
         ->group(picture);
     app.add_flag("--light-noise", o.lightNoise,
-                 "--light-groups, and how noisy every mixture of them is, for lacuna-relight")
+                 "--light-groups, and the noise of every mixture of the groups, for lacuna-relight")
         ->group(picture);
     app.add_option("--layer", o.layerTexts,
                    "A layer of the paths that a light path expression matches, in OSL's notation "
-                   "(C<RD>L, C.*<TS>.*L); any number")
+                   "(C<RD>L, C.*<TS>.*L); may be repeated")
         ->type_name("NAME=EXPRESSION")
         ->allow_extra_args(false)
         ->group(picture);
     app.add_flag("--transparent-background", o.transparentBackground,
-                 "Leave out the environment as the camera sees it: A (alpha) says how much of a "
-                 "pixel is anything else, in the .exr and .png")
+                 "Leave out the environment where the camera sees it; A (alpha) of the .exr and "
+                 ".png is the share of a pixel that shows anything else")
         ->group(picture);
     app.add_option("--cryptomatte", o.cryptomatteText,
-                   "Layers of the .exr to cut out objects or materials by name: object, material "
-                   "or object,material")
+                   "Layers of the .exr from which mattes are cut by name: object, material or "
+                   "object,material")
         ->type_name("TYPES")
         ->group(picture);
     addExrOptions(app, o.exr, picture);
-    app.add_option("--sheet", o.sheet, "All layers of the .exr as a page of small pictures as well")
+    app.add_option("--sheet", o.sheet,
+                   "Also write all layers of the .exr as a page of small pictures")
         ->type_name("FILE.png")
         ->group(picture);
 
     const std::string effort = "Effort";
     app.add_option("--iterations,--samples,--spp", o.iterations,
-                   "One eye path per pixel each (default: 64; unlimited with --time, --until)")
+                   "Number of iterations, each with one eye path per pixel (default: 64; unlimited "
+                   "with --time, --until)")
         ->type_name("N")
         ->group(effort);
     app.add_option("--time", o.timeText,
-                   "Wall clock from the first iteration on: 90s (or 90), 10m, 1h")
+                   "Limit of the time from the first iteration on: 90s (or 90), 10m, 1h")
         ->type_name("T")
         ->group(effort);
-    app.add_option("--until", o.untilText,
-                   "Until the error, estimated without a reference, is below E: mape, relmse, rmse")
+    app.add_option(
+           "--until", o.untilText,
+           "Render until the error, estimated without a reference, is below E: mape, relmse, rmse")
         ->type_name("MEASURE=E")
         ->group(effort);
     app.add_flag("--estimate", o.estimate,
-                 "Print what accuracy costs, after some seconds; writes no image")
+                 "Render for some seconds and print what accuracy costs; writes no image")
         ->group(effort);
-    app.add_option(
-           "--sampler", o.samplerText,
-           "Random numbers: sobol (even over iterations), or independent (default: by auto, else "
-           "the method's)")
+    app.add_option("--sampler", o.samplerText,
+                   "Random numbers: sobol (even over iterations) or independent (default: the "
+                   "method's; auto takes sobol)")
         ->type_name("NAME")
         ->take_last()
         ->group(effort);
-    app.add_flag("--count-setup", o.countSetup, "Loading and building count in --time too")
+    app.add_flag("--count-setup", o.countSetup, "Count loading and building in --time too")
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
 
@@ -119,18 +122,18 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("T")
         ->group(pieces);
     app.add_option("--blocks", o.blocksText,
-                   "Only blocks A .. B-1 of the picture, as a part for lacuna-merge")
+                   "Render only blocks A .. B-1 of the picture, as a part for lacuna-merge")
         ->type_name("A,B")
         ->group(pieces);
     app.add_option("--block-iterations", o.blockIterations,
-                   "Iterations of a block; what methods learn begins anew with each (default: 64; "
-                   "16 where methods learn; 8 where iterations share light paths)")
+                   "Iterations of a block, with each of which methods begin to learn anew "
+                   "(default: 64; 16 where methods learn; 8 where iterations share light paths)")
         ->type_name("N")
         ->group(pieces);
 
     const std::string live = "While it renders";
     app.add_option("--display-server", o.displayServerText,
-                   "Show the picture in tev as it is (default port: 14158)")
+                   "Show the picture in tev while it is rendered (default port: 14158)")
         ->type_name("H:P")
         ->group(live);
     app.add_option("--display-layers", o.displayLayersText,
@@ -145,35 +148,34 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--reference", o.reference, "Image to compare with: .exr, .hdr, .pfm, .png")
         ->type_name("FILE")
         ->group(check);
-    app.add_option("--log", o.log, "Error and rays against time, a row per iteration at most")
+    app.add_option("--log", o.log, "Write error and rays against time, a row per iteration at most")
         ->type_name("CURVE.csv")
         ->group(check);
-    app.add_flag("--techniques", o.techniques,
-                 "What each technique (s, t) adds, its noise and its time: a table, and layers in "
-                 "the .exr")
+    app.add_flag(
+           "--techniques", o.techniques,
+           "Print what each technique (s, t) adds, its noise and its time; with layers in the .exr")
         ->group(check);
     app.add_flag("--verify", o.verify, "Recompute every weight by full products and compare")
         ->group(check);
     app.add_option("--replay", o.replayText, "Run one sample alone and print its path")
         ->type_name("x,y,i|light:PATH,i")
         ->group(check);
-    app.add_flag("--effects", o.effects, "Print what the scene calls for; renders nothing")
+    app.add_flag("--effects", o.effects, "Print the effects that the scene needs; renders nothing")
         ->group(check);
     addCommonOptions(app, o.common);
     app.add_flag("--denoise", o.denoise)->group("");  // hidden; its error suggests an alternative
     app.footer(
         "Writes the image, and prints what it wrote. An interrupt (Ctrl-C) saves what there is;\n"
-        "a second one exits at once. --width or --height alone keeps the picture's shape, that of\n"
-        "extras.lacuna where it has both sides, else the camera's. .exr: R G B, albedo, normal, Z\n"
-        "(distance along the viewing axis, 0 where nothing is hit), position, variance (of the\n"
-        "mean), layers that were asked for, and in the header how it was made; with --crop it has\n"
-        "the size of the crop, `crop` in the header says where.\n"
-        "--layer: C camera, R reflected, T transmitted, L any light, O a mesh that shines, B the\n"
-        "environment; D diffuse, G glossy, S mirror or smooth glass, as <RD>, <TS>, or alone; a "
-        "third\n"
-        "place for names: <L.'lamp'>, <RD'floor'>. . [] [^] | * + ? {n,m} () as usual. Nothing is "
-        "s,\n"
-        "straight: what alpha lets pass is no event.\n"
+        "a second one exits at once. --width or --height alone keeps the shape of the default\n"
+        "picture: that of extras.lacuna if it names both sides, else the camera's.\n"
+        "An .exr has R G B, albedo, normal, Z (distance along the viewing axis, 0 where nothing\n"
+        "is hit), position, variance (of the mean) and the layers that you ask for. Its header\n"
+        "says how it was made. With --crop it has the size of the crop, and `crop` in the header\n"
+        "says where that is.\n"
+        "--layer: C camera, R reflected, T transmitted, L any light, O a mesh that emits, B the\n"
+        "environment; D diffuse, G glossy, S mirror or smooth glass, as <RD>, <TS>, or alone; a\n"
+        "third place for names: <L.'lamp'>, <RD'floor'>. . [] [^] | * + ? {n,m} () as usual. s,\n"
+        "straight, matches nothing: what alpha lets pass is no event.\n"
         "mpirun -n P lacuna-render ... makes the same picture with P processes.\n"
         "Examples:\n"
         "  lacuna-render door.glb -o door.png --time 10s\n"
@@ -262,9 +264,9 @@ void checkPieces(const RenderOptions& o) {
 void checkMethod(RenderOptions& o) {
     if (o.method.empty()) o.method = kAuto;
     if (o.method != kAuto) return;
-    const std::string byName = "; name a method, or see what the picture's header says was chosen";
+    const std::string byName = "; name a method (the picture's header says which was chosen)";
     if (!o.assignments.empty()) {
-        throw UsageError("--set: expected the method that it is of, found " +
+        throw UsageError("--set: expected the method that the parameter belongs to, found " +
                          std::string("--method auto") + byName);
     }
     if (o.replay) {
@@ -293,7 +295,7 @@ void nameOutput(RenderOptions& o) {
     std::error_code ignored;
     if (std::filesystem::exists(o.output, ignored) && !isOurPng(o.output)) {
         throw UsageError("-o: expected the image to write, found none, and " + o.output +
-                         " is there and not by Lacuna; add -o FILE");
+                         " exists and was not written by Lacuna; add -o FILE");
     }
 }
 
@@ -384,7 +386,7 @@ void checkOptions(RenderOptions& o) {
     checkSceneOptions(o);
     if (o.denoise) {
         throw UsageError(
-            "--denoise: expected a render, found a wish that Lacuna leaves to others; write an "
+            "--denoise: expected an option of Lacuna, found a task for another program; write an "
             ".exr, and give its layers R G B, albedo and normal to Open Image Denoise: python3 -m "
             "lacuna.denoise IN.exr OUT.exr");
     }
@@ -443,14 +445,12 @@ void checkOptions(RenderOptions& o) {
 }
 
 void addExrOptions(CLI::App& app, ExrStyle& style, const std::string& group) {
-    app.add_flag(
-           "--half", style.half,
-           "16-bit float in the .exr where that is enough: not for Z, position, variances and "
-           "Cryptomatte")
+    app.add_flag("--half", style.half,
+                 "16-bit float in the .exr, except for Z, position, variances and Cryptomatte")
         ->group(group);
-    app.add_flag(
-           "--multi-part", style.multiPart,
-           "Each layer of the .exr is a part of its own: quicker to read where there are many")
+    app.add_flag("--multi-part", style.multiPart,
+                 "Make each layer of the .exr a part of its own: one of many layers is then read "
+                 "more quickly")
         ->group(group);
 }
 

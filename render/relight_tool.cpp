@@ -25,7 +25,7 @@ struct RelightCommand {
 };
 
 void declare(CLI::App& app, RelightCommand& options) {
-    app.add_option("IMAGE", options.image, "What lacuna-render --light-groups wrote")
+    app.add_option("IMAGE", options.image, "Image written by lacuna-render --light-groups")
         ->required()
         ->type_name("IMAGE.exr");
     app.add_option("-o,--output", options.output,
@@ -115,8 +115,8 @@ int relightTool(int argc, char** argv) {
     }
     if (!noise && !options.common.quiet) {
         std::fprintf(stderr,
-                     "note: %s: without variance, which these layers do not tell: render with "
-                     "--light-noise\n",
+                     "note: %s: written without variance, which does not follow from these layers: "
+                     "render with --light-noise\n",
                      options.output.c_str());
     }
     std::printf("%s: %d x %d pixels under new light, %zu groups\n", options.output.c_str(),

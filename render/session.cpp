@@ -607,9 +607,10 @@ std::string Session::replayCommand(const std::string& replay) const {
 void Session::warnAboutDefects() {
     const IterationStatistics& s = report_.statistics;
     if (s.invalidSamples > 0) {
-        progress_.warning("warning: " + std::to_string(s.invalidSamples) +
-                          " samples were not finite, or their sums, and left out; see one with: " +
-                          replayCommand(s.invalidReplays.at(0)));
+        progress_.warning(
+            "warning: " + std::to_string(s.invalidSamples) +
+            " samples, or sums with them, were not finite and were left out; see one with: " +
+            replayCommand(s.invalidReplays.at(0)));
     }
     if (report_.verify && !(report_.verify->maxDifference <= kVerifyTolerance)) {
         progress_.warning("warning: a weight differs from its full product by " +

@@ -39,11 +39,11 @@ constexpr std::array kUnread = {
     Unread{"EXT_lights_image_based", "name its sky by --env"},
     Unread{"EXT_texture_avif", "the plain images beside it are read"},
     Unread{"KHR_animation_pointer", ""},  // gltf.cpp warns of animations
-    Unread{"KHR_materials_dispersion", "glass does not part colours"},
+    Unread{"KHR_materials_dispersion", "glass does not split colours"},
     Unread{"KHR_materials_iridescence", "thin films have no colours"},
     Unread{"KHR_materials_pbrSpecularGlossiness",
-           "materials are what stands beside it, or white metal"},
-    Unread{"KHR_materials_unlit", "its surfaces are lit as all others"},
+           "its materials get the values beside it, or become white metal"},
+    Unread{"KHR_materials_unlit", "its surfaces are lit like all others"},
     Unread{"KHR_materials_variants", ""},  // the file's default variant is rendered
     Unread{"KHR_meshopt_compression", "the plain data beside it is read"},
     Unread{"KHR_texture_basisu", ""},  // image.cpp warns

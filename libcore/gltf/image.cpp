@@ -106,7 +106,7 @@ void readSize(Document& document, Picture& picture) {
     }
     if (!readHeader(picture)) {
         refuse(document.file, picture.place, kKinds,
-               isWebp(coded) ? "a damaged header or a moving picture" : "a damaged header",
+               isWebp(coded) ? "a damaged header or an animated image" : "a damaged header",
                "save the image again");
     }
     const std::uint64_t texels = picture.texels();

@@ -171,7 +171,7 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
         } else {
             switchOff(s.name, targets);
             warnings.push_back(s.name + " is off though the scene calls for it (" + effect->reason +
-                               "): the picture lacks what it does");
+                               "): the picture is not right without it");
             effect->reason = "off by --effect, though " + effect->reason;
         }
         effect->simulated = s.on;

@@ -103,7 +103,8 @@ std::vector<Effect> effectsOf(const SceneDescription& scene, double lensRadius,
     t.add("diffuse", have.count(withLobes(LobeKind::Diffuse)), "material", " with a diffuse lobe",
           "no diffuse material");
     t.add("diffuse_transmission", have.count(withLobes(LobeKind::DiffuseTransmission)), "material",
-          " that light shines through diffusely", "nothing like leaves or paper");
+          " that light shines through diffusely",
+          "no material that light shines through diffusely, as through leaves or paper");
     t.add("sheen", have.count(withLobes(LobeKind::Sheen)), "material", " with the sheen of cloth",
           "no sheen");
     t.add("glossy", have.count(withLobes(LobeKind::Glossy)), "material", " with a rough reflection",
@@ -170,8 +171,8 @@ std::vector<Effect> techniqueEffects(const MethodRow& method, const SceneDescrip
               : !t.chains ? method.name + " merges: its photons make those paths"
               : !noSize   ? "no light without a size"
               : specular
-                  ? "lights without a size that are seen over up to six mirrors or surfaces of "
-                    "smooth glass, where no connection can be; over more they are missing"
+                  ? "lights without a size, seen over up to six mirrors or surfaces of smooth "
+                    "glass where nothing else joins the path; over more they are missing"
                   : "no mirror and no smooth glass");
     const bool facets = simulated({"rough_refraction", "rough_thin_transmission"}) &&
                         std::ranges::any_of(scene.materials, mayBeNarrowGlass);

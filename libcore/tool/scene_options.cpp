@@ -23,13 +23,15 @@ void addSceneOptions(CLI::App& app, SceneOptions& o) {
                    "The same radiance from everywhere, instead of the scene's environment")
         ->type_name("R,G,B")
         ->group(scene);
-    app.add_option("--env-rotate", o.environmentRotation, "Turn it about +Y")
+    app.add_option("--env-rotate", o.environmentRotation, "Turn the environment about +Y")
         ->type_name("DEG")
         ->group(scene);
-    app.add_option("--env-scale", o.environmentScale, "Multiply it")->type_name("S")->group(scene);
+    app.add_option("--env-scale", o.environmentScale, "Multiply the environment")
+        ->type_name("S")
+        ->group(scene);
     app.add_option("--units", o.unitsText,
-                   "What points, spots and suns are in: W/sr and W/m^2 (radiometric, the default), "
-                   "or candela and lux (photometric: 683 lumens per watt)")
+                   "Unit of points, spots and suns: W/sr and W/m^2 (radiometric, the default), or "
+                   "candela and lux (photometric: 683 lumens per watt)")
         ->type_name("radiometric|photometric")
         ->group(scene);
     app.add_option("--effect", o.effectTexts,

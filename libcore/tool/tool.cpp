@@ -104,8 +104,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->check(CLI::NonNegativeNumber);  // CLI11 would wrap -1
     app.add_option("--json", options.json, "Write everything measured to this file")
         ->type_name("FILE");
-    app.add_flag("--quiet", options.quiet, "No progress and no remarks on stderr");
-    app.add_flag("-v,--verbose", options.verbose, "More on stderr");
+    app.add_flag("--quiet", options.quiet, "Print no progress and no remarks on stderr");
+    app.add_flag("-v,--verbose", options.verbose, "Print more on stderr");
 }
 
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,

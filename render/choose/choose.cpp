@@ -58,7 +58,8 @@ struct Row {
 constexpr Row kRows[] = {
     {"bpt", 1.0, 0.54, 0.0, "is found from both ends"},
     {"pt", 1.1, 0.58, 0.0, "is found from the eye alone"},
-    {"sharebpt", 1.5, 0.53, 0.07, "takes ways that can be learned, and pixels see much alike"},
+    {"sharebpt", 1.5, 0.53, 0.07,
+     "comes by ways that can be learned, and neighbouring pixels see much the same"},
     {"sharebpt", 1.6, 0.53, 0.07, "comes through glass or mirrors on both sides", false,
      "merge=on"},
     {"vcm", 1.4, 0.53, 0.0, "comes through glass or mirrors", true},

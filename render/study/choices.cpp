@@ -112,9 +112,9 @@ Table choiceTable(const Results& results) {
         }
     }
     table.notes = {
-        "Regret: time over that of the best other row, setup and pilot counted, to the error that "
-        "the worse of the two has where the shortest run of the scene ends. The best row is the "
-        "one with the least median error there. Below 1 the chooser is faster."};
+        "Regret is the chooser's time over that of the best other row, both with setup and pilot, "
+        "to the error that the worse of the two has where the shortest run of the scene ends. The "
+        "best row is the one with the least median error there. Below 1 the chooser is faster."};
     if (!regrets.empty()) table.notes.push_back(summary(regrets));
     return table;
 }

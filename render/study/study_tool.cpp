@@ -21,15 +21,15 @@ struct StudyCommand {
 };
 
 void declare(CLI::App& app, StudyCommand& options) {
-    app.add_option("STUDY", options.study, "What to run: see render/README.md")
+    app.add_option("STUDY", options.study, "Study to run: see render/README.md")
         ->type_name("STUDY.json")
         ->required();
     app.add_option("-o,--output", options.output, "Folder for everything that is written")
         ->type_name("DIR")
         ->required();
-    app.add_flag("--quick", options.quick, "As the study's member \"quick\" changes it");
+    app.add_flag("--quick", options.quick, "Run the study as its member \"quick\" changes it");
     app.add_option("--summary", options.summary,
-                   "The tables, and how they were made, to this file as well")
+                   "Also write the tables, and how they were made, to this file")
         ->type_name("FILE.md");
     addCommonOptions(app, options.common);
     app.footer(
@@ -57,7 +57,8 @@ std::string rendererBesideUs() {
 }  // namespace
 
 int studyTool(int argc, char** argv) {
-    CLI::App app("What accuracy costs in time", "lacuna-study");
+    CLI::App app("Measures error against time, for scenes, methods, settings and seeds",
+                 "lacuna-study");
     StudyCommand options;
     declare(app, options);
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;

@@ -54,7 +54,7 @@ class RenderBlack : public RenderTool {
             << warning;
         for (const char* other :
              {"black, which is no light", "joins surfaces with the camera alone", "finds few ways",
-              "found no light, a test", "raise --max-depth", "sees no surface",
+              "found no light; a test", "raise --max-depth", "sees no surface",
               "no light meets a surface", "seen from behind", "more than six in a row",
               "is the light shut in?"}) {
             if (part.find(other) != std::string::npos) continue;
