@@ -56,12 +56,11 @@ class CountsByKind {
 class SamplesByShare {
   public:
     SamplesByShare(const FullPath& path, const Sharing& sharing)
-        : samples_(sharing.samples), edge_(sharing.any() ? sharedEdge(path) : 0), k_(path.edges) {}
+        : edge_(sharing.any() ? sharedEdge(path) : 0), k_(path.edges) {}
 
-    double operator()(int t) const { return k_ + 1 - t < edge_ ? samples_ : 1.0; }
+    double operator()(int t) const { return k_ + 1 - t < edge_ ? kSharedSamples : 1.0; }
 
   private:
-    double samples_;
     int edge_, k_;
 };
 

@@ -8,11 +8,12 @@ namespace lacuna {
 
 struct FullPath;
 
+/// Factor of n r of the strategies whose eye walk is shared.
+constexpr double kSharedSamples = 4.0;
+
 /// How a row's pixels share their eye walks; fixed for the render.
 struct Sharing {
     int pixels = 1;  ///< of a group, a divisor of kTile; 1: every pixel walks alone
-    /// Factor of n r of the strategies whose eye walk is shared.
-    double samples = 1.0;
 
     bool any() const { return pixels > 1; }
 };

@@ -214,7 +214,7 @@ class Products {
         const bool isThere =
             i > 1 && smooth(i) && smooth(i - 1) && forks(x(i)) && mayBeShared(x(i - 1));
         const bool isOfTheEye = t >= k_ + 2 - i;
-        return isThere && isOfTheEye ? counts_.sharing.samples : 1.0;
+        return isThere && isOfTheEye ? kSharedSamples : 1.0;
     }
 
     /// log(n_t r_t p_t).

@@ -3,7 +3,7 @@
 //   walks     up to 16 pixels of a square share their eye walks: what a walk was joined to behind its first
 //             vertex that is no mirror and no smooth glass goes to all pixels that see the next vertex
 //   picks     light vertices are picked as in spcbpt
-//   weights   a shared walk counts as `share_samples` walks that are not shared
+//   weights   a shared walk counts as `kSharedSamples` walks that are not shared
 //   numbers   random numbers are even over iterations, unless --sampler says otherwise: the noise that is left
 //             is mostly the pixel's own, which they reduce
 //   training  it takes seconds: more is not worth its time
@@ -13,13 +13,10 @@
 namespace lacuna {
 
 MethodRow sharebptRow() {
-    OptionTable<SubspaceOptions> table =
-        subspaceOptions({.subpaths = 30'000, .sharedPixels = 16, .sharedSamples = 4.0});
+    OptionTable<SubspaceOptions> table = subspaceOptions({.subpaths = 30'000, .sharedPixels = 16});
     table.choice<int>("share", &SubspaceOptions::sharedPixels,
                       {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
                       "number of neighbouring pixels that share their eye walks; 1: no sharing");
-    table.real("share_samples", &SubspaceOptions::sharedSamples, 1, 16, "samples",
-               "that a shared walk counts as in the weights");
     table.include("", &SubspaceOptions::merging, mergeOptions());
     return methodRow(
         {.name = "sharebpt",

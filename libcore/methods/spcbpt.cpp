@@ -127,7 +127,7 @@ class SubspaceConnections final : public Method {
     Merging merging() const override { return options_.merging.merging(); }
     Sharing sharing() const override {
         // Every eye vertex may propose every light vertex: no column of Gamma has a zero.
-        return {options_.sharedPixels, options_.sharedSamples};
+        return {options_.sharedPixels};
     }
 
     const ConnectionDensity& freeze(std::uint32_t) override { return density_; }

@@ -19,8 +19,7 @@ struct SubspaceOptions {
     std::uint64_t reuse = 0;  ///< M_0, 0: none
     bool queue = false;       ///< keep M_0 vertices, not whole iterations: biased
     MergeOptions merging = {};
-    int sharedPixels = 1;        ///< Sharing::pixels
-    double sharedSamples = 1.0;  ///< Sharing::samples
+    int sharedPixels = 1;  ///< Sharing::pixels
 };
 /// The options that all these rows have: `candidates`, picks and `weights`.
 OptionTable<SubspaceOptions> subspaceOptions(const SubspaceOptions& defaults);
