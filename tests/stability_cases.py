@@ -57,6 +57,8 @@ GROUPS = [
              "radiance by form factor; nothing leaks from the gap"),
         Case("thin-gap", "light through a gap of a thousandth", "radiance by the gap's form factor"),
         Case("intensities", "radiances from 1e-30 to 1e37", "the furnace's mean, in proportion to the radiance"),
+        Case("denormal-radiance", "a radiance of 1e-40, which a float holds with fewer digits",
+             "the furnace's mean to a thousandth"),
         Case("saturated-colours", "blue light on a red wall", "black"),
         Case("no-light", "no lamp, or lamps that are shut in, without power or without area", "black"),
         Case("emission-side", "lamps mirrored by a negative scale", "light only on the side of their winding"),

@@ -9,6 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#ifdef __FAST_MATH__
+#error "isFinite is always true with -ffast-math, and no invalid sample would be counted"
+#endif
+
 namespace lacuna {
 
 template <class T>

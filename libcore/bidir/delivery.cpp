@@ -57,6 +57,8 @@ Rgb Delivery::toOwnPixel(const Contribution& c, const TechniqueCounts& counts, R
                          TaskResult& result) const {
     if (isBackground(c.path)) return {};
     const Weighed w = weigh(c, counts, result.tally);
+    // Nothing is lost of a pixel that nobody sees: the value is what a borrower chooses by, and who
+    // takes the end weighs it anew.
     if (!pixel) return isFinite(w.value) ? w.value : Rgb{};
     observe(c, counts, w);
     // Values that are finite may add up to more than a float holds.

@@ -71,6 +71,21 @@ TEST_P(HardCases, intensitiesFrom1em30To1e37) {
     stabilityCase("intensities", worst, kOfAllowed);
 }
 
+/// A float holds 1e-40 to one part in 70,000, and what a path brings of it to fewer.
+TEST_P(HardCases, lampsOfDenormalRadiance) {
+    constexpr float kRadiance = 1e-40f;
+    SceneBuilder b;
+    b.d.materials[0] = emitter(Rgb(0.5f * kRadiance), false, Rgb(0.5f));
+    b.add(box({-1, -1, -1}, {1, 1, 1}, 0, true));
+    b.add(lookAt({0, 0, 0.9}, {0, 0, -1}, 70));
+    const Picture p = render(*b.build(), row(), quickShot(60));
+    EXPECT_EQ(p.statistics.invalidSamples, 0u);
+    const double allowed = 5 * p.standardError() / kRadiance + 1e-3;
+    EXPECT_NEAR(p.mean() / kRadiance, 0.875, allowed);
+    stabilityCase("denormal-radiance", std::fabs(p.mean() / kRadiance - 0.875) / allowed,
+                  kOfAllowed);
+}
+
 TEST_P(HardCases, blueLightOnRedWallIsBlack) {
     SceneBuilder b;
     b.d.materials[0] = matte({1, 0, 0});
