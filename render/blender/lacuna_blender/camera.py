@@ -54,7 +54,7 @@ def add(glb, root, thing, render, notes):
     if thing.type != "CAMERA" or camera.type != "PERSP":
         raise CannotRender(f"{thing.name}: expected a perspective camera, found another kind; Lacuna has no other")
     if render.pixel_aspect_x != render.pixel_aspect_y:
-        notes.add(thing.name, "pixels are square, whatever their aspect is said to be")
+        notes.add(thing.name, "pixels are square; their aspect is ignored")
     if camera.dof.use_dof and (camera.dof.aperture_blades > 2 or camera.dof.aperture_ratio != 1):
         notes.add(thing.name, "the lens is round, without blades and ratio")
     yfov, shift = view(camera, width, height)

@@ -41,12 +41,12 @@ class Lights:
                 if node.texture:
                     self._notes.add(name, "the lamp's texture is left out")
             else:
-                self._notes.add(name, "the lamp's nodes are left out, but for an Emission node")
+                self._notes.add(name, "the lamp's nodes are left out, except for an Emission node")
         return [c * factor for c in color]
 
     def _say_what_is_lost(self, thing, lamp):
         if lamp.type == "AREA" and lamp.spread < math.pi - 1e-3:
-            self._notes.add(thing.name, "the Spread of the area lamp is left out: it shines to all of its front")
+            self._notes.add(thing.name, "the Spread of the area lamp is left out: it shines in all directions in front of it")
         if not getattr(getattr(lamp, "cycles", lamp), "cast_shadow", True):
             self._notes.add(thing.name, "the lamp casts shadows")
         for kind in ("diffuse", "glossy", "transmission"):

@@ -78,7 +78,7 @@ class Materials:
             "metallicFactor": _share(s.metallic.factor), "roughnessFactor": _share(s.roughness.factor)}
         alpha, color = s.alpha.texture, s.base.texture
         if alpha and color and not placed_alike((color, alpha)):
-            self._notes.add(name, "the alpha's texture lies as that of the colour does")
+            self._notes.add(name, "the alpha texture is placed like that of the colour")
         if alpha and not color:
             color = replace(alpha, image=white(name, alpha), channel="")
         if color:
@@ -87,7 +87,7 @@ class Materials:
             entry["alphaMode"] = "BLEND"
         rough, metal = s.roughness.texture, s.metallic.texture
         if rough and metal and not placed_alike((rough, metal)):
-            self._notes.add(name, "the metallic texture lies as that of the roughness does")
+            self._notes.add(name, "the metallic texture is placed like that of the roughness")
         if rough or metal:
             pbr["metallicRoughnessTexture"] = info(self._textures.scalars(G=rough, B=metal), rough or metal)
         if s.normal:

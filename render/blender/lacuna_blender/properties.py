@@ -7,28 +7,28 @@ _METHODS = (
     ("auto", "Automatic", "Tries some of the others on a small picture, and takes one"),
     ("pt", "Path tracing", "Where lamps and sky are in plain sight"),
     ("bpt", "Bidirectional", "Where nothing is to be prepared"),
-    ("lvcbpt", "Light vertex cache", "Eye vertices joined with any light vertices"),
+    ("lvcbpt", "Light vertex cache", "Joins eye vertices with random light vertices"),
     ("risbpt", "Resampled", "For glossy rooms and many lamps, without setup"),
     ("icbpt", "Importance records", "For dim rooms, without setup"),
-    ("skelbpt", "Skeleton", "For halls and corridors; is prepared in seconds"),
-    ("spcbpt", "Subspaces", "For light that is hard to find; is prepared in up to a minute"),
-    ("sharebpt", "Shared walks", "As subspaces, for what is not shiny; is prepared in seconds"),
+    ("skelbpt", "Skeleton", "For halls and corridors; takes seconds to prepare"),
+    ("spcbpt", "Subspaces", "For light that is hard to find; takes up to a minute to prepare"),
+    ("sharebpt", "Shared walks", "As Subspaces, for surfaces that are not shiny; takes seconds to prepare"),
 )
 
 
 class LacunaScene(bpy.types.PropertyGroup):
     method: EnumProperty(name="Method", items=_METHODS, default="auto", description="How paths of light are found")
     samples: IntProperty(name="Samples", min=0, default=0, soft_max=65536,
-                         description="Iterations, each with one path per pixel. 0: no limit but the others")
+                         description="Iterations, each with one path per pixel. 0: only the other limits count")
     seconds: FloatProperty(name="Time", min=0, default=60, soft_max=3600, unit="TIME_ABSOLUTE",
-                           description="Seconds from the first sample on. 0: no limit but the others")
+                           description="Seconds from the first sample on. 0: only the other limits count")
     error: FloatProperty(name="Error", min=0, max=100, default=0, precision=1, subtype="PERCENTAGE",
-                         description="Stops once the picture's mean error is below this. 0: no limit but the others")
+                         description="Stops once the picture's mean error is below this. 0: only the other limits count")
     depth: IntProperty(name="Depth", min=1, max=254, default=12,
-                       description="Longest path, in edges: 1 is light seen directly, 2 is direct lighting")
-    seed: IntProperty(name="Seed", min=0, default=1, description="Another seed, another noise")
+                       description="Longest path, in edges: 1 shows only lights that the camera sees, 2 adds direct lighting")
+    seed: IntProperty(name="Seed", min=0, default=1, description="Another seed gives other noise")
     baked: IntProperty(name="Baked textures", min=0, max=8192, default=1024,
-                       description="Texels along a side of the pictures that procedural textures become, one for each input and "
+                       description="Texels along a side of the image that a procedural texture becomes, for each input and "
                                    "object. 0: the colour beside the input is taken")
     animate_seed: BoolProperty(name="Other noise in each frame", default=True,
                                description="Adds the number of the frame to the seed")
@@ -36,7 +36,7 @@ class LacunaScene(bpy.types.PropertyGroup):
 
 class LacunaViewLayer(bpy.types.PropertyGroup):
     use_albedo: BoolProperty(name="Albedo", description="Colour of the surface that is seen first, for denoisers")
-    use_variance: BoolProperty(name="Variance", description="Of each pixel's mean: how noisy it is")
+    use_variance: BoolProperty(name="Variance", description="Variance of each pixel's mean: how noisy it is")
 
 
 class LacunaPreferences(bpy.types.AddonPreferences):

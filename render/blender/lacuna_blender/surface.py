@@ -102,7 +102,7 @@ class SurfaceReader:
     def _bump(self, node, groups):
         under = source_of(node.inputs["Normal"], groups)
         if under and under.node:
-            self._note("of a Bump node upon other normals the others are left out")
+            self._note("the normals under a Bump node are left out")
         heights = self._scalar(node, groups, "Height")
         if not heights.texture:
             return None  # even
@@ -131,7 +131,7 @@ class SurfaceReader:
         if along == across:
             return s
         if s.roughness.texture:
-            self._note("the brushing of a textured roughness is that of half of it")
+            self._note("a surface with a roughness texture is brushed as at half of its roughness")
         tangent = tangent_of(_input(node, "Tangent"), groups)
         if tangent is None:
             self._note("the node for the tangent is left out: brushed around Z")
@@ -260,7 +260,7 @@ class SurfaceReader:
         made.emission = self._mixed("emission", _light(a), _light(b), share, node, groups)
         lost = [word for word in ("reflectance", "coat", "sheen", "normal") if getattr(a, word) != getattr(b, word)]
         if share.texture and lost:
-            self._note(f"of a Mix Shader by an image there is one {', '.join(lost)}")
+            self._note(f"both shaders of a Mix Shader by an image have the same {', '.join(lost)}")
         return made
 
     def _mixed(self, field, p, q, share, node, groups):
