@@ -76,7 +76,7 @@ Table timeTable(const Results& results) {
             }
         }
     });
-    table.notes = {"Speedups are against " + study.baseline +
+    table.notes = {"Speedups are relative to " + study.baseline +
                        ": ratios of times of the same seed, then the median over seeds.",
                    "A time is the first after which the error stays below the bound. Where the "
                    "first row of a curve is below already, it is that row's time."};
@@ -99,9 +99,9 @@ Table referenceTable(const Results& results) {
         table.rows.push_back(std::move(row));
     }
     table.notes = {
-        "Expected from the variance in the file. An error is judged by a reference that "
-        "is ten times better (relmse, a square: a hundred times); tables say where it "
-        "is not."};
+        "The errors that the variance in the file predicts. A reference should be ten times better "
+        "than the error that it judges (relmse, a square: a hundred times); tables say where it is "
+        "not."};
     return table;
 }
 
@@ -137,7 +137,7 @@ Table errorTable(const Results& results, Axis axis) {
             }
         }
     });
-    table.notes = {"\"not reached\": some run ended before, or had no complete iteration yet."};
+    table.notes = {"\"not reached\": some run ended before, or had not completed an iteration."};
     return table;
 }
 
@@ -174,8 +174,9 @@ Table cropTable(const Results& results) {
         }
     });
     table.notes = {
-        "As if the crop were the whole picture: e of mape and relmse is a hundredth of the "
-        "crop's own mean. \"not reached\": black in the reference, and not in the picture."};
+        "Each crop is treated as if it were the whole picture: e of mape and relmse is a hundredth "
+        "of the crop's own mean. \"not reached\": the crop is black in the reference, but not in "
+        "the picture."};
     return table;
 }
 
