@@ -1,4 +1,4 @@
-// What `--method auto` settles on, and how it is said.
+// The choice of `--method auto`, and its representations as text.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,26 +12,27 @@
 
 namespace lacuna {
 
-/// The name that is no row's: a row is chosen for the scene.
+/// The name that stands for no row: a row is chosen for the scene.
 inline constexpr const char* kAuto = "auto";
 
 struct RowChoice {
     std::string method;                    ///< a row's name
-    std::vector<std::string> assignments;  ///< "name=value", as --set takes them
+    std::vector<std::string> assignments;  ///< "name=value", in the form of --set
     Sampling sampling = Sampling::Independent;
-    std::string why;  ///< a sentence
-    /// How many times as fast as bpt the rows that were tried seem to be, setup counted; by name.
+    std::string why;  ///< the reason, a sentence
+    /// Estimated speeds of the rows that were tried, relative to bpt, setup included; by name.
     std::vector<std::pair<std::string, double>> speeds;
 
-    /// How to ask for the same by name: "--method spcbpt --prepare --set train.paths=20000".
+    /// The options that request the same choice: "--method spcbpt --prepare --set
+    /// train.paths=20000".
     std::string byName() const;
     /// {"method", "parameters": {name: value}, "sampler", "why", "by_name", "speeds": {row: times bpt}}
     nlohmann::json json() const;
 
-    /// As other ranks are told.
+    /// The choice as text for other ranks.
     std::string text() const;
     static RowChoice ofText(const std::string& text);
-    /// What a checkpoint is of: its inputs name the row and its settings.
+    /// The choice of a checkpoint's render: its inputs name the row and its settings.
     static RowChoice ofInputs(const CacheStamp& inputs);
 };
 

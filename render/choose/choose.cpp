@@ -15,41 +15,42 @@
 namespace lacuna {
 namespace {
 
-// Of what the render may take. (theory.md, "auto")
-constexpr double kTrialShare = 0.008;    // of each candidate
-constexpr double kTrainingShare = 0.08;  // of the subspaces, which trials and picture share
+// Shares of the render's budget. (theory.md, "auto")
+constexpr double kTrialShare = 0.008;    // for each candidate
+constexpr double kTrainingShare = 0.08;  // for the subspaces, which trials and picture share
 constexpr double kFewestTrialRays = 4e4;
-constexpr double kMostTrialRays = 2e6;  // more would tell nothing new
+constexpr double kMostTrialRays = 2e6;  // more gives no new information
 
-/// Of the picture, where it is an error that ends it.
+/// Assumed iterations of a picture that an error bound ends.
 constexpr std::uint64_t kIterationsToAnError = 256;
 
-/// A path of training costs as much as so many rays of a render, three times as many where few of
-/// those that are tried carry light.
+/// Cost of a training path in rays of a render. It is three times as high if few of the traced
+/// paths carry light.
 constexpr double kRaysPerTrainingPath = 50.0;
 constexpr double kFewestTrainingPaths = 4000.0, kMostTrainingPaths = 1'024'000.0;
 
-constexpr double kRaysPerPixel = 10.0;  // and iteration, about: sizes the pilot's picture
+constexpr double kRaysPerPixel = 10.0;  // per iteration, about; sizes the pilot's picture
 constexpr double kTrialIterations = 8.0;
 constexpr double kFewestPixels = 256.0, kMostPixels = 6144.0;
-constexpr double kMostFilmPixels = 1e5;           // around a crop, for rows that see all of it
+constexpr double kMostFilmPixels = 1e5;           // for rows that render the whole film
 constexpr double kPixelsPerThread = 512.0;        // two tiles
-constexpr std::uint64_t kTrialSubpaths = 10'000;  // of pools in trials: small pictures need no more
+constexpr std::uint64_t kTrialSubpaths = 10'000;  // pools in trials; small pictures need no more
 constexpr std::uint64_t kSplatsPerPoolSubpath = 8;
 constexpr std::uint64_t kFewestSubpaths = 1000, kMostSubpaths = 100'000;
 constexpr double kSplatsPerCropPixel = 4.0;
 constexpr double kFewestSplats = 10'000.0;
 
-/// What is tried, and what a ray costs with it beside one of bpt: look-ups and waiting included. It
-/// differs by scene, so with a time limit the trial's own seconds count.
+/// A candidate. rayCost is the cost of one of its rays relative to bpt, including look-ups and
+/// waiting. It varies with the scene, so that with a time limit the trial's own seconds count
+/// instead.
 struct Row {
     const char* method;
     double rayCost;
-    double fall;   ///< errors go by iterations to the power of -fall, where numbers are even
-    double alike;  ///< variances by pixels to the power of -alike: neighbours see more alike
-    const char* strength;    ///< behind "light ", where it wins
-    bool wholeFilm = false;  ///< an iteration costs as much as the film is large, whatever the crop
-    const char* setting = nullptr;  ///< of the row, beside what is measured
+    double fall;           ///< with even numbers, errors ~ iterations^-fall
+    double alike;          ///< variances ~ pixels^-alike: more pixels have more similar neighbours
+    const char* strength;  ///< text after "light " if it wins
+    bool wholeFilm = false;         ///< an iteration's cost depends on the film, not the crop
+    const char* setting = nullptr;  ///< a fixed setting of the row
 
     std::string name() const {
         return setting ? std::string(method) + " with " + setting : std::string(method);
@@ -64,13 +65,13 @@ constexpr Row kRows[] = {
      "merge=on"},
     {"vcm", 1.4, 0.53, 0.0, "comes through glass or mirrors", true},
 };
-/// Where trials find nothing clearly better.
+/// The choice if trials find nothing clearly better.
 constexpr const char* kUsual = "sharebpt";
 
 constexpr const char* kPhase = "choosing a method";
 
-/// Training with about `paths`, a power of two times the fewest, and what goes with so many: renders
-/// that may take about the same find the same cache.
+/// Settings of training with about `paths` paths. The number is rounded to the fewest times a power
+/// of two, so that renders of similar budgets use the same cache.
 std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) {
     const double ratio =
         std::clamp(paths, kFewestTrainingPaths, kMostTrainingPaths) / kFewestTrainingPaths;
@@ -83,7 +84,7 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
             "train.epochs=" + rounded(std::clamp(factor, 5.0, 20.0))};
 }
 
-/// Whether its picture is consistent, not unbiased.
+/// Whether its picture is only consistent, not unbiased.
 bool merges(const Row& candidate) {
     const MethodRow& row = findMethod(candidate.method);
     std::vector<std::string> assignments;
@@ -96,12 +97,12 @@ bool learns(const MethodRow& row) {
                        [](const AssetNeed& need) { return need.name == "subspaces"; });
 }
 
-/// A row that was tried.
+/// A candidate and its trial.
 struct Tried {
     const Row* row = nullptr;
     Trial trial;
     Verdict verdict;
-    double cost = 0.0;  ///< of an iteration of the picture, as a share of the budget
+    double cost = 0.0;  ///< cost of an iteration of the picture as a share of the budget
 };
 
 class Pilot {
@@ -125,11 +126,11 @@ class Pilot {
   private:
     bool byClock() const { return !options_.iterations && options_.timeSeconds; }
 
-    /// What the whole render may take, and the pilot with it: from a first trial of bpt.
+    /// Determines the budgets of the render and of the pilot from a first trial of bpt.
     void sizeUp() {
         const PixelRect& crop = stage_.settings.crop;
         const double pixels = double(crop.width()) * double(crop.height());
-        // Speeds are measured on as many tiles as keep all threads busy.
+        // To measure speeds, the picture must have enough tiles to keep all threads busy.
         const double busy = byClock() ? kPixelsPerThread * double(pool_.threads()) : kFewestPixels;
         small_.emplace(stage_.camera->film(), stage_.settings.crop, std::min(pixels, busy));
         Trial first;
@@ -169,8 +170,9 @@ class Pilot {
         return result;
     }
 
-    /// Some of those that splat, which are traced anyway. A small pool lies in the processor's caches
-    /// and serves as well: what its vertices have in common is the smaller part of the variance.
+    /// The size of the pool: a share of the light subpaths that splat, which are traced anyway. A small pool fits into
+    /// the processor's caches and serves as well: the correlation due to its shared vertices is the smaller part of the
+    /// variance.
     std::uint64_t poolSubpaths() const {
         const std::uint64_t splats = splatsOfCrop();
         const std::uint64_t traced = splats > 0 ? splats : std::uint64_t(filmPixels());
@@ -180,8 +182,8 @@ class Pilot {
 
     std::uint64_t trialSubpaths() const { return std::min(poolSubpaths(), kTrialSubpaths); }
 
-    /// Light subpaths that splat, where a crop is so small a part of the picture that one per pixel
-    /// of the whole would take most of the time; else 0, as many as pixels.
+    /// Number of light subpaths that splat for a small crop, for which one per pixel of the whole
+    /// picture would take most of the time. Else 0: as many as pixels.
     std::uint64_t splatsOfCrop() const {
         const PixelRect& crop = stage_.settings.crop;
         const double wanted = std::max(
@@ -189,7 +191,7 @@ class Pilot {
         return wanted < filmPixels() ? std::uint64_t(wanted) : 0;
     }
 
-    /// A folder that cannot be written is a reason to do without, not to fail.
+    /// Whether caches of the row can be written. If not, the row is left out; this is no error.
     bool mayKeepCaches(const Row& row) const {
         if (!learns(findMethod(row.method))) return true;
         const std::string directory =
@@ -226,7 +228,8 @@ class Pilot {
             caches = loadCaches(options, row, settings, stage_, pool_, cancel_, progress_);
             progress_.phase(kPhase, kNothingWritten);
         }
-        // A seed of its own for each: they would share eye subpaths, and so noise.
+        // Each trial has its own seed: with the same one they would share eye subpaths and thus
+        // noise.
         const std::uint64_t seed = stage_.settings.seed * 0x9e3779b97f4a7c15u + ++runs_;
         const double poolScale = candidate.wholeFilm
                                      ? filmPixels() / smallFilmPixels()
@@ -241,7 +244,7 @@ class Pilot {
         std::vector<HalfPictures> pictures;
         for (const Tried& t : tried_) pictures.push_back(t.trial.halves);
         const std::vector<double> errors = errorsOf(pictures, small_->crop.width());
-        // What rows without merging lack, however long they render.
+        // The error that rows without merging keep, however long they render.
         const auto doesMerge = [](const Tried& t) { return !t.trial.onlyMerged.empty(); };
         double lacking = 0.0;
         for (const Tried& t : tried_) {
@@ -256,10 +259,10 @@ class Pilot {
         }
     }
 
-    /// What is left at the end of the square of the trial's error: noise of one iteration times its
-    /// cost, which is a share of the budget, less where pixels share what they find and are more than
-    /// the trial's, and less where numbers are even over more iterations than a half of the trial has.
-    /// What was trained is there already.
+    /// Share of the trial's squared error that remains at the end of the render: the noise of one iteration times its
+    /// cost as a share of the budget. It is smaller for rows whose pixels share paths, because the picture has more
+    /// pixels than the trial. With even numbers it is smaller again, because the render has more iterations than one
+    /// half of the trial. Training is already done and not counted.
     double shareLeft(const Tried& t) const {
         const double ofAll = double(t.trial.iterations) * t.cost;  // of the picture's iterations
         const double left = ofAll * std::pow(small_->scale, -t.row->alike);
@@ -269,7 +272,7 @@ class Pilot {
 
     RowChoice best() const {
         const Tried& bpt = tried_.front();
-        std::size_t usual = 0;  // bpt, where the usual one was not tried
+        std::size_t usual = 0;  // bpt, if the usual row was not tried
         std::vector<Verdict> verdicts;
         for (std::size_t i = 0; i < tried_.size(); ++i) {
             verdicts.push_back(tried_[i].verdict);
@@ -278,7 +281,7 @@ class Pilot {
         const Tried& chosen = tried_[rowToTake(verdicts, usual)];
         RowChoice choice{
             chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(), "", {}};
-        // Where nothing was seen all are alike.
+        // If the trials saw no light, all speeds are 1.
         const auto speed = [&](const Tried& t) {
             return t.verdict.loss > 0.0 ? bpt.verdict.loss / t.verdict.loss : 1.0;
         };
@@ -305,8 +308,8 @@ class Pilot {
     Progress& progress_;
     std::optional<SmallFilm> small_;
     double budget_ = 0.0;   ///< of the render, in rays of bpt
-    double seconds_ = 0.0;  ///< of the render, where its time is limited: what other programs leave
-    double rays_ = 0.0;     ///< of a trial, in rays of bpt
+    double seconds_ = 0.0;  ///< time limit of the render, times the share of the processors
+    double rays_ = 0.0;     ///< budget of a trial in rays of bpt
     std::uint64_t runs_ = 0;
     std::vector<Tried> tried_;  ///< bpt first
 };

@@ -1,5 +1,5 @@
-// `--method auto`: which method renders this scene best in what it may take, found by a pilot whose
-// samples are thrown away. (theory.md, "auto")
+// `--method auto`: chooses the method that renders this scene best within its budget, by a pilot
+// whose samples are discarded. (theory.md, "auto")
 #pragma once
 
 #include <atomic>
@@ -13,13 +13,13 @@
 
 namespace lacuna {
 
-/// The names of the rows that are tried: "bpt, pt, ..", with those that only --allow-bias lets in.
+/// The names of the candidates: "bpt, pt, ..", including those that need --allow-bias.
 std::string triedMethods();
 
-/// Chooses for a stage that was loaded for `bpt`, whose techniques are those that may be used at
-/// all. With --time the clock has a say; else the choice is a function of the command and the scene. Caches of candidates that are trained are
-/// read or made, and stay. `show` is called with the first small picture, as large as the one that
-/// is asked for: something to look at within a second. Throws Error 130 once `cancel` is set.
+/// Chooses a method for a stage that was loaded for `bpt`. Its techniques are the allowed ones. With --time, the choice
+/// depends on measured times; else it is a function of the command and the scene. Caches of candidates that need
+/// training are read or made, and are kept. `show` is called with the first small picture, enlarged to the requested
+/// size, within about a second. Throws InterruptedError once `cancel` is set.
 RowChoice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,
                        const std::atomic<bool>& cancel, Progress& progress,
                        const std::function<void(const Image&)>& show);

@@ -10,10 +10,11 @@
 namespace lacuna {
 namespace {
 
-constexpr double kEpsilon = 0.01;  // of the error measures: e = 0.01 of the mean
-/// A row takes the place of the usual one where it is better by so much: what trials see has noise.
+constexpr double kEpsilon = 0.01;  // as in the error measures: e = 0.01 of the mean
+/// A row replaces the usual one if its loss is below this share of the usual one's: trials are
+/// noisy.
 constexpr double kWorthAChange = 0.85;
-constexpr int kRounds = 3;  // of weights by errors, and errors by weights
+constexpr int kRounds = 3;  // of computing weights from errors, and errors from weights
 
 using Picture = std::vector<Vec3d>;
 
@@ -29,7 +30,7 @@ Picture meanOf(const HalfPictures& halves) {
     return mean;
 }
 
-/// What all pictures show, each with its weight, and e.
+/// The estimate R of the converged picture, the smoothed weighted mean of all pictures, and e.
 struct Target {
     Picture around;
     double epsilon = 0.0;
@@ -88,7 +89,8 @@ std::vector<double> errorsOf(std::span<const HalfPictures> pictures, int width) 
             }
         }
         for (std::size_t i = 0; i < n; ++i) {
-            // Of three and more the equations give each its own; two share what they differ by.
+            // For three and more pictures the equations determine each error; two pictures share
+            // their difference.
             const double own = n > 2    ? (sums[i] - all / double(n - 1)) / double(n - 2)
                                : n == 2 ? 0.5 * all
                                         : 0.0;
@@ -108,8 +110,8 @@ double errorWithout(std::span<const Rgb> part, const HalfPictures& picture, int 
 }
 
 std::size_t rowToTake(std::span<const Verdict> verdicts, std::size_t usual) {
-    // What the usual row has not seen, rows that have seen less do not know either: the less of the
-    // picture is there, the less does a difference say.
+    // If the usual row has not seen some light, rows that have seen less do not know of it either:
+    // the more of the picture is missing, the less a difference means.
     const double seen = std::max(0.0, 1.0 - verdicts[usual].error);
     std::size_t best = usual;
     double least = verdicts[usual].loss * kWorthAChange * seen;

@@ -1,20 +1,20 @@
-// What other programs leave of the processors to this one. (theory.md, "auto")
+// The share of the processors that other programs leave to this one. (theory.md, "auto")
 #pragma once
 
 namespace lacuna {
 
-/// Of the processor time that the threads of this process have wanted since construction, the share
-/// that they have had: 1 where nothing else runs, or where the system does not tell.
+/// The processor time that this process's threads have got since construction, as a share of the
+/// time that they were ready to run. It is 1 if nothing else runs, or if the system does not tell.
 class ProcessorShare {
   public:
     ProcessorShare() : start_(ofAllThreads()) {}
-    /// Above 0, at most 1.
+    /// The share, above 0 and at most 1.
     double value() const;
 
   private:
     struct Seconds {
         double run = 0.0;     ///< on a processor
-        double waited = 0.0;  ///< for one, ready to run
+        double waited = 0.0;  ///< ready to run, waiting for a processor
     };
     static Seconds ofAllThreads();
 

@@ -10,20 +10,21 @@
 namespace lacuna {
 namespace {
 
-/// What an iteration of the whole picture takes, from one of the small one: `paths` times the light
-/// subpaths (a pool's are as many, those that splat are not) and `pixels` times the pixels.
+/// Cost of an iteration of the whole picture, from one of the small picture. The whole picture has
+/// `paths` times as many light subpaths (1 for a pool, more for splats) and `pixels` times as many
+/// pixels.
 double ofWholePicture(double lightPart, double rest, double paths, double pixels) {
     return lightPart * paths + rest * pixels;
 }
 
-/// What a phase of an iteration takes where nothing disturbs it: caches that are still cold make any
-/// but the quickest one longer, other programs most of them.
+/// Estimates the undisturbed time of a phase of an iteration. Cold caches slow down early
+/// iterations, and other programs slow down most.
 class QuietSeconds {
   public:
     explicit QuietSeconds(const char* phase) : phase_(phase) {}
     void see(IterationStatistics& one) { least_ = std::min(least_, one.phaseSeconds[phase_]); }
-    /// `all` is the sum of the `count` that were seen; they had `share` of the processor time that
-    /// they wanted.
+    /// The smaller of the quickest iteration and the mean without waiting. `all` is the sum over
+    /// the `count` iterations seen; they got `share` of the processor time that they wanted.
     double value(IterationStatistics& all, double count, double share) const {
         return std::min(least_, share * all.phaseSeconds[phase_] / count);
     }
@@ -33,7 +34,7 @@ class QuietSeconds {
     double least_ = std::numeric_limits<double>::infinity();
 };
 
-/// Whether merges alone can make the path.
+/// Whether only merges can make the path.
 bool isOnlyMerged(const PathEvent& event) {
     if (!event.technique.merges() || SpecularChains::reach(event.path)) return false;
     for (int t = 1; t <= event.path.edges + 1; ++t) {
@@ -75,7 +76,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     render.lightPaths = std::uint64_t(std::ceil(splats * smallPixels / filmPixels));
     render.sampling = sampling;
     const Camera camera = stage.camera->withFilm(small.film);
-    // A technique that is forced off is off for all.
+    // A technique that is forced off is off for all rows.
     Techniques techniques = row.techniques;
     techniques.hits &= stage.techniques.hits;
     techniques.connects &= stage.techniques.connects;
@@ -83,7 +84,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     techniques.chains &= stage.techniques.chains;
     techniques.refractions &= stage.techniques.refractions;
     techniques.knownWays &= stage.techniques.knownWays;
-    // Halves are independent where their iterations are even as well.
+    // Separate integrators with different seeds keep the halves independent even with even numbers.
     std::vector<std::unique_ptr<BidirIntegrator>> integrators;
     for (const std::uint64_t ofHalf : {seed, ~seed}) {
         render.seed = ofHalf;
@@ -99,7 +100,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
     for (auto* half : halves) half->assign(pixels, Rgb{});
     if (method->merging().where != Merges::Nowhere) {
         result.onlyMerged.assign(pixels, Rgb{});
-        // Merges are of their own pixel's task.
+        // No data race: a merge belongs to its own pixel's task.
         for (const auto& integrator : integrators) {
             integrator->delivery().setObserver([&](const PathEvent& event) {
                 if (isOnlyMerged(event) && isFinite(event.contribution)) {
@@ -126,7 +127,7 @@ bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
 
     for (Rgb& c : result.onlyMerged) c = c * (0.5f * ofHalf);
 
-    // Pixels that trace light subpaths for themselves do so in the eye pass.
+    // Pixels that trace their own light subpaths do so in the eye pass.
     const double own = row.techniques.ownLightPath ? double(pixels) : 0.0;
     const auto pooled = double(method->pool().subpaths);
     const auto pathsOf = [&](double splatted, double pixelsOwn) {

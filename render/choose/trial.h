@@ -1,5 +1,5 @@
-// A candidate renders a small picture of the scene, whose samples are thrown away: what its noise
-// is and what it costs. (theory.md, "auto")
+// A trial: a candidate renders a small picture of the scene, to measure its noise and cost. The
+// samples are discarded. (theory.md, "auto")
 #pragma once
 
 #include <atomic>
@@ -16,17 +16,18 @@ namespace lacuna {
 struct Trial {
     HalfPictures halves;
     std::uint64_t iterations = 0;  ///< in both halves together
-    double rays = 0.0;             ///< of an iteration of the whole picture
-    double seconds = 0.0;          ///< likewise, on this machine, had it nothing else to do
-    /// Of a row that merges: what paths that nothing else can make add to a pixel. Else empty.
+    double rays = 0.0;             ///< per iteration of the whole picture
+    double seconds = 0.0;          ///< likewise, on this machine without other load
+    /// For a row that merges: contributions, by pixel, of paths that only merges can make. Else
+    /// empty.
     std::vector<Rgb> onlyMerged = {};
 };
 
-/// The mean of both halves in the size of `crop`: each pixel shows the small one that covers it.
+/// The mean of both halves, enlarged to the size of `crop` by nearest neighbours.
 Image enlarged(const SmallFilm& small, const HalfPictures& halves, const PixelRect& crop);
 
-/// Pairs of iterations until `rays` rays are traced, at least one. What a row prepares from its pool
-/// takes `poolScale` times as long for the whole picture. False if cancelled.
+/// Renders pairs of iterations until `rays` rays are traced, at least one pair. `poolScale`: factor
+/// of the time that a row needs to prepare its pool, for the whole picture. False if cancelled.
 bool runTrial(const Stage& stage, const SmallFilm& small, const MethodRow& row,
               const Settings& settings, const Caches& caches, double poolScale, Sampling sampling,
               std::uint64_t seed, double rays, const ThreadPool& pool,

@@ -62,7 +62,7 @@ Picture::Picture(int width, int height, std::span<const float> rgb)
 Picture Picture::load(const std::string& path) {
     if (endingOf(path) == ".exr") {
         LayeredImage image = readExrLayers(path);
-        if (!image.hasRgb("")) image.setRgb("", readExr(path));  // says what is missing
+        if (!image.hasRgb("")) image.setRgb("", readExr(path));  // throws: says what is missing
         std::string header = headerText(image);
         return {std::move(image), std::move(header)};
     }

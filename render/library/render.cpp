@@ -19,12 +19,13 @@
 namespace lacuna {
 namespace {
 
-/// What prints something instead of rendering, and what is of a process and its terminal.
+/// Options that print something instead of rendering, or that concern a process and its terminal.
 constexpr std::array kNotOfAPicture = {"help",        "help-as",  "version", "list-methods",
                                        "help-method", "effects",  "replay",  "quiet",
                                        "verbose",     "estimate", "denoise"};
 
-/// The name as the command line writes it. Throws UsageError for what a library does not do.
+/// The option's name in the form of the command line. Throws UsageError for options that the
+/// library does not support.
 std::string ofAPicture(std::string name) {
     std::ranges::replace(name, '_', '-');
     if (std::ranges::find(kNotOfAPicture, name) == kNotOfAPicture.end()) return name;
@@ -34,7 +35,7 @@ std::string ofAPicture(std::string name) {
                      name);
 }
 
-/// The cache folder of scenes that lie nowhere.
+/// The cache folder for scenes in memory.
 std::string userCacheDirectory() {
     const auto of = [](const char* variable) {
         const char* value = std::getenv(variable);
@@ -101,7 +102,7 @@ struct Render::Request {
     std::function<void(const RenderProgress&)> onProgress;
     std::function<void(const std::string&)> onWarning;
 
-    /// As the command line would be.
+    /// The equivalent command line.
     std::vector<std::string> arguments() const {
         std::vector<std::string> result{"lacuna-render", scene};
         for (const auto& [name, value] : options) result.push_back("--" + name + "=" + value);

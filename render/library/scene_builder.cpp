@@ -18,10 +18,10 @@ namespace {
 
 using nlohmann::json;
 
-// glTF's numbers (glTF 2.0, 3.6.2.2 and 5.11.5).
+// Constants of glTF (glTF 2.0, 3.6.2.2 and 5.11.5).
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963;
 
-/// A colour and how much of it: glTF's factors go up to 1.
+/// A colour with components up to 1 and its scale: glTF's factors go up to 1.
 struct Scaled {
     SceneBuilder::Colour colour;
     double scale;
@@ -107,7 +107,7 @@ struct SceneBuilder::Content {
                    {"type", kTypes[components - 1]}};
         return append("accessors", std::move(entry));
     }
-    /// glTF asks for the box of positions.
+    /// Sets the bounding box of positions, which glTF requires.
     void setBounds(Index positions, std::span<const float> values) {
         std::array<float, 3> low, high;
         std::copy_n(values.begin(), 3, low.begin());
@@ -310,7 +310,7 @@ std::vector<std::uint8_t> SceneBuilder::glb() const {
     const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
     std::vector<std::uint8_t> glb{'g', 'l', 'T', 'F'};
     appendLittle(glb, 2);
-    appendLittle(glb, 0);  // the length, once it is known
+    appendLittle(glb, 0);  // placeholder for the length
     appendChunk(glb, "JSON", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
                 ' ');
     if (!content_->binary.empty()) {

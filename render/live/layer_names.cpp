@@ -9,14 +9,16 @@
 namespace lacuna {
 namespace {
 
-/// "albedo" of "albedo.R"; a channel that stands alone (Z, share.t02) is a layer of its own.
+/// The layer of a channel: "albedo" for "albedo.R". A single channel (Z, share.t02) is a layer of
+/// its own.
 std::string layerOf(const std::string& channel) {
     const std::size_t dot = channel.rfind('.');
     const bool part = dot != channel.npos && dot + 2 == channel.size();
     return part ? channel.substr(0, dot) : channel;
 }
 
-/// "weighted.sSStTT" of "weighted.s02t03", "weighted.mIItTT" of "weighted.m02t03", "variance.GROUP" of "variance.hits1".
+/// The pattern of a layer's name: "weighted.sSStTT" for "weighted.s02t03", "weighted.mIItTT" for "weighted.m02t03",
+/// "variance.GROUP" for "variance.hits1".
 std::string forMany(const std::string& layer) {
     const std::size_t dot = layer.rfind('.');
     if (dot == layer.npos) return layer;
@@ -31,7 +33,7 @@ std::string forMany(const std::string& layer) {
     return layer;
 }
 
-/// All of them; techniques and their groups by a pattern.
+/// A list of all layers; techniques and their groups appear as patterns.
 std::string listOf(std::span<const std::string> there) {
     std::vector<std::string> names;
     for (const std::string& channel : there) {

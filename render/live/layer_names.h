@@ -1,4 +1,4 @@
-// Layers of the picture by the names that users have for them.
+// Selection of the picture's layers by name.
 #pragma once
 
 #include <span>
@@ -7,12 +7,13 @@
 
 namespace lacuna {
 
-/// "variance,albedo" as two names. Throws UsageError that names `option` for an empty one.
+/// Splits "variance,albedo" into two names. Throws UsageError, which names `option`, for an empty
+/// name.
 std::vector<std::string> parseLayers(const std::string& option, const std::string& text);
 
-/// The channels of the picture, R G B, and of the `layers`, in that order. `there`: names of all
-/// channels, the layers' parts in the order in which they are to come. Throws UsageError that names
-/// `option` and what there is for a layer that is not there.
+/// The channels of the picture, R G B, followed by those of `layers`. `there`: names of all
+/// existing channels; a layer's channels keep this order. Throws UsageError, which names `option`
+/// and the existing layers, for an unknown layer.
 std::vector<std::string> channelsOfLayers(const std::string& option,
                                           std::span<const std::string> layers,
                                           std::span<const std::string> there);

@@ -12,9 +12,9 @@
 namespace lacuna {
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(500);  // whether the viewer is still there
+constexpr auto kLook = std::chrono::milliseconds(500);  // interval of checks for the viewer
 
-/// That the calling thread has worked.
+/// CPU time of the calling thread.
 std::chrono::duration<double> threadTime() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -106,7 +106,7 @@ void LiveView::run() {
     }
 }
 
-/// Empty where nobody is there.
+/// Connects and creates the image; empty if no viewer answers.
 std::optional<TcpConnection> LiveView::connect() {
     const auto patient = [this] { return goOn(); };
     try {
@@ -123,7 +123,7 @@ std::optional<TcpConnection> LiveView::connect() {
     }
 }
 
-/// As long as the viewer stays, and there is something to show.
+/// Sends pictures as long as the viewer stays and there are any.
 void LiveView::serve(TcpConnection& connection) {
     try {
         while (const std::optional<LayeredImage> picture = nextPicture(connection)) {
@@ -138,7 +138,8 @@ void LiveView::serve(TcpConnection& connection) {
     }
 }
 
-/// Waits for one. Empty where there is none to come; throws if the viewer goes away meanwhile.
+/// Waits for the next picture. Empty if there will be none; throws if the viewer goes away
+/// meanwhile.
 std::optional<LayeredImage> LiveView::nextPicture(const TcpConnection& connection) {
     std::unique_lock lock(mutex_);
     asking_ = !next_ && !last_;
@@ -153,7 +154,7 @@ std::optional<LayeredImage> LiveView::nextPicture(const TcpConnection& connectio
     return std::exchange(next_, std::nullopt);
 }
 
-/// Ends early where a newer picture is there.
+/// Sends a picture tile by tile. Stops early if there is a newer picture.
 void LiveView::send(TcpConnection& connection, const LayeredImage& picture) {
     const Seconds before = threadTime();
     const std::vector<float> black(std::size_t(image_.width) * std::size_t(image_.height));
@@ -171,7 +172,7 @@ void LiveView::send(TcpConnection& connection, const LayeredImage& picture) {
     due_ += inTicks((threadTime() - before) / timing_.share);
 }
 
-/// Until the next attempt. False where there is to be none: the render is over.
+/// Waits until the next attempt to connect. False if the render is over.
 bool LiveView::pause() {
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, timing_.again, [this] { return last_ || end_; });

@@ -1,5 +1,5 @@
-// --display-server: the picture as it is, in tev, beside the render. The viewer is asked for
-// nothing and may do anything: be missing, come later, hang, go away.
+// --display-server: shows the current picture in the viewer tev during the render. The viewer may
+// be missing, come later, hang or go away.
 #pragma once
 
 #include <chrono>
@@ -16,37 +16,38 @@
 
 namespace lacuna {
 
-/// A thread of its own sends one picture after the other. It asks for the next one once the last is
-/// through, so that there is never more than one under way, and none is made for nobody.
+/// A thread sends one picture after the other. It requests the next picture when the last one has
+/// been sent, so that at most one is in flight and none is made without a viewer.
 class LiveView {
   public:
     using Seconds = std::chrono::duration<double>;
     struct Timing {
-        Seconds connect{2.0};   ///< for a connection to come about
+        Seconds connect{2.0};   ///< limit of time to connect
         Seconds again{2.0};     ///< between two attempts
-        Seconds stall{20.0};    ///< a viewer that takes nothing for so long is left
-        Seconds every{0.25};    ///< between two pictures, at least
-        double share = 0.01;    ///< of the time, for making and sending them, at most
-        Seconds farewell{2.0};  ///< for the last picture
+        Seconds stall{20.0};    ///< a viewer that accepts no data for this long is dropped
+        Seconds every{0.25};    ///< least time between two pictures
+        double share = 0.01;    ///< largest share of time for making and sending them
+        Seconds farewell{2.0};  ///< limit of time for the last picture
     };
-    /// Says a line to the user; called from any thread.
+    /// Prints a line for the user; called from any thread.
     using Tell = std::function<void(const std::string&)>;
 
     LiveView(ServerAddress server, TevImage image, Tell tell);
     LiveView(ServerAddress server, TevImage image, Tell tell, const Timing& timing);
-    /// Waits for nothing.
+    /// Ends at once, without waiting for pictures to be sent.
     ~LiveView();
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
 
-    /// Whether a viewer is there, and it is time for a new picture.
+    /// Whether a viewer is connected and it is time for a new picture.
     bool wants() const;
-    /// Of the image's size and with its channels, at least; a channel that is missing is black.
-    /// `cost`: what making it took. Does not wait.
+    /// Hands over a picture of the image's size and with its channels; missing channels are black.
+    /// `cost`: time to make it. Does not wait.
     void show(LayeredImage picture, Seconds cost);
-    /// The last one, even if nobody has asked: whatever is being sent gives way to it.
+    /// Hands over the last picture, even if none was requested. It replaces a picture that is being
+    /// sent.
     void showLast(LayeredImage picture);
-    /// Waits until the last picture is sent, a bounded time. Nothing is sent after that.
+    /// Waits until the last picture is sent, for a bounded time. Nothing is sent afterwards.
     void leave();
 
   private:
@@ -69,13 +70,13 @@ class LiveView {
 
     mutable std::mutex mutex_;
     std::condition_variable wake_;
-    bool asking_ = false;  ///< connected, and nothing to send
+    bool asking_ = false;  ///< connected, with nothing to send
     std::optional<LayeredImage> next_;
-    Clock::time_point due_{};  ///< not before this
-    bool last_ = false;        ///< `next_`, or what is being sent, is the last picture
+    Clock::time_point due_{};  ///< earliest time of the next picture
+    bool last_ = false;        ///< the last picture has been handed over
     std::optional<Clock::time_point> end_;
-    // Of the thread, until it has ended.
-    bool unsent_ = false;  ///< a viewer was there, but has not taken the last picture
+    // Used by the thread only, until it has ended.
+    bool unsent_ = false;  ///< a viewer was connected but did not get the last picture
     bool toldMissing_ = false, toldLost_ = false;
     std::thread thread_;
 };

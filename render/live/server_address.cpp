@@ -27,7 +27,7 @@ std::optional<std::uint16_t> portOf(std::string_view text) {
     return port;
 }
 
-/// Takes the host from the front of `text`; empty where there is none that could be one.
+/// Removes the host from the front of `text`; empty if there is no valid one.
 std::optional<std::string> takeHost(std::string_view& text) {
     const bool bracketed = text.starts_with('[');
     const std::size_t end = bracketed ? text.find(']') : std::min(text.find(':'), text.size());

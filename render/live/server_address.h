@@ -1,4 +1,4 @@
-// Where a viewer listens.
+// The address at which a viewer listens.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,15 @@ namespace lacuna {
 
 struct ServerAddress {
     std::string host = "localhost";
-    std::uint16_t port = 14158;  ///< tev's
+    std::uint16_t port = 14158;  ///< default of tev
 
-    /// As it is written on a command line.
+    /// The address in the form of the command line.
     std::string text() const;
     friend bool operator==(const ServerAddress&, const ServerAddress&) = default;
 };
 
-/// "host:port", "host", ":port", "[::1]:port" or "[::1]". Throws UsageError that names `option`.
+/// Parses "host:port", "host", ":port", "[::1]:port" or "[::1]". Throws UsageError, which names
+/// `option`.
 ServerAddress parseServerAddress(const std::string& option, const std::string& text);
 
 }  // namespace lacuna

@@ -49,8 +49,8 @@ std::vector<SocketAddress> addressesOf(const ServerAddress& server) {
     return addresses;
 }
 
-/// Looking up a name takes as long as the system likes and cannot be called off: it is done by a
-/// thread that nobody has to wait for.
+/// Looks up the addresses of a host. A look-up may take any time and cannot be cancelled: therefore
+/// a detached thread does it.
 std::vector<SocketAddress> lookUp(const ServerAddress& server, Clock::time_point end,
                                   const TcpConnection::GoOn& goOn) {
     std::packaged_task<std::vector<SocketAddress>()> task([server] { return addressesOf(server); });
@@ -62,7 +62,7 @@ std::vector<SocketAddress> lookUp(const ServerAddress& server, Clock::time_point
     return addresses.get();
 }
 
-/// False at the end of the time, or once `goOn` says no.
+/// False when the time is over or `goOn` returns false.
 bool waitUntilWritable(int fd, Clock::time_point end, const TcpConnection::GoOn& goOn) {
     for (;;) {
         pollfd wanted{fd, POLLOUT, 0};
@@ -73,7 +73,7 @@ bool waitUntilWritable(int fd, Clock::time_point end, const TcpConnection::GoOn&
     }
 }
 
-/// 0, or errno.
+/// Connects the socket; returns 0 or errno.
 int connectTo(int fd, const SocketAddress& to, Clock::time_point end,
               const TcpConnection::GoOn& goOn) {
     if (::connect(fd, reinterpret_cast<const sockaddr*>(&to.address), to.length) == 0) return 0;

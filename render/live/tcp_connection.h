@@ -1,4 +1,5 @@
-// TCP to someone who may be away, slow or gone: no wait without an end, no signals.
+// A TCP connection to a peer that may be absent, slow or gone: every wait is bounded, and no
+// signals occur.
 #pragma once
 
 #include <chrono>
@@ -12,21 +13,22 @@ namespace lacuna {
 
 class TcpConnection {
   public:
-    /// Asked every few milliseconds while there is waiting to do; false ends it.
+    /// Called every few milliseconds while waiting; false ends the wait.
     using GoOn = std::function<bool()>;
     using Seconds = std::chrono::duration<double>;
 
-    /// Throws std::runtime_error that says why there is none after `limit`.
+    /// Connects. Throws std::runtime_error with the reason if there is no connection within
+    /// `limit`.
     TcpConnection(const ServerAddress& server, Seconds limit, const GoOn& goOn);
     ~TcpConnection();
     TcpConnection(TcpConnection&& other) noexcept;
     TcpConnection(const TcpConnection&) = delete;
     TcpConnection& operator=(const TcpConnection&) = delete;
 
-    /// All of it. Throws std::runtime_error if the other side is gone, or has taken nothing for
-    /// `stall`; nothing sensible can be sent after that.
+    /// Sends all bytes. Throws std::runtime_error if the peer is gone or has accepted nothing for
+    /// `stall`. The connection is unusable afterwards.
     void send(std::span<const std::byte> bytes, Seconds stall, const GoOn& goOn);
-    /// Whether the other side has closed it, as far as that is known.
+    /// Whether the peer is known to have closed the connection.
     bool closed() const;
 
   private:

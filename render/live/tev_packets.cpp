@@ -12,12 +12,12 @@ static_assert(std::endian::native == std::endian::little, "values are sent as th
 
 constexpr std::uint8_t kCreateImage = 4;
 constexpr std::uint8_t kUpdateImage = 6;
-constexpr int kTileValues = 1 << 16;  // 256 kB: it is between two tiles that a new picture is begun
+constexpr int kTileValues = 1 << 16;  // 256 kB; a newer picture may begin between two tiles
 
 class Writer {
   public:
     explicit Writer(std::uint8_t kind) {
-        add(std::uint32_t(0));  // the length, once it is known
+        add(std::uint32_t(0));  // placeholder for the length
         add(kind);
     }
 

@@ -62,7 +62,7 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
     return part;
 }
 
-// A length, as much JSON, and the channels in its order.
+// Format: the length of the JSON, the JSON, and the channels in its order.
 std::vector<std::byte> bytesOf(const Part& part) {
     LayeredImage image(part.width, part.height);
     addPart(image, part);

@@ -1,4 +1,4 @@
-// A piece of a picture: some iterations of one block, made by one rank and sent to rank 0.
+// A piece of a picture: some iterations of one block, which one rank makes and sends to rank 0.
 #pragma once
 
 #include <functional>
@@ -12,21 +12,22 @@
 
 namespace lacuna {
 
-/// What a rank is asked to make.
+/// The piece that a rank has to make.
 struct Work {
     std::uint64_t begin = 0, count = 0;  ///< iterations, all of one block
-    /// Nothing is there to be saved yet: the first iteration is finished whatever happens.
+    /// There is no picture to be saved yet: the first iteration is finished whatever happens.
     bool first = false;
 };
 
 class PieceMaker {
   public:
-    /// All references must outlive it. `interrupted`: ends a piece in the middle of an iteration.
+    /// All references must outlive the object. `interrupted` ends a piece in the middle of an
+    /// iteration.
     PieceMaker(BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
                const std::atomic<bool>& interrupted, const ThreadPool& pool);
 
-    /// The iterations as nodes of their block's tree, which is the part's open one. Fewer than asked
-    /// for after an interrupt, or where `stop`, asked between two iterations, says so.
+    /// Makes the iterations, as nodes of their block's tree, which is the part's open block. There
+    /// are fewer after an interrupt, or if `stop`, called between two iterations, returns true.
     Part make(const Work& work, const std::function<bool()>& stop);
 
   private:
@@ -35,12 +36,12 @@ class PieceMaker {
     const int width_, height_;
     const std::atomic<bool>& interrupted_;
     const ThreadPool& pool_;
-    std::optional<std::uint64_t> open_;  ///< block
+    std::optional<std::uint64_t> open_;  ///< the open block
     std::vector<Rgb> pixels_;
 };
 
 std::vector<std::byte> bytesOf(const Part& part);
-/// Throws RunError for what bytesOf did not make.
+/// The inverse. Throws RunError for bytes that bytesOf did not make.
 Part partOf(std::span<const std::byte> bytes);
 
 }  // namespace lacuna

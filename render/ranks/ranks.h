@@ -1,4 +1,5 @@
-// The processes that mpirun started to make one picture: ranks 0, 1, .. Without MPI there is one.
+// The processes that mpirun started to make one picture: ranks 0, 1, .. Without MPI there is only
+// one.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +14,10 @@ namespace lacuna {
 
 class Ranks {
   public:
-    /// Joins the other processes where a launcher started this one; one object at a time, and one
-    /// thread that uses it.
+    /// Joins the other processes if a launcher started this one. Only one object may exist at a
+    /// time, and only one thread may use it.
     Ranks();
-    /// This process alone, whoever started it.
+    /// Selects a single process, whoever started it.
     struct Alone {};
     explicit Ranks(Alone) {}
     ~Ranks();
@@ -25,15 +26,15 @@ class Ranks {
 
     int rank() const { return rank_; }
     int size() const { return int(machines_.size()); }
-    /// Rank 0: it speaks for all, writes the files and gives out the work.
+    /// Whether this is rank 0, which prints messages, writes the files and distributes the work.
     bool leads() const { return rank_ == 0; }
     bool many() const { return size() > 1; }
     /// "rank 2 (node7)"
     std::string name(int rank) const;
 
-    /// Runs `stage` on every rank and waits for all of them. Where it threw on any, rank 0 throws
-    /// what the lowest of these threw, with its name; the others return false: they have nothing
-    /// to say and should end.
+    /// Runs `stage` on every rank and waits for all of them. If it threw on any rank, rank 0 throws
+    /// the error of the lowest such rank, with the rank's name. The other ranks return false: they
+    /// should end silently.
     bool agree(const std::function<void()>& stage) const;
 
     enum class Tag { Inputs, Work, Piece, Failure, Stop, End };
@@ -42,12 +43,12 @@ class Ranks {
         Tag tag = Tag::End;
         std::vector<std::byte> bytes;
     };
-    /// Returns when the letter is on its way; long ones when they are read.
+    /// Sends a letter. Returns when it is on its way; a long letter, when it has been received.
     void send(int to, Tag tag, std::span<const std::byte> bytes = {}) const;
     void send(int to, Tag tag, const std::string& text) const;
-    /// A letter that has come, if there is one.
+    /// A letter that has arrived, if there is one.
     std::optional<Letter> poll() const;
-    /// Sleeps until there is one.
+    /// Sleeps until a letter arrives.
     Letter wait() const;
 
   private:
@@ -56,7 +57,7 @@ class Ranks {
     std::vector<std::string> machines_{""};  ///< names, by rank
 };
 
-/// What a letter says.
+/// The content of a letter as text.
 std::string textOf(const Ranks::Letter& letter);
 
 }  // namespace lacuna

@@ -17,15 +17,16 @@ namespace {
 
 using Tag = Ranks::Tag;
 
-/// Of a piece: longer ones make fewer messages, shorter ones leave less unfinished at the end.
+/// Durations of pieces in seconds. Longer pieces need fewer messages; shorter ones leave less
+/// unfinished at the end.
 constexpr double kShortestPiece = 2.0, kLongestPiece = 30.0;
-/// Longer renders have longer pieces: what an interrupt throws away is a share of what there is.
+/// Longer renders have longer pieces: an interrupt loses at most this share of the render.
 constexpr double kShareOfRender = 0.05;
-/// Pieces that wait for one before them, per rank: they take memory.
+/// Largest number of pieces per rank that wait for an earlier one; they take memory.
 constexpr std::size_t kWaitingPerRank = 4;
 constexpr auto kPause = std::chrono::milliseconds(1);
 
-/// "CODE text"
+/// A failure as the text "CODE text".
 std::string letterOf(const Failure& failure) {
     return std::to_string(failure.exitCode) + " " + failure.text;
 }
@@ -46,7 +47,7 @@ std::uint64_t pieceSize(std::uint64_t next, std::uint64_t end, const BlockPlan& 
     double wanted = iterationSeconds > 0.0 ? seconds / iterationSeconds : 1.0;
     if (end > 0) wanted = std::min(wanted, double(end - next) / (2.0 * ranks));
     const auto most = std::uint64_t(std::clamp(wanted, 1.0, double(left)));
-    // Behind n = 2^k iterations errors are looked at every n / 4.
+    // After n = 2^k iterations, errors are estimated every n / 4 iterations.
     const std::uint64_t measured = std::max<std::uint64_t>(1, std::bit_floor(next) / 4);
     const std::uint64_t size = std::min(std::bit_floor(most), measured);
     return inBlock == 0 ? size : std::min(size, inBlock & (~inBlock + 1));
@@ -74,7 +75,7 @@ class LocalMember {
         wake_.notify_all();
     }
     void stop() { stop_ = true; }
-    /// What is done. Throws what went wrong.
+    /// The finished piece, if any. Rethrows an error of the thread.
     std::optional<Part> poll() {
         const std::lock_guard lock(mutex_);
         if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -128,7 +129,7 @@ Together::~Together() {
     try {
         end();
     } catch (...) {
-        // A rank that failed while others were ending: why the render ends is told already.
+        // A rank failed while others were ending. The reason for the end is reported already.
     }
     local_.reset();
     for (int rank = 1; rank < ranks_.size(); ++rank) ranks_.send(rank, Tag::End);
@@ -153,7 +154,7 @@ void Together::end() {
     }
 }
 
-/// False: nothing has come.
+/// Receives finished pieces and letters. False if there were none.
 bool Together::receive() {
     bool any = false;
     if (work_[0]) {
@@ -231,7 +232,7 @@ bool Together::advance(Film& film, Totals& totals) {
     Part part = std::move(found->second);
     made_.erase(found);
     const Stopwatch watch(piecesSeconds_);
-    // The pool is busy with a piece: this thread adds on its own.
+    // The pool is busy with a piece, so that this thread adds alone.
     for (SumTree::Node& node : part.sums.open) film.add(std::move(node), nullptr);
     totals.statistics.add(part.statistics);
     return true;
@@ -249,7 +250,7 @@ void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const
     while (!ended) {
         const Ranks::Letter letter = ranks.wait();
         if (letter.tag == Tag::End) return;
-        if (letter.tag != Tag::Work) continue;  // a stop that came too late
+        if (letter.tag != Tag::Work) continue;  // a stop that arrived too late
         Work work;
         std::memcpy(&work, letter.bytes.data(), sizeof work);
         try {

@@ -1,5 +1,5 @@
-// Several ranks make one picture: rank 0 gives out work and adds pieces to the film in the order of
-// their iterations, so that the picture has the same bits as that of one process. (theory.md,
+// Several ranks make one picture. Rank 0 distributes work and adds pieces to the film in the order
+// of their iterations, so that the picture is bit for bit that of one process. (theory.md,
 // "Blocks"; render/README.md, "Many machines")
 #pragma once
 
@@ -14,27 +14,26 @@
 
 namespace lacuna {
 
-/// How many of the next iterations a rank gets: whole blocks where that must be, else a node of the
-/// block's tree that takes about `seconds`, and no picture past a count at which errors are looked at
-/// (isMeasured).
-/// `next`: the first of them; `end`: behind the last of the render, 0 if there is none.
+/// Number of the next iterations that a rank gets: whole blocks if necessary, else a node of the block's tree that
+/// takes about `seconds`. A piece does not extend past a count at which errors are estimated (isMeasured). `next`: the
+/// first iteration; `end`: one past the last of the render, 0 if there is no limit.
 std::uint64_t pieceSize(std::uint64_t next, std::uint64_t end, const BlockPlan& plan,
                         bool wholeBlocks, int ranks, double seconds, double iterationSeconds);
 
-/// What rank 0 has of its own part of the work: a thread that makes pieces.
+/// Rank 0's own worker: a thread that makes pieces.
 class LocalMember;
 
 class Together final : public Crew {
   public:
-    /// Behind which iteration and after how many seconds the render ends; 0: no end.
+    /// The end of the render: one past the last iteration, and seconds; 0: no limit.
     struct Limits {
         std::uint64_t end = 0;
         double seconds = 0.0;
     };
-    /// Of rank 0. All references must outlive the crew.
+    /// For rank 0. All references must outlive the crew.
     Together(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
              Limits limits, const std::atomic<bool>& interrupted, const ThreadPool& pool);
-    /// Waits for all ranks and lets them end.
+    /// Waits for all ranks and tells them to end.
     ~Together() override;
 
     bool advance(Film& film, Totals& totals) override;
@@ -42,9 +41,9 @@ class Together final : public Crew {
     bool busy() const override;
     bool interrupted() const override { return interrupted_; }
     double iterationSeconds() const override { return iterationSeconds_; }
-    /// That came from other ranks.
+    /// Bytes received from other ranks.
     std::uint64_t receivedBytes() const { return receivedBytes_; }
-    /// That rank 0 spent with reading and adding pieces.
+    /// Time that rank 0 spent on reading and adding pieces.
     double piecesSeconds() const { return piecesSeconds_; }
 
   private:
@@ -61,17 +60,17 @@ class Together final : public Crew {
     const BlockPlan plan_;
     const bool wholeBlocks_;
     std::unique_ptr<LocalMember> local_;
-    std::vector<std::optional<Work>> work_;  ///< by rank: what it is making
-    std::map<std::uint64_t, Part> made_;     ///< not in the film yet, by their first iteration
-    std::optional<std::uint64_t> next_;      ///< iteration to be given out
+    std::vector<std::optional<Work>> work_;  ///< by rank: its current piece
+    std::map<std::uint64_t, Part> made_;     ///< not in the film yet, by first iteration
+    std::optional<std::uint64_t> next_;      ///< next iteration to be distributed
     bool stopped_ = false, interrupted_ = false;
     double iterationSeconds_ = 0.0;
     std::uint64_t receivedBytes_ = 0;
     double piecesSeconds_ = 0.0;
-    Clock::time_point told_ = Clock::now();  ///< up to when time is counted
+    Clock::time_point told_ = Clock::now();  ///< time is counted up to here
 };
 
-/// What ranks other than 0 do until rank 0 lets them end.
+/// The work of ranks other than 0, until rank 0 tells them to end.
 void serve(const Ranks& ranks, BlockMaker& maker, const ErrorMeter& meter, const PixelRect& crop,
            const std::atomic<bool>& interrupted, const ThreadPool& pool);
 

@@ -1,5 +1,5 @@
-// The only file that knows MPI. Whoever waits sleeps in between: MPI's own waiting takes a core,
-// which the ranks on one machine need for rendering.
+// The only file that uses MPI. Waits sleep between polls: MPI's own waiting occupies a core, which
+// the ranks on one machine need for rendering.
 #include <mpi.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t kSlice = std::size_t(1) << 28;  // MPI counts bytes in an int
 
-/// Whether mpirun, or srun with PMI, started this process. One that nobody started needs no MPI,
-/// which takes .4 s to begin.
+/// Whether mpirun, or srun with PMI, started this process. Other processes skip MPI, which takes .4
+/// s to start.
 bool launched() {
     constexpr const char* kSigns[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"};
     return std::any_of(std::begin(kSigns), std::end(kSigns),
@@ -36,9 +36,9 @@ void waitFor(MPI_Request& request) {
     }
 }
 
-/// How a stage ended.
+/// The outcome of a stage on one rank.
 struct Outcome {
-    int code = 0;  ///< of the exit; 0: it went well
+    int code = 0;  ///< exit code; 0: success
     std::array<char, 2044> text{};
 
     void set(const Failure& failure) {

@@ -1,4 +1,4 @@
-// Lacuna without MPI: every process is alone.
+// Build without MPI: every process is alone.
 #include "render/ranks/ranks.h"
 
 namespace lacuna {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPerDecade = 10.0;
 
-/// Multiples of a tenth of a decade between the ends, and the ends.
+/// The ends and, between them, the multiples of a tenth of a decade.
 std::vector<double> grid(double low, double high) {
     std::vector<double> xs{low};
     const double first = std::floor(kPerDecade * std::log10(low)) + 1.0;
@@ -24,7 +24,7 @@ std::vector<double> grid(double low, double high) {
     return xs;
 }
 
-/// An infinite error (mape against a black reference) stays one.
+/// Median and range at x. An infinite error (mape against a black reference) stays infinite.
 BandPoint pointOf(double x, std::span<const std::optional<double>> errors) {
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     const Spread s = spread(errors);

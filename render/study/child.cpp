@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-/// All signals wait until `mask` is put back.
+/// Blocks all signals until the returned mask is restored.
 sigset_t holdSignals() {
     sigset_t all, mask;
     sigfillset(&all);
@@ -22,8 +22,9 @@ sigset_t holdSignals() {
     return mask;
 }
 
-/// In the child, between fork and exec: nothing but system calls. Signals are held: our handlers
-/// would take an interrupt that comes before exec, and the program would never hear of it.
+/// Runs in the child between fork and exec, where only system calls are allowed. Signals are
+/// blocked: this process's handlers would consume an interrupt before exec, and the program would
+/// never get it.
 [[noreturn]] void becomeProgram(char* const* argv, int log, pid_t parent, const sigset_t& mask) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction action {};
@@ -31,10 +32,10 @@ sigset_t holdSignals() {
         if (action.sa_handler != SIG_IGN) signal(number, SIG_DFL);
     }
     sigprocmask(SIG_SETMASK, &mask, nullptr);
-    // Out of the terminal's foreground group: Ctrl-C comes to us alone, and from us to the child.
+    // Leaves the terminal's foreground group: Ctrl-C reaches only the parent, which passes it on.
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(127);  // we were killed in between
+    if (getppid() != parent) _exit(127);  // the parent was killed meanwhile
     dup2(log, STDOUT_FILENO);
     dup2(log, STDERR_FILENO);
     execv(argv[0], argv);
@@ -70,7 +71,7 @@ int runChild(const std::vector<std::string>& arguments, const std::string& log,
             kill(child, SIGTERM);
             asked = true;
         }
-        // Short beside a run, and long enough to leave the processors to the child.
+        // Short compared with a run, and long enough to leave the processors to the child.
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
 }

@@ -11,7 +11,7 @@ namespace lacuna {
 namespace {
 
 constexpr Axis kAxis = Axis::SecondsWithSetup;
-constexpr double kAsGood = 1.1;  // the regret that nobody minds
+constexpr double kAsGood = 1.1;  // largest negligible regret
 
 using Runs = std::vector<const RunResult*>;
 
@@ -21,7 +21,8 @@ bool choseForItself(const Runs& runs) {
     });
 }
 
-/// "spcbpt, 32000 paths (2), risbpt": each with how many seeds chose it, where they differ.
+/// "spcbpt, 32000 paths (2), risbpt": the choices, with the number of seeds that made each if they
+/// differ.
 std::string chosenText(const Runs& runs) {
     std::map<std::string, int> counts;
     for (const RunResult* r : runs) {
@@ -40,7 +41,7 @@ std::string chosenText(const Runs& runs) {
     return joined(parts, "; ");
 }
 
-/// Of the methods that did not choose, the one with the least median error at `end`, if any.
+/// Among the methods other than auto, the one with the least median error at `end`, if any.
 std::optional<std::size_t> bestOther(const Results& results, std::size_t scene, Measure measure,
                                      double end) {
     std::optional<std::size_t> best;
@@ -63,7 +64,7 @@ std::optional<double> regret(const RunResult& own, const RunResult& other, Measu
     if (!a || !b) return std::nullopt;
     const RunResult& better = *a < *b ? own : other;
     const auto time = timeToError(better.curve.points, measure, std::max(*a, *b), kAxis);
-    if (!time) return 1.0;  // both end there with the same error
+    if (!time) return 1.0;  // both end with the same error
     return &better == &own ? *time / end : end / *time;
 }
 

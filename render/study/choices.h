@@ -1,14 +1,15 @@
-// What auto chose in a study's runs, and what its choice cost beside the other rows.
+// The choices of auto in a study's runs, and their regret against the other methods.
 #pragma once
 
 #include "render/study/tables.h"
 
 namespace lacuna {
 
-/// A row for each scene, measure and method that chose for itself; none where no method did.
+/// One row for each scene, measure and method auto; no rows if no method is auto.
 ///
-/// Regret is auto's time over that of the best other row, setup and pilot counted: the time to the
-/// error that the worse of the two has where the shortest run ends. Below one auto is faster.
+/// Regret is auto's time over that of the best other method, including setup and pilot. The times
+/// are those to the error that the worse of the two has at the end of the shortest run. Below one,
+/// auto is faster.
 Table choiceTable(const Results& results);
 
 }  // namespace lacuna

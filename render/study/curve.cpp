@@ -18,7 +18,7 @@ std::vector<std::string> columns(const std::string& line) {
     return all;
 }
 
-/// y at x on the straight line in log-log through two points; the second's y where a logarithm
+/// y at x on the straight line through two points in log-log; the second point's y if a logarithm
 /// does not exist.
 double interpolate(double x0, double y0, double x1, double y1, double x) {
     if (!(x0 > 0.0) || !(y0 > 0.0) || !(y1 > 0.0) || !(x1 > x0) || !std::isfinite(y0)) return y1;
@@ -78,13 +78,13 @@ double abscissa(const CurvePoint& point, Axis axis) {
 
 std::optional<double> timeToError(std::span<const CurvePoint> points, Measure measure, double bound,
                                   Axis axis) {
-    std::size_t below = points.size();  // first of the rows at the end that are all below
+    std::size_t below = points.size();  // first of the trailing rows that are all below
     while (below > 0 && points[below - 1].error(measure) < bound) --below;
     if (below == points.size()) return std::nullopt;
     const double reached = abscissa(points[below], axis);
     if (below == 0) return reached;
     const CurvePoint &before = points[below - 1], &after = points[below];
-    // The inverse of errorAt: along the error, the time is what is interpolated.
+    // The inverse of errorAt: interpolates the time as a function of the error.
     const double e0 = before.error(measure), e1 = after.error(measure);
     if (!std::isfinite(e0) || !(e1 > 0.0)) return reached;
     const double t = std::log(bound / e0) / std::log(e1 / e0);

@@ -1,4 +1,4 @@
-// A run's curve, as lacuna-render logged it, and what may be read off it: nothing outside its rows.
+// A run's curve, as logged by lacuna-render, and its interpolation, which never extrapolates.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace lacuna {
 
 enum class Measure { Mae, Rmse, Mape, Relmse };
-/// Throws std::out_of_range for another name.
+/// The measure of that name. Throws std::out_of_range for other names.
 Measure measureOf(const std::string& name);
 
 struct CurvePoint {
@@ -22,21 +22,21 @@ struct CurvePoint {
 };
 
 struct Curve {
-    std::string header;              ///< the file's, as it stands
+    std::string header;              ///< the file's header line
     std::vector<std::string> lines;  ///< one per point
     std::vector<CurvePoint> points;
 };
 
-/// Throws InputError for a file that lacuna-render did not write with --reference.
+/// Reads a curve. Throws InputError for a file that lacuna-render did not write with --reference.
 Curve readCurve(const std::string& path);
 
-/// What a curve is read along.
+/// The abscissa along which a curve is evaluated.
 enum class Axis { Seconds, SecondsWithSetup, Iterations };
 double abscissa(const CurvePoint& point, Axis axis);
 
 /// The first time after which the error stays below `bound`, interpolated in log-log between the
-/// rows around it; none if the last row is not below. Where the first row is below already it is
-/// that row's time: the bound was reached by then, or before.
+/// rows around it; none if the last row is not below. If all rows are below, it is the first row's
+/// time: the bound was reached then or before.
 std::optional<double> timeToError(std::span<const CurvePoint> points, Measure measure, double bound,
                                   Axis axis);
 

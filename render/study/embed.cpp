@@ -9,7 +9,7 @@
 namespace lacuna {
 
 namespace {
-constexpr double kBytesPerPixel = 3 * 2 * 4.0 / 3.0;  // halves in base64
+constexpr double kBytesPerPixel = 3 * 2 * 4.0 / 3.0;  // as halves in base64
 }
 
 double meanOf(const Image& image) {
@@ -26,7 +26,8 @@ int stopsFor(double mean) {
     return mean > 0.0 ? -int(std::floor(std::log2(mean))) - 1 : 0;
 }
 
-/// Halves reach from 6e-8 to 65504: NaN becomes 0, what is too large the largest.
+/// Halves range from 6e-8 to 65504: NaN becomes 0, and values that are too large become the
+/// largest.
 std::string pixelsText(const Image& image, int stops) {
     const double factor = std::exp2(stops);
     std::string bytes;

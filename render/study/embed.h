@@ -1,4 +1,4 @@
-// Pictures as a page holds them: radiance as text, averaged over pixels where it would be too much.
+// Pictures for embedding in a page: radiance as text, averaged over pixels to limit the size.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,18 +11,18 @@ namespace lacuna {
 /// Mean of all pixels and channels.
 double meanOf(const Image& image);
 
-/// Means over n x n pixels; what is left over at the right and lower edge is dropped.
+/// Means over n x n pixels; the remainder at the right and lower edge is dropped.
 Image shrunk(const Image& image, int n);
-/// The least n for `shrunk` with which this many pixels take at most `bytes` as text.
+/// The least n for `shrunk` with which this number of pixels takes at most `bytes` as text.
 int shrinkFactor(double pixels, double bytes);
 
-/// Halves of `image` times 2^stops in base64: little endian, R G B, top row first.
+/// The half floats of `image` times 2^stops in base64: little-endian, R G B, top row first.
 std::string pixelsText(const Image& image, int stops);
-/// Exponent for `pixelsText` that keeps pictures of this mean clear of both ends of what halves
-/// hold.
+/// The exponent for `pixelsText` that keeps pictures of this mean away from both ends of the range
+/// of halves.
 int stopsFor(double mean);
 
-/// RFC 4648.
+/// Base64 of RFC 4648.
 std::string base64(std::string_view bytes);
 
 }  // namespace lacuna

@@ -19,7 +19,7 @@ std::string rangeText(const char* axis, int low, int high) {
     return std::string(axis) + " " + std::to_string(low) + " to " + std::to_string(high);
 }
 
-/// What the study's file alone could not tell.
+/// Checks crops against the size of the picture, which the study's file alone does not tell.
 void requireCropsInside(const Study& study, std::size_t s, const SceneFacts& facts) {
     const StudyScene& scene = study.scenes[s];
     const int width = facts.crop.width(), height = facts.crop.height();
@@ -38,7 +38,7 @@ bool rendersReference(const StudyScene& scene) {
     return scene.recipe && !std::filesystem::exists(scene.reference);
 }
 
-/// Copies it to where the study's file wants it.
+/// Copies the reference to the path that the study's file names.
 void keepReference(const std::string& from, const std::string& to) {
     std::error_code error;
     std::filesystem::copy_file(from, to, error);
@@ -46,7 +46,7 @@ void keepReference(const std::string& from, const std::string& to) {
         throw RunError(to + ": expected to keep the reference here, found " + error.message());
 }
 
-/// Scenes and the references that are there first; then the references that take long.
+/// Inspects scenes and existing references first, then renders missing references, which take long.
 void findReferences(Results& results, const std::string& directory, const std::string& renderer,
                     const std::atomic<bool>& cancel, Progress& progress) {
     const Study& study = results.study;
@@ -74,13 +74,13 @@ void findReferences(Results& results, const std::string& directory, const std::s
     }
 }
 
-/// `more`: arguments beside those of the plan.
+/// Renders one run. `more`: arguments in addition to those of the plan.
 void renderRun(const Results& results, const PlannedRun& run, const RunDirectory& directory,
                const std::vector<std::string>& more, const std::string& renderer,
                const std::atomic<bool>& cancel) {
     std::vector<std::string> arguments = run.arguments;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    // Whatever is made beforehand is made anew in each run: its time is part of it.
+    // Preprocessing is done anew in each run, because its time belongs to the run.
     const std::string& method = results.study.methods[run.method].method;
     const bool chooses = method == kAuto;
     const auto needsCaches = [&] {
@@ -116,7 +116,7 @@ std::vector<ErrorMeasures> errorsInCrops(const Results& results, const PlannedRu
     return errors;
 }
 
-/// Renders the layers per technique that are missing.
+/// Renders missing pictures with layers per technique.
 void renderTechniques(Results& results, const std::string& directory, const std::string& renderer,
                       const std::atomic<bool>& cancel, Progress& progress) {
     for (const PlannedRun& run :
@@ -130,7 +130,7 @@ void renderTechniques(Results& results, const std::string& directory, const std:
     }
 }
 
-/// The program beside us, and the library that both of us are linked with.
+/// Hash of the renderer's program and of the library with its code.
 std::string hashOfRenderer(const std::string& program) {
     ContentHash hash;
     for (const std::string& file : {program, codeFile()}) {

@@ -1,4 +1,4 @@
-// From the study's file to the logs of all its runs: whatever is missing is rendered.
+// Executes a study: renders all missing runs and collects their logs.
 #pragma once
 
 #include "render/study/results.h"
@@ -7,11 +7,11 @@ namespace lacuna {
 
 struct Execution {
     Results results;
-    std::size_t rendered = 0;  ///< runs that were not there before
+    std::size_t rendered = 0;  ///< number of runs rendered now
 };
 
-/// Everything that can be wrong with scenes and references is found before the first run. Throws
-/// Error 130 if interrupted; finished runs stay in `directory` and are not repeated.
+/// Reports all errors of scenes and references before the first run. Throws InterruptedError if
+/// interrupted; finished runs stay in `directory` and are not repeated.
 Execution execute(const Study& study, const std::string& directory, const std::string& renderer,
                   const std::atomic<bool>& cancel, Progress& progress);
 

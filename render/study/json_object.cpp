@@ -30,7 +30,7 @@ json readJsonFile(const std::string& path) {
         return true;
     };
     try {
-        return json::parse(text, watch, true, true);  // comments are allowed
+        return json::parse(text, watch, true, true);  // allows comments
     } catch (const json::parse_error& e) {
         throw InputError(path + ": expected JSON, found an error at byte " +
                          std::to_string(e.byte) + ": " + e.what());

@@ -1,4 +1,4 @@
-// Reading a JSON object of which every key has to be known: a misspelt key is an error, not a
+// Reads JSON objects in which every key must be known: a misspelt key is an error and not a
 // default.
 #pragma once
 
@@ -9,10 +9,10 @@
 
 namespace lacuna {
 
-/// Parses a file; a key that is there twice is an error too. Throws InputError.
+/// Parses a file. Throws InputError, also for a duplicate key.
 nlohmann::json readJsonFile(const std::string& path);
 
-/// One object of the file. Every key that is asked for counts as known; `finish` refuses the rest.
+/// One object of the file. Every key that is read counts as known; `finish` refuses all others.
 /// Every member throws InputError: `place: KEY: what was expected, what was found`.
 class JsonObject {
   public:
@@ -22,16 +22,16 @@ class JsonObject {
     bool has(const std::string& key);
     std::string text(const std::string& key);
     std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high);
-    /// Above zero, rising or falling as they come.
+    /// Positive numbers, in any order.
     std::vector<double> positives(const std::string& key);
     std::vector<std::string> texts(const std::string& key);
-    /// The value itself; it has to be there.
+    /// The value of `key`, which must exist.
     const nlohmann::json& value(const std::string& key);
-    /// The object under `key`, empty where there is none.
+    /// The object under `key`; empty if there is none.
     JsonObject object(const std::string& key);
     /// The objects of the array under `key`, at least one.
     std::vector<JsonObject> objects(const std::string& key);
-    /// All members, each known from now on.
+    /// All members; all keys count as known from now on.
     const nlohmann::json& members();
     void finish() const;
 

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Nothing in it may end the script element that it stands in.
+/// JSON for a script element; nothing in it can end the element.
 std::string scriptText(const json& value) {
     std::string text;
     for (const char c : value.dump(-1, ' ', false, json::error_handler_t::replace)) {

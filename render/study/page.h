@@ -1,4 +1,4 @@
-// index.html: everything that a study found, in one file that opens without server or network.
+// index.html: all results of a study in one file that needs no server or network.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,10 +6,11 @@
 
 namespace lacuna {
 
-/// Chart.js as its package installed it. Throws RunError that names the package.
+/// The source of Chart.js as installed by its package. Throws RunError, which names the package, if
+/// it is missing.
 std::string readChartLibrary();
 
-/// The page around `data` (see pageData) and `pictures` (see picturesJson).
+/// The page with `data` (see pageData) and `pictures` (see picturesJson).
 std::string pageHtml(const std::string& title, const std::string& chartLibrary,
                      const nlohmann::json& data, const nlohmann::json& pictures);
 

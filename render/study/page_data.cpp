@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Disjoint parts of an iteration, as lacuna-render names them (render/README.md, "--log").
+/// The disjoint phases of an iteration by lacuna-render's names (render/README.md, "--log").
 constexpr const char* kPhases[] = {"warm-up", "light paths", "prepare", "eye paths", "observe"};
 
 std::vector<const Curve*> curvesOf(const Results& results, std::size_t scene, std::size_t method) {
@@ -65,7 +65,7 @@ json methodJson(const StudyMethod& method) {
             {"options", method.options}};
 }
 
-/// Means over seeds, so that parts add up to wholes.
+/// Costs as means over seeds, so that parts add up to totals.
 json costJson(const Results& results, std::size_t s, std::size_t m) {
     const std::vector<const RunResult*> runs = results.of(s, m);
     const double share = 1.0 / double(runs.size());
@@ -89,7 +89,7 @@ json costJson(const Results& results, std::size_t s, std::size_t m) {
     return {{"phases", phases}, {"rays", rays}, {"peak_bytes", memory}};
 }
 
-/// Median, low and high, null where that was not reached.
+/// Median, low and high; null for values that were not reached.
 json spreadJson(const Spread& s) {
     json object = json::object();
     for (const auto& [key, value] :
@@ -99,8 +99,8 @@ json spreadJson(const Spread& s) {
     return object;
 }
 
-/// A knob's own curves: per value the error at equal iterations, which no setup costs; and with
-/// setup counted the error at equal time, and the time to every bound that any value reaches.
+/// The results of a knob by value: the error at equal iterations, in which setup does not count;
+/// and, with setup, the error at equal time and the time to every bound that any value reaches.
 json knobJson(const Results& results, std::size_t s, const std::string& measureName,
               const std::string& group) {
     const Study& study = results.study;

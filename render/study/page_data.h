@@ -1,4 +1,4 @@
-// What the page shows besides pictures, as JSON; the same goes to --json.
+// The page's data besides pictures, as JSON, which is also the output of --json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-/// Study, scenes, methods; per scene, method and measure the bands of all axes; means over seeds of
-/// phases (seconds), rays by kind and memory (bytes); knobs; tables; all runs. What is not finite
-/// is null.
+/// Study, scenes, methods; for each scene, method and measure the bands of all axes; means over
+/// seeds of phases (seconds), rays by kind and memory (bytes); knobs; tables; all runs. Numbers
+/// that are not finite become null.
 nlohmann::json pageData(const Results& results, const std::vector<Table>& tables);
 
 }  // namespace lacuna

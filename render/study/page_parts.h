@@ -1,4 +1,4 @@
-// The files of page/, compiled in: a tool that was moved or installed still writes its page.
+// The files of page/, compiled in, so that a moved or installed tool can still write its page.
 #pragma once
 
 namespace lacuna {

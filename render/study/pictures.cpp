@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// By how much pictures, and crops of them, have to be shrunk to stay within the page's shares.
+/// Factors by which pictures and crops must be shrunk to stay within their limits of bytes.
 struct Shrinking {
     int pictures = 1, crops = 1;
 };

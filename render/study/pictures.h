@@ -1,4 +1,4 @@
-// The pictures of a page: radiance that a browser can expose anew, small enough to be embedded.
+// The pictures of a page: radiance, which a browser can expose anew, small enough to be embedded.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,14 +7,13 @@
 
 namespace lacuna {
 
-/// Per scene {"width", "height", "shrink", "stops", "pictures", "crops", "techniques"}.
+/// For each scene {"width", "height", "shrink", "stops", "pictures", "crops", "techniques"}.
 /// `pictures`: the reference and every method's picture of the first seed, each {"name", "method"
-/// (index, -1: the reference), "seed", "pixels"}. `pixels`: see pixelsText, of means over
-/// shrink x shrink pixels, so that all of a page are below kPictureBytes.
-/// `crops`: per crop {"name", "rect": [x, y, width, height]} (before shrinking) and the same
-/// members as the scene; their pictures have "errors" by measure too, of all their pixels, null
-/// where that is not finite. `techniques`: see techniquesJson. Throws InputError for an image that
-/// cannot be read.
+/// (index, -1: the reference), "seed", "pixels"}. `pixels`: pixelsText of means over shrink x
+/// shrink pixels, such that all pictures of a page take less than kPictureBytes. `crops`: for each
+/// crop {"name", "rect": [x, y, width, height]} (before shrinking) and the same members as for the
+/// scene. A crop's pictures also have "errors" by measure over all their pixels; null if not
+/// finite. `techniques`: see techniquesJson. Throws InputError for an image that cannot be read.
 nlohmann::json picturesJson(const Results& results);
 
 inline constexpr double kPictureBytes = 12e6;

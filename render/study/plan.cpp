@@ -45,7 +45,7 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
     list.insert(list.end(), more.begin(), more.end());
 }
 
-/// All but the id; `effort` limits it.
+/// A run without its id. `effort`: options that limit the run.
 PlannedRun planRun(const Study& study, std::size_t scene, std::size_t method, std::uint64_t seed,
                    const std::vector<std::string>& effort) {
     const StudyMethod& m = study.methods[method];

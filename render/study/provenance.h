@@ -1,4 +1,4 @@
-// How a study's results were made: day, commit, machine, command, settings, time.
+// The provenance of a study's results: date, commit, machine, command, settings, time.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-/// As Markdown, today's date in it. `command` made the study.
+/// The provenance as Markdown, with today's date. `command`: the command that made the study.
 std::string provenance(const Results& results, const std::string& command);
 
-/// The commit that this program was built from, "+changes" where its sources differed from it;
+/// The commit from which this program was built, with "+changes" if the sources differed from it;
 /// "unknown" outside a repository.
 std::string sourceCommit();
 

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kFirstSeed = 1'000'000;
-/// Of the parts' headers, what is true of their average as well.
+/// Attributes of the parts' headers that also apply to their average.
 constexpr const char* kShared[] = {"software",  "softwareVersion", "method", "parameters",
                                    "sceneHash", "maxDepth",        "crop",   "fullSize"};
 
@@ -25,7 +25,7 @@ std::string sizeText(int width, int height) {
     return std::to_string(width) + " x " + std::to_string(height);
 }
 
-/// The attribute as text, "" where there is none.
+/// The attribute as text; "" if there is none.
 std::string attributeText(const LayeredImage& image, const std::string& name) {
     const auto found = image.attributes.find(name);
     if (found == image.attributes.end()) return "";
@@ -34,7 +34,7 @@ std::string attributeText(const LayeredImage& image, const std::string& name) {
     return std::to_string(std::get<double>(found->second));
 }
 
-/// Expected measures of a picture whose pixels scatter normally about R with this variance:
+/// Expected errors of a picture whose pixels are normally distributed around R with this variance:
 /// E |x| = sqrt(2 / pi) sigma.
 ErrorMeasures expectedError(const Image& mean, const Image& variance) {
     double sum = 0.0;
@@ -59,7 +59,7 @@ ErrorMeasures expectedError(const Image& mean, const Image& variance) {
     return e;
 }
 
-/// Sums over the parts, in double, until they are divided.
+/// Accumulates the average of the parts in double.
 class Average {
   public:
     void add(const LayeredImage& part, double iterations) {
@@ -118,13 +118,14 @@ std::string renderReference(const StudyScene& scene, const SceneFacts& facts, in
         arguments.insert(arguments.end(), {"--set", assignment});
     }
     arguments.insert(arguments.end(), scene.options.begin(), scene.options.end());
-    // Any version's picture converges to the same: no reason to begin anew with each build.
+    // The renderer's version is not part of the id: pictures of all versions converge to the same,
+    // so that a new build need not begin anew.
     const std::string folder =
         directory + "/" + recipe.method + "-" + runId(arguments, {facts.hash});
     if (threads > 0) {
         arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
     }
-    // All parts share what their method prepares: nothing is timed here.
+    // All parts share their method's caches, because nothing is timed here.
     const MethodRow& row = findMethod(recipe.method);
     if (!needsOf(row, resolve(row, recipe.assignments)).empty()) {
         arguments.insert(arguments.end(), {"--prepare", "--cache", folder + "/cache"});

@@ -1,5 +1,5 @@
-// What the pictures are compared with: an image that is there, or one that the study renders and
-// continues; and how far it is from converged itself.
+// The reference of the comparisons: an existing image, or one that the study renders and continues;
+// and its own remaining error.
 #pragma once
 
 #include <atomic>
@@ -12,36 +12,36 @@
 
 namespace lacuna {
 
-/// Inside one of the scene's crops.
+/// The reference inside one of the scene's crops.
 struct CropReference {
     ErrorReference picture;
-    std::optional<ErrorMeasures> ownError;  ///< as that of the whole reference
+    std::optional<ErrorMeasures> ownError;  ///< like Reference::ownError
 };
 
 struct Reference {
     std::string path;
-    std::string hash;  ///< of the file
-    /// What another rendering as converged as this one would be off by on average, from the
-    /// variance in the file; none where it holds no variance.
+    std::string hash;  ///< hash of the file
+    /// Expected errors of the reference, from the variance in the file; none if it has no variance.
     std::optional<ErrorMeasures> ownError;
-    std::string origin;                ///< one line for people
+    std::string origin;                ///< a description in one line
     std::vector<CropReference> crops;  ///< by crop of the scene
 };
 
-/// The pixels of `rect`, which lies within the image.
+/// The pixels of `rect`, which must lie within the image.
 Image cropped(const Image& image, const PixelRect& rect);
-/// What the image, of the whole picture or of the crop that is rendered, has of the latter.
+/// The rendered crop's part of an image, which shows either the whole picture or that crop.
 Image renderedPart(const Image& image, const SceneFacts& facts);
 
 /// Renders the parts that are missing below `directory` and averages all, weighted by their
-/// iterations. Parts have seeds from a million on, which no run of a study has. Returns the image's
-/// path. Throws Error with the renderer's exit code; Error 130 if interrupted.
+/// iterations. The seeds of parts start at a million, beyond those of a study's runs. Returns the
+/// image's path. Throws Error with the renderer's exit code, InterruptedError if interrupted.
 std::string renderReference(const StudyScene& scene, const SceneFacts& facts, int threads,
                             const std::string& directory, const std::string& renderer,
                             const std::atomic<bool>& cancel, Progress& progress);
 
-/// Reads and checks: size, finite values; where the header says so also scene and depth. `crops`
-/// lie within what is rendered. Throws InputError that names the file.
+/// Reads a reference and checks its size and that values are finite; if the header has them, also
+/// scene and depth. `crops` must lie within the rendered part. Throws InputError, which names the
+/// file.
 Reference openReference(const std::string& path, const SceneFacts& facts,
                         const std::vector<StudyCrop>& crops);
 

@@ -1,4 +1,4 @@
-// The files that a study leaves for people: raw CSV, tables, the page.
+// The files of a study's report: raw CSV, tables, the page.
 #pragma once
 
 #include <string>
@@ -8,14 +8,15 @@
 
 namespace lacuna {
 
-/// Where a report goes besides the study's folder; empty: nowhere.
+/// Additional copies of a report outside the study's folder; empty: none.
 struct ReportCopies {
-    std::string summary;  ///< file of the tables and how they were made, as in tables.md
-    std::string json;     ///< file of what the page shows
+    std::string summary;  ///< file with the content of tables.md
+    std::string json;     ///< file with the page's data
 };
 
-/// Writes them into `directory`, each atomically; returns their paths. `command` made the study.
-/// Throws RunError, InputError for a run's image that cannot be read.
+/// Writes the report's files to `directory`, each atomically, and returns their paths. `command`:
+/// the command that made the study. Throws RunError, and InputError for a run's image that cannot
+/// be read.
 std::vector<std::string> writeReport(const Results& results, const std::string& directory,
                                      const std::string& command, const std::string& chartLibrary,
                                      const ReportCopies& copies);

@@ -1,4 +1,4 @@
-// What the runs of a study logged, by scene, method and seed.
+// The results of a study's runs, by scene, method and seed.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -35,11 +35,11 @@ struct Results {
     std::vector<SceneFacts> facts;            ///< by scene
     std::vector<Reference> references;        ///< by scene
     std::vector<RunResult> runs;              ///< in the order of the plan
-    std::vector<TechniqueResult> techniques;  ///< likewise; empty where the study asks for none
+    std::vector<TechniqueResult> techniques;  ///< likewise; empty if not requested
 
     /// The runs of one scene and method, in the order of study.seeds.
     std::vector<const RunResult*> of(std::size_t scene, std::size_t method) const;
-    /// Of all runs of a scene.
+    /// The curves of all runs of a scene.
     std::vector<const Curve*> curvesOf(std::size_t scene) const;
 };
 
@@ -48,9 +48,9 @@ std::vector<std::optional<double>> errorsAt(std::span<const RunResult* const> ru
                                             double x, Axis axis);
 /// One row per run and checkpoint: scene, name, method, seed, run, then the curve's columns.
 std::string rawCsv(const Results& results);
-/// One row per run: what it was, and totals.
+/// One row per run: its description and totals.
 std::string runsCsv(const Results& results);
-/// Quoted where CSV needs it.
+/// The text as a CSV field, quoted if necessary.
 std::string csvField(const std::string& text);
 
 }  // namespace lacuna

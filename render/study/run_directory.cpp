@@ -42,7 +42,7 @@ void RunDirectory::render(const std::string& renderer, const std::string& scene,
                           const std::vector<std::string>& arguments,
                           const std::atomic<bool>& cancel) const {
     std::error_code error;
-    fs::remove(json(), error);  // until it is there again, nothing is complete
+    fs::remove(json(), error);  // the run is incomplete until it exists again
     fs::create_directories(path_, error);
     if (error) {
         throw RunError(path_ + ": expected to make this folder, found " + error.message());

@@ -1,4 +1,4 @@
-// One render of a study on disk: its image, curve, JSON and messages, in a folder of its own.
+// The folder of one render of a study: its image, curve, JSON and messages.
 #pragma once
 
 #include <atomic>
@@ -16,17 +16,18 @@ class RunDirectory {
     std::string curve() const { return path_ + "/curve.csv"; }
     std::string json() const { return path_ + "/run.json"; }
     std::string log() const { return path_ + "/render.log"; }
-    /// Where an interrupted render goes on; gone once it is complete.
+    /// From this file an interrupted render continues; it is deleted on completion.
     std::string checkpoint() const { return path_ + "/checkpoint"; }
-    /// Scratch of one render: caches are built anew for each, so that every setup is measured.
+    /// Temporary caches of one render: each builds its own, so that every setup is measured.
     std::string cache() const { return path_ + "/cache"; }
 
-    /// The render came to its end: the JSON is written last, and says so.
+    /// Whether the render was completed: the JSON is written last and tells so.
     bool complete() const;
     nlohmann::json report() const;
 
-    /// Runs `renderer` into this folder. Throws Error with its exit code and the last line it said;
-    /// Error 130 if interrupted, the folder then counts as incomplete.
+    /// Runs `renderer` with its output in this folder. Throws Error with its exit code and its last
+    /// line of output. Throws InterruptedError if interrupted; the folder then counts as
+    /// incomplete.
     void render(const std::string& renderer, const std::string& scene,
                 const std::vector<std::string>& arguments, const std::atomic<bool>& cancel) const;
 

@@ -1,4 +1,4 @@
-// Medians with ranges over seeds, where some runs may not have reached what is asked for.
+// Medians and ranges over seeds, some of which may have no value because a bound was not reached.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,8 @@
 
 namespace lacuna {
 
-/// Of n values, those that are none count as beyond all others: a median among them is none.
+/// Median and range of n values. Missing values count as larger than all others; a median may be
+/// missing.
 struct Spread {
     std::optional<double> median, low, high;
     std::size_t reached = 0, of = 0;
@@ -16,7 +17,7 @@ struct Spread {
 
 Spread spread(std::span<const std::optional<double>> values);
 
-/// a[i] / b[i], none where either is: ratios are paired within a seed, then their median is taken.
+/// a[i] / b[i]; missing if either is. Ratios are paired within a seed before their median is taken.
 std::vector<std::optional<double>> ratios(std::span<const std::optional<double>> a,
                                           std::span<const std::optional<double>> b);
 

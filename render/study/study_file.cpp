@@ -19,13 +19,14 @@ using nlohmann::json;
 
 const std::vector<std::string> kMeasures = {"mae", "rmse", "mape", "relmse"};
 
-/// Options that a study may set; the others (outputs, seeds, limits) are its own business.
+/// Options that a study's file may set; the study itself sets the others (outputs, seeds, limits).
 const std::set<std::string> kOptions = {"width",  "height",     "crop",      "camera",
                                         "env",    "env-rotate", "env-scale", "aperture",
                                         "focus",  "max-depth",  "rr-depth",  "block-iterations",
                                         "effect", "tolerance",  "sampler",   "units"};
 
-/// Beside the study's file, unless absolute or in the folder of scenes that others made.
+/// Resolves a path relative to the study's file, unless it is absolute or in the shared folder of
+/// scenes.
 std::string resolvePath(const std::string& studyFile, const std::string& path) {
     constexpr std::string_view kSharedFolder = "$LACUNA_SHARED_SCENES/";
     if (path.starts_with(kSharedFolder)) {
@@ -65,7 +66,7 @@ std::vector<std::string> readOptions(JsonObject object, const std::string& study
     return arguments;
 }
 
-/// `options`, and those of `defaults` that they do not name.
+/// `options`, and those of `defaults` that they do not override.
 std::vector<std::string> withDefaults(std::vector<std::string> options,
                                       const std::vector<std::string>& defaults) {
     const std::size_t own = options.size();
@@ -167,8 +168,8 @@ StudyScene readScene(JsonObject& object, const Study& study) {
     return scene;
 }
 
-/// One entry, or with `vary` {"KEY": [values]} one per value. KEY is a parameter, or an option with
-/// its dashes.
+/// Reads a method: one entry, or with `vary` {"KEY": [values]} one entry per value. KEY is a
+/// parameter, or an option with its dashes.
 std::vector<StudyMethod> readMethod(JsonObject& object, const Study& study) {
     StudyMethod base;
     base.method = object.text("method");
@@ -233,7 +234,7 @@ void readSeeds(JsonObject& object, Study& study) {
     }
 }
 
-/// Whatever lacuna-render would refuse before it loads the scene.
+/// Reports errors that lacuna-render would report before it loads the scene.
 void requireRenderable(const Study& study, const StudyScene& scene, const StudyMethod& method) {
     std::vector<std::string> arguments{scene.file, "-o", "x.exr", "--method", method.method};
     const std::vector<std::string> ofScene = mergedOptions(scene, method);

@@ -1,4 +1,4 @@
-// What a study asks for: the .json file, checked as far as it can be without the scenes.
+// The .json file of a study, checked as far as possible without the scenes.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace lacuna {
 
-/// A reference that the study renders itself: `parts` renders of different seeds, averaged. More
-/// parts continue an older reference.
+/// A reference that the study renders itself: the average of `parts` renders with different seeds.
+/// To increase `parts` continues an older reference.
 struct ReferenceRecipe {
-    std::string method;                    ///< without bias
+    std::string method;                    ///< an unbiased method
     std::vector<std::string> assignments;  ///< --set
-    std::int64_t iterations = 0;           ///< of each part
+    std::int64_t iterations = 0;           ///< per part
     std::int64_t parts = 0;
 };
 
 /// A part of a scene's picture that the page shows enlarged.
 struct StudyCrop {
     std::string name;
-    PixelRect rect;  ///< of what is rendered: (0, 0) is its upper left pixel
+    PixelRect rect;  ///< relative to the rendered part's upper left pixel
 };
 
-/// Renders beside the measured ones, with a layer per technique: writing layers costs time, so that
-/// no measured run does.
+/// Additional renders with a layer per technique. Measured runs do not write such layers, which
+/// cost time.
 struct TechniqueRequest {
     std::int64_t iterations = 0;
     int edges = 0;  ///< longest paths whose layers the page shows
@@ -35,10 +35,10 @@ struct TechniqueRequest {
 
 struct StudyScene {
     std::string name;
-    std::string file;                  ///< path that can be opened
-    std::vector<std::string> options;  ///< of lacuna-render: "--width", "192", ...
-    /// Path of the reference; where the recipe is there too, it makes this file when it is missing.
-    /// Empty: by recipe, kept among what the study writes.
+    std::string file;                  ///< path of the scene
+    std::vector<std::string> options;  ///< of lacuna-render: "--width", "192", ..
+    /// Path of the reference. If there is a recipe too, it makes the file when it is missing.
+    /// Empty: made by recipe and kept in the study's folder.
     std::string reference;
     std::optional<ReferenceRecipe> recipe;
     std::map<std::string, std::vector<double>> bounds;  ///< by measure
@@ -47,41 +47,41 @@ struct StudyScene {
 
 /// One setting of one method: a curve of each plot, a row of each table.
 struct StudyMethod {
-    std::string name;                      ///< what plots and tables call it
+    std::string name;                      ///< name in plots and tables
     std::string method;                    ///< row of the registry
     std::vector<std::string> assignments;  ///< --set
     std::vector<std::string> options;
     std::string knob;       ///< the key that `vary` varies; empty: none
-    std::string knobGroup;  ///< name before the knob's value was added
+    std::string knobGroup;  ///< name without the knob's value
     std::string knobValue;
 };
 
 struct Study {
     std::string file;
     std::string title;
-    std::vector<std::string> about;  ///< which setting stands for which curve; one paragraph each
+    std::vector<std::string> about;  ///< text about the settings, by paragraph
     std::vector<std::uint64_t> seeds;
     std::vector<std::string> effort;  ///< "--time", "6s", "--iterations", "64"
     int threads = 0;                  ///< 0: all
-    std::string baseline;             ///< name of a method: what speedups are against
+    std::string baseline;             ///< name of the method that speedups refer to
     std::vector<std::string> measures;
-    std::vector<double> times;       ///< seconds; empty: the longest that all runs have
-    std::vector<double> iterations;  ///< empty: the most that all runs have
+    std::vector<double> times;       ///< seconds; empty: the longest common to all runs
+    std::vector<double> iterations;  ///< empty: the most common to all runs
     std::optional<TechniqueRequest> techniques;
     std::vector<StudyScene> scenes;
     std::vector<StudyMethod> methods;
 };
 
-/// Reads and checks. `quick`: the file's member "quick" is merged into it first (RFC 7386). Throws
-/// InputError naming file and key; UsageError for methods, parameters and options that
-/// lacuna-render would refuse.
+/// Reads and checks a study. `quick`: first merges the file's member "quick" into it (RFC 7386).
+/// Throws InputError naming file and key, and UsageError for methods, parameters and options that
+/// lacuna-render would reject.
 Study readStudy(const std::string& path, bool quick);
 
-/// The scene's options (the study's among them, where it has none of its own) and the method's; of
-/// one that both name, the method's counts.
+/// The options of the scene (with the study's as defaults) and of the method. If both name an
+/// option, the method's counts.
 std::vector<std::string> mergedOptions(const StudyScene& scene, const StudyMethod& method);
 
-/// What lacuna-render would make of these arguments (without its own name). Throws UsageError.
+/// Parses arguments of lacuna-render (without the program's name). Throws UsageError.
 RenderOptions parseRenderArguments(const std::vector<std::string>& arguments);
 
 }  // namespace lacuna

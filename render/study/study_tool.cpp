@@ -1,5 +1,5 @@
-// lacuna-study: what accuracy costs in time. Runs lacuna-render for every scene, method, setting
-// and seed, and makes tables and a page of what it logs.
+// lacuna-study: measures the time that accuracy costs. Runs lacuna-render for every scene, method,
+// setting and seed, and makes tables and a page from the logs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -70,7 +70,7 @@ int studyTool(int argc, char** argv) {
     if (options.common.threads > 0) study.threads = options.common.threads;
     const std::string renderer = rendererBesideUs();
     const std::string chartLibrary =
-        readChartLibrary();  // missing: better known now than at the end
+        readChartLibrary();  // read now: if it is missing, the error comes early
     const InterruptGuard interrupt;
     TerminalProgress progress(options.common.quiet, interrupt.requested(),
                               "interrupted: ending the running render (again: exit at once)");

@@ -16,14 +16,14 @@ double valueOf(const ErrorMeasures& e, Measure measure) {
     return values[std::size_t(measure)];
 }
 
-/// "" or why a reference with this error of its own cannot judge an error of this size.
+/// Why a reference with this error of its own cannot judge an error of this size; "" if it can.
 std::string referenceFlag(const std::optional<ErrorMeasures>& own, Measure measure, double error) {
     if (!own) return "its error is not known";
     const double value = valueOf(*own, measure);
     return value * referenceMargin(measure) <= error ? "" : "too noisy: " + shortNumber(value);
 }
 
-/// Visits every scene and measure.
+/// Calls `visit` for every scene and measure.
 template <class Visit>
 void forEachMeasure(const Results& results, const Visit& visit) {
     for (std::size_t s = 0; s < results.study.scenes.size(); ++s) {
@@ -83,7 +83,7 @@ Table timeTable(const Results& results) {
     return table;
 }
 
-/// How far the references are from converged themselves.
+/// The references' own errors.
 Table referenceTable(const Results& results) {
     Table table;
     table.id = "references";
@@ -141,7 +141,7 @@ Table errorTable(const Results& results, Axis axis) {
     return table;
 }
 
-/// Of the pictures that the page shows: those at the end of the runs.
+/// Errors inside the crops of the pictures that the page shows: those at the end of the runs.
 Table cropTable(const Results& results) {
     const Study& study = results.study;
     Table table;
@@ -180,7 +180,7 @@ Table cropTable(const Results& results) {
     return table;
 }
 
-/// Of a parameter that was varied, the cheapest value for each bound.
+/// For each varied parameter, the cheapest value that reaches each bound.
 Table knobTable(const Results& results) {
     const Study& study = results.study;
     Table table;

@@ -1,5 +1,4 @@
-// What a study says in numbers: time to an error, error at equal time and at equal iterations,
-// knobs.
+// The tables of a study: time to an error, error at equal time and at equal iterations, knobs.
 #pragma once
 
 #include <string>
@@ -11,8 +10,8 @@
 
 namespace lacuna {
 
-/// Columns that hold spreads become five in CSV: median, low, high, and how many of how many seeds
-/// reached it.
+/// A column of spreads becomes five columns in CSV: median, low, high, the number of seeds that
+/// reached it, and the number of seeds.
 struct Table {
     using Cell = std::variant<std::string, Spread>;
 
@@ -23,15 +22,15 @@ struct Table {
     std::vector<std::string> notes;
 };
 
-/// By how much a reference's own error has to be below an error that it judges: ten times; relmse
-/// is a square, there it is a hundred times.
+/// Factor by which a reference's own error must be below an error that it judges: ten; a hundred
+/// for relmse, which is a square.
 double referenceMargin(Measure measure);
 
 /// All tables of the study that have rows.
 std::vector<Table> makeTables(const Results& results);
 
 std::string cellText(const Table::Cell& cell);
-/// The whole page; `provenance` says how the results were made (provenance.h).
+/// All tables as Markdown; `provenance`: text of provenance.h.
 std::string markdown(const Study& study, const std::string& provenance,
                      const std::vector<Table>& tables);
 std::string csv(const Table& table);

@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Of paths of 1 to `edges` edges; a path of k edges has k + 1: t from 1 to k + 1, s = k + 1 - t.
+/// Number of techniques for paths of 1 to `edges` edges. A path of k edges has k + 1 techniques: t
+/// from 1 to k + 1, s = k + 1 - t.
 double techniqueCount(int edges) {
     return edges * (edges + 3.0) / 2.0;
 }
@@ -27,7 +28,7 @@ int shrinkOf(const Results& results) {
     return shrinkFactor(2.0 * pixels, kTechniqueBytes);
 }
 
-/// The root of a channel of variances.
+/// The standard deviation, from a channel of variances.
 Image deviation(const LayeredImage& image, const std::string& channel) {
     const std::vector<float>& variances = *image.find(channel);
     Image root(image.width(), image.height());
