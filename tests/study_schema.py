@@ -85,6 +85,8 @@ class Studies(unittest.TestCase):
             lambda s: s.update(bounds={"mape": [0]}),
             lambda s: s["scenes"][0].pop("reference"),
             lambda s: s["scenes"][0]["options"].update(iterations=3),
+            lambda s: s["scenes"][0]["options"].update(effect=[]),
+            lambda s: s["scenes"][0]["options"].update(width=[128, 72]),
             lambda s: s["scenes"][0].update(reference={"method": "pt", "iterations": 2, "parts": 0}),
             lambda s: s["scenes"][0]["crops"][0].update(width=0),
             lambda s: s["methods"][0].update(vary={"a": [1], "b": [2]}),

@@ -25,6 +25,9 @@ const std::set<std::string> kOptions = {"width",  "height",     "crop",      "ca
                                         "focus",  "max-depth",  "rr-depth",  "block-iterations",
                                         "effect", "tolerance",  "sampler",   "units"};
 
+/// Options that a command line may have several times. A study may give them an array of texts.
+const std::set<std::string> kRepeated = {"effect"};
+
 /// Resolves a path relative to the study's file, unless it is absolute or in the shared folder of
 /// scenes.
 std::string resolvePath(const std::string& studyFile, const std::string& path) {
@@ -54,14 +57,19 @@ void requireScalar(const JsonObject& object, const std::string& key, const json&
 
 std::vector<std::string> readOptions(JsonObject object, const std::string& studyFile) {
     std::vector<std::string> arguments;
+    const auto add = [&](const std::string& key, const std::string& text) {
+        arguments.insert(arguments.end(), {"--" + key, text});
+    };
     for (const auto& [key, value] : object.members().items()) {
         if (!kOptions.contains(key)) {
             object.fail(key, "one of the options " + joined(kOptions, ", "));
         }
+        if (value.is_array() && kRepeated.contains(key)) {
+            for (const std::string& text : object.texts(key)) add(key, text);
+            continue;
+        }
         requireScalar(object, key, value);
-        arguments.push_back("--" + key);
-        arguments.push_back(key == "env" ? resolvePath(studyFile, valueText(value))
-                                         : valueText(value));
+        add(key, key == "env" ? resolvePath(studyFile, valueText(value)) : valueText(value));
     }
     return arguments;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "libcore/image/exr.h"
@@ -19,15 +20,19 @@ constexpr int kIterations = 128;
 
 class ShippedReferences : public RenderTool {};
 
-/// Scenes of ours whose reference is a file, by that file.
+/// Scenes of ours whose reference is a file, by that file, with the options of the first study (by
+/// name) that has it: others only differ in how they render the same.
 std::map<std::string, StudyScene> shippedReferences() {
     setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
-    std::map<std::string, StudyScene> found;
+    std::set<std::string> studies;
     for (const auto& entry : std::filesystem::directory_iterator(LACUNA_STUDIES)) {
-        if (entry.path().extension() != ".json") continue;
+        if (entry.path().extension() == ".json") studies.insert(entry.path());
+    }
+    std::map<std::string, StudyScene> found;
+    for (const std::string& study : studies) {
         for (const bool quick : {false, true}) {
-            for (const StudyScene& scene : readStudy(entry.path(), quick).scenes) {
-                if (!scene.reference.empty()) found[scene.reference] = scene;
+            for (const StudyScene& scene : readStudy(study, quick).scenes) {
+                if (!scene.reference.empty()) found.emplace(scene.reference, scene);
             }
         }
     }

@@ -1,10 +1,11 @@
 // Every file of tests/studies/ can be read as it is and with --quick; quick ones use our scenes
-// only and are done within two minutes.
+// only and are done within two minutes. Those of papers' figures have nothing that papers lack.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <set>
 
 #include "render/options.h"
 #include "render/study/plan.h"
@@ -87,12 +88,44 @@ TEST_P(ShippedStudies, CropsLieInsideThePictures) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, ShippedStudies, ::testing::ValuesIn(shipped()),
-                         [](const auto& instance) {
-                             std::string name = instance.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+/// Studies of papers' figures are named after the paper's row.
+std::vector<std::string> ofPapers() {
+    const std::set<std::string> rows = {"risbpt", "tsrbpt", "skelbpt", "spcbpt"};
+    std::vector<std::string> files = shipped();
+    std::erase_if(files, [&](const std::string& file) {
+        return !rows.contains(file.substr(0, file.find('-')));
+    });
+    return files;
+}
+
+class PaperStudies : public ShippedStudies {};
+
+TEST_P(PaperStudies, HaveNoTechniquesThatPapersLack) {
+    setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
+    for (const bool quick : {false, true}) {
+        const Study study = readStudy(path(), quick);
+        for (const StudyScene& scene : study.scenes) {
+            for (const StudyMethod& method : study.methods) {
+                SCOPED_TRACE(scene.name + ", " + method.name);
+                const std::vector<std::string> options = mergedOptions(scene, method);
+                for (const char* effect : {"refractions=off", "chains=off"}) {
+                    EXPECT_EQ(std::count(options.begin(), options.end(), effect), 1) << effect;
+                }
+                if (method.method != "bpt") continue;
+                EXPECT_EQ(method.assignments, std::vector<std::string>{"lamps=power"});
+            }
+        }
+    }
+}
+
+std::string identifier(const ::testing::TestParamInfo<std::string>& instance) {
+    std::string name = instance.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, ShippedStudies, ::testing::ValuesIn(shipped()), identifier);
+INSTANTIATE_TEST_SUITE_P(Files, PaperStudies, ::testing::ValuesIn(ofPapers()), identifier);
 
 }  // namespace
 }  // namespace lacuna

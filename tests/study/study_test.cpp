@@ -184,6 +184,26 @@ TEST_F(StudyRun, OptionsOfTheStudyAreDefaults) {
     expectFailure("@study.json -o @out --quiet", 3, ".exr or .hdr");
 }
 
+TEST_F(StudyRun, AnOptionThatMayBeRepeatedIsAnArray) {
+    writeStudy(R"({"options": {"effect": ["refractions=off", "chains=off"]}, "seeds": [1],
+        "methods": [{"method": "pt"},
+                    {"method": "pt", "name": "own", "options": {"effect": "hits=off"}}]})");
+    const Outcome made = study();
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    const std::string runs = read("out/runs.csv");
+    const std::size_t own = runs.find("\nroom,own,");
+    ASSERT_NE(own, std::string::npos) << runs;
+    const std::string ofStudy = runs.substr(0, own), ofMethod = runs.substr(own);
+    EXPECT_NE(ofStudy.find("--effect refractions=off --effect chains=off"), std::string::npos)
+        << ofStudy;
+    EXPECT_NE(ofMethod.find("--effect hits=off"), std::string::npos) << ofMethod;
+    EXPECT_EQ(ofMethod.find("--effect"), ofMethod.rfind("--effect")) << ofMethod;
+    writeStudy(R"({"options": {"effect": []}})");
+    expectFailure("@study.json -o @out --quiet", 3, "effect: expected an array of texts");
+    writeStudy(R"({"options": {"width": [20]}})");
+    expectFailure("@study.json -o @out --quiet", 3, "width: expected a number");
+}
+
 TEST_F(StudyRun, ATimeMayBeANumberOfSeconds) {
     for (const char* time : {"0.01", "\"0.01\"", "\"0.01s\""}) {
         writeStudy(std::string(R"({"iterations": null, "equal_iterations": null, "seeds": [1],
