@@ -53,7 +53,7 @@ left=$(comm -13 "$work/before" "$work/after" | grep -i lacuna || true)
 {
     echo "# The Debian packages, $(date +%F)"
     echo
-    echo "By \`bash tests/package.sh\`, on $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores."
+    echo "By \`bash tests/package.sh\`, commit $(git describe --always --dirty --exclude='*'), on $(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1), $(nproc) cores."
     echo
     echo "| | |"
     echo "|---|---|"

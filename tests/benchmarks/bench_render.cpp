@@ -5,7 +5,7 @@
 //                         very rays of that iteration, replayed in their order by as many threads,
 //                         measured right after it in the same run, because machines drift
 //   effects/SCENE/METHOD  `all_over_needed`: time of an iteration with every effect forced on that
-//                         leaves the picture as it is (--set effects.NAME=on), over the time with
+//                         leaves the picture as it is (--effect NAME=on), over the time with
 //                         those alone that the scene calls for; both in turn
 //   tolerance/SCENE/METHOD  `all_over_within`: time of an iteration with a clearcoat of weight 1e-4
 //                         on every material, over the time with it left out by --tolerance 0.001

@@ -17,9 +17,15 @@ import subprocess
 import sys
 import tempfile
 from array import array
+from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests"))
+
+import pages  # noqa: E402
+
+PHASES = ("parse", "decode", "meshes", "build")
 
 
 def write_glb(path: Path, root: dict, parts: list[array]) -> None:
@@ -85,20 +91,25 @@ SCENES = {
 }
 
 
-def main() -> int:
-    tool = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build/render/lacuna-render"
-    print("| scene | file | parse | decode | meshes | build | peak memory |\n|---|---|---|---|---|---|---|")
+def table(tool: Path, names: Iterable[str] = SCENES) -> list[list[str]]:
+    """What lacuna-render measured of each scene, below a head."""
+    rows = [["scene", "file", *PHASES, "peak memory"]]
     with tempfile.TemporaryDirectory() as folder:
         glb, report = Path(folder) / "scene.glb", Path(folder) / "report.json"
-        for name, make in SCENES.items():
-            write_glb(glb, *make())
+        for name in names:
+            write_glb(glb, *SCENES[name]())
             subprocess.run([tool, glb, "-o", Path(folder) / "picture.pfm", "--method", "pt", "--width", "64", "--height", "36",
                             "--iterations", "1", "--quiet", "--json", report], check=True, stdout=subprocess.DEVNULL)
             result = json.loads(report.read_text())
-            times = " | ".join(f"{result['phases'][phase]:.2f} s" for phase in ("parse", "decode", "meshes", "build"))
-            print(f"| {name} | {glb.stat().st_size / 1e6:.0f} MB | {times} | {result['peak_bytes'] / 1e6:.0f} MB |", flush=True)
-    return 0
+            rows.append([name, f"{glb.stat().st_size / 1e6:.0f} MB", *(f"{result['phases'][phase]:.2f} s" for phase in PHASES),
+                         f"{result['peak_bytes'] / 1e6:.0f} MB"])
+    return rows
+
+
+def main() -> None:
+    tool = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build/render/lacuna-render"
+    print("\n".join(pages.table(table(tool))))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -9,7 +9,6 @@ Cycles' only its render. OUT gets all pictures (.exr), and SHEET.png: each scene
 
 import datetime
 import os
-import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -19,7 +18,9 @@ import numpy
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "render" / "blender")]
+sys.path.append(str(Path(__file__).parents[1]))
 import lacuna_blender  # noqa: E402
+import pages  # noqa: E402
 import scenes  # noqa: E402
 from lacuna_blender import export, exr, textures  # noqa: E402
 from lacuna_blender.notes import Notes  # noqa: E402
@@ -115,9 +116,8 @@ def save_sheet(path, found):
 
 def write_page(path, found):
     day = datetime.date.today().isoformat()
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=Path(__file__).parent)
     lines = ["# Lacuna and Cycles after the same seconds", "",
-             f"{day}, commit {commit.stdout.strip()}, {platform.machine()}, {os.cpu_count()} threads, Blender {bpy.app.version_string}. "
+             f"{day}, commit {pages.commit()}, {pages.machine()}, Blender {bpy.app.version_string}. "
              "Made by `tests/blender/race.py`.", "",
              f"{WIDTH} x {HEIGHT} pixels, paths of up to {EDGES} edges, scenes of `tests/blender/scenes.py`: lamps, suns and skies in "
              "plain sight, where a path tracer is at home. Lacuna is told the time and nothing else (`auto`); its seconds count "

@@ -19,6 +19,8 @@ import numpy
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "render" / "blender")]
+sys.path.append(str(Path(__file__).parents[1]))
+import pages  # noqa: E402
 import scenes  # noqa: E402
 from lacuna_blender import exr, textures  # noqa: E402
 
@@ -121,7 +123,9 @@ def main():
 
 def write_page(path, rows):
     day = datetime.date.today().isoformat()
-    lines = ["# The add-on against Cycles", "", f"{day}, Blender {bpy.app.version_string}. Made by `tests/blender/render_scenes.py --page`.", "",
+    lines = ["# The add-on against Cycles", "",
+             f"{day}, commit {pages.commit()}, {pages.machine()}, Blender {bpy.app.version_string}. "
+             "Made by `tests/blender/render_scenes.py --page`.", "",
              f"Each scene is rendered by the add-on (`auto`, {SAMPLES} samples, depth {EDGES}) and by Cycles (256 samples, as many edges), "
              "96 x 72 pixels. The ratio is that of the means, Lacuna's over Cycles'; the picture is cut into "
              f"{COLUMNS} x {ROWS} regions, whose mean of the three channels may differ by what is allowed.", "",

@@ -13,19 +13,18 @@ import datetime
 import json
 import math
 import pathlib
-import platform
 import statistics
 import subprocess
 import sys
 
 import numpy
 
-import pages
 import pictures
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scenes"))
+sys.path[:0] = [str(ROOT / "scenes"), str(ROOT / "tests")]
 
+import pages  # noqa: E402
 from generator import materials as m  # noqa: E402
 from generator.glb import SceneFile  # noqa: E402
 from generator.mesh import box, sphere  # noqa: E402
@@ -113,7 +112,7 @@ def main():
             print(lines[-1], flush=True)
     pathlib.Path(page).write_text("\n".join([
         "# A point light behind glass, seen through glass", "",
-        f"By `python3 tests/calibration/glass_limit.py`, {datetime.date.today()}, commit {pages.commit()}, on {platform.machine()}: {ITERATIONS} iterations,",
+        f"By `python3 tests/calibration/glass_limit.py`, {datetime.date.today()}, commit {pages.commit()}, on {pages.machine()}: {ITERATIONS} iterations,",
         f"160 x 90 pixels, {len(SEEDS)} seeds. The lamp is a point, or a ball of the same power with a radius of so much of the room. Mean: of all",
         "pixels, with its standard error. Noise: the variance of a pixel over the squared mean, times the seconds; then over that of",
         "the first line, and the same without the hundredth of the pixels that has the most. No figure of a paper.", "",

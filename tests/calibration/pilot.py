@@ -12,16 +12,18 @@ wanted. Scenes that are not named: some of scenes/, and those of $LACUNA_SHARED_
 import datetime
 import itertools
 import pathlib
-import platform
 import statistics
 import subprocess
 import sys
 
 import numpy
 
-import pages
 import pictures
 import scenes
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+
+import pages  # noqa: E402
 
 OURS = ("classroom-windows", "court", "door", "drapery-hall", "glossy-room", "kitchen-glass", "nave", "bedroom-curtain")
 SHARED = ("classroom", "staircase", "kitchen-su22", "sponza-crytek", "veach-bidir", "veach-mis")
@@ -84,7 +86,7 @@ def main():
     head = [f"{row}, {size}" for size in sizes for row in ROWS] + [f"gain, {size}" for size in sizes]
     pathlib.Path(page).write_text("\n".join([
         "# What a pilot in few pixels tells of a picture in many", "",
-        f"By `python3 tests/calibration/pilot.py`, {datetime.date.today()}, commit {pages.commit()}, on {platform.machine()}. After",
+        f"By `python3 tests/calibration/pilot.py`, {datetime.date.today()}, commit {pages.commit()}, on {pages.machine()}. After",
         f"{ITERATIONS} iterations with even numbers: the mean relative distance of pictures of {len(SEEDS)} seeds, over the square root",
         "of 2; the gain is the ratio of bpt's variance to sharebpt's; the power is that of the number of pixels by which the gain",
         "grows from the smallest size to the largest. No figure of a paper.", "",

@@ -10,13 +10,14 @@ import datetime
 import json
 import os
 import pathlib
-import platform
 import statistics
 import subprocess
 import sys
 import tempfile
 
-import pages
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+
+import pages  # noqa: E402
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 RANKS = (1, 2, 4)
@@ -106,8 +107,8 @@ def page(found, program):
     first = found[RENDERS[0][0], 1][0]
     return "\n".join([
         "# Several ranks: how fast, and what would limit more", "",
-        f"Date {datetime.date.today()}, commit {pages.commit()}, {platform.machine()}, {os.cpu_count()} "
-        f"processors. `python3 tests/calibration/ranks.py {program} PAGE`.", "",
+        f"Date {datetime.date.today()}, commit {pages.commit()}, {pages.machine()}. "
+        f"`python3 tests/calibration/ranks.py {program} PAGE`.", "",
         "Door, 320 x 180, 32 iterations, one thread per rank, all ranks on this machine; with more "
         "ranks than processors they share them. Three rounds in turn; medians, lowest and highest. "
         "Setup is apart "

@@ -12,14 +12,16 @@ import datetime
 import json
 import math
 import pathlib
-import platform
 import resource
 import statistics
 import subprocess
 import sys
 
-import pages
 import scenes
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+
+import pages  # noqa: E402
 
 OURS = ("blender-still-life", "court", "cornell-box", "light-environment", "classroom-windows",
         "glossy-room", "kitchen-glass", "nave", "drapery-hall", "bedroom-curtain", "door",
@@ -135,7 +137,7 @@ def slope(found, name, row, sampler):
 def page(found, spent, chosen, command):
     lines = [
         "# Even numbers: what --sampler sobol is worth", "",
-        f"Date {datetime.date.today()}, commit {pages.commit()}, {platform.machine()}. `{command}`.", "",
+        f"Date {datetime.date.today()}, commit {pages.commit()}, {pages.machine()}. `{command}`.", "",
         f"{' x '.join(SIZE[1::2])} pixels, seeds {', '.join(map(str, SEEDS))}, each against 2048 iterations of "
         "`spcbpt` with independent numbers and another seed. A figure says how much longer "
         "independent numbers take to the error of even ones, iterations for iterations (mape^-2): "

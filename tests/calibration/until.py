@@ -17,16 +17,16 @@ import contextlib
 import datetime
 import itertools
 import json
-import platform
-import re
 import subprocess
 import sys
 from pathlib import Path
 from statistics import median
 
-import pages
-
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests"))
+
+import pages  # noqa: E402
+
 WIDTH = 64
 MOST_ITERATIONS = 512
 REFERENCE = ["--method", "bpt", "--iterations", "4096", "--seed", "99"]
@@ -146,7 +146,6 @@ def forecasts(results: list[dict]) -> list[float]:
 
 
 def page(everything: list[dict], total: int, sampler: str, targets: list[tuple[str, float]], commit: str, command: str) -> str:
-    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     results = [r for r in everything if r["known"]]
     unknown = sorted({f"{r['scene']} ({r['measure']} {r['bound']})" for r in everything if not r["known"]})
     text = [
@@ -159,7 +158,7 @@ def page(everything: list[dict], total: int, sampler: str, targets: list[tuple[s
         *([f"**Stopped after {len(everything)} of {total} runs.**", ""] if len(everything) < total else []),
         "| | |", "|---|---|",
         f"| date | {datetime.date.today()} |", f"| commit | {commit} |",
-        f"| machine | {cpu.group(1) if cpu else platform.processor()} |", f"| command | `{command}` |",
+        f"| machine | {pages.machine()} |", f"| command | `{command}` |",
         f"| each run | `--until MEASURE=E --iterations {MOST_ITERATIONS} --sampler {sampler}`, E: {', '.join(f'{m} {b}' for m, b in targets)} |",
         f"| references | `{' '.join(REFERENCE)}`; their own errors are part of those of the runs |", "", "## Achieved over asked", "", HEAD]
     text += [line("all", results),

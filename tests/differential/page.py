@@ -2,15 +2,17 @@
 
 import datetime
 import math
-import platform
 import shlex
 import statistics
-import subprocess
+import sys
 from pathlib import Path
 
 import judge
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+import pages  # noqa: E402
+
 FLOOR = 0.01  # no scene alone decides about the pooled deviation
 
 
@@ -34,14 +36,12 @@ def of_row(name, scenes):
 
 
 def text(scenes, counts, known, command):
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                            cwd=ROOT).stdout.strip()
     comparisons = sum(len(s["rows"]) for s in scenes)
     names = list(dict.fromkeys(name for s in scenes for name in s["rows"]))
     black = sum(not any(s.get("mean", [0])) for s in scenes)
     lines = [
         f"# {len(scenes)} random scenes by all rows", "",
-        f"Date {datetime.date.today()}, commit {commit}, {platform.machine()}. `{command}`.", "",
+        f"Date {datetime.date.today()}, commit {pages.commit()}, {pages.machine()}. `{command}`.", "",
         f"Scenes of `tests/differential/random_scene.py` by seeds from {scenes[0]['seed']} to {scenes[-1]['seed']}, "
         f"{sum(s['seconds'] for s in scenes) / 60:.0f} minutes. A row has {judge.ITERATIONS} iterations of about 200 pixels in each "
         f"scene, with settings drawn at random in half of all cases, and {judge.ITERATIONS * judge.REFERENCE} iterations of `bpt` are what "

@@ -22,11 +22,9 @@ import page
 import parts
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests"))
 
-
-def commit():
-    return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True,
-                          text=True).stdout.strip()
+import pages  # noqa: E402
 
 
 def run(name, options):
@@ -39,7 +37,7 @@ def run(name, options):
         found = {"summary": "did not come to its end", "rows": [], "findings": [str(failure)]}
     found["seconds"] = time.monotonic() - begin
     found["date"] = str(datetime.date.today())
-    found["commit"] = commit()
+    found["commit"] = pages.commit()
     for finding in found["findings"]:
         print(f"{name}: {finding}", file=sys.stderr)
     return found
