@@ -46,7 +46,7 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("x0,x1,y0,y1")
         ->group(picture);
     app.add_option("--exposure", o.exposureText,
-                   "Stops, or auto, which maps the mean luminance to mid-grey; for .png only "
+                   "Stops, or auto, which maps the log-average luminance to mid-grey; for .png only "
                    "(default: auto)")
         ->type_name("E|auto")
         ->group(picture);
