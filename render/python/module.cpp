@@ -1,4 +1,4 @@
-// lacuna._lacuna: the library for Python, value by value. What people use is in lacuna/__init__.py.
+// lacuna._lacuna: the Python binding of the library. Users use lacuna/__init__.py instead.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -33,7 +33,7 @@ std::span<const T> spanOf(const std::optional<Array<T>>& array) {
     return array ? spanOf(*array) : std::span<const T>();
 }
 
-/// Pixels of the picture itself, which stays as long as somebody looks at them.
+/// A read-only view of the picture's pixels. It keeps the picture alive.
 py::array view(py::handle picture, std::span<const float> values,
                const std::vector<py::ssize_t>& shape) {
     py::array_t<float> array(shape, values.data(), picture);
@@ -41,7 +41,7 @@ py::array view(py::handle picture, std::span<const float> values,
     return array;
 }
 
-/// What callbacks are shown: RenderProgress, while the callback runs.
+/// The argument of callbacks: RenderProgress, valid while the callback runs.
 struct Now {
     RenderProgress progress;
     bool over = false;
@@ -55,7 +55,7 @@ struct Now {
     }
 };
 
-/// The render in a thread of its own, so that this one can look for Ctrl-C.
+/// Runs the render in another thread, so that this one can check for Ctrl-C.
 Picture runWatched(Render& render) {
     std::stop_source stop;
     std::optional<Picture> picture;
@@ -63,7 +63,7 @@ Picture runWatched(Render& render) {
     std::mutex mutex;
     std::condition_variable ended;
     bool done = false;
-    // What a handler of signals raised: KeyboardInterrupt, or what people let theirs raise.
+    // The exception of a signal handler: KeyboardInterrupt, or that of a user's handler.
     std::optional<py::error_already_set> raised;
     std::thread worker([&] {
         try {

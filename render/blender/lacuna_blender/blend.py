@@ -1,4 +1,5 @@
-"""Values that differ from texel to texel: mixtures by a mask, and normal maps of heights. Knows nothing of Blender's nodes."""
+"""Operations on textures, texel by texel: mixtures by a mask, and normal maps from heights. Independent of Blender's
+nodes."""
 
 import math
 from dataclasses import replace
@@ -9,13 +10,14 @@ from .textures import Picture, linear, resized, scalar
 
 
 def white(name, use):
-    """A Picture of as many texels."""
+    """A white Picture with as many texels as the use's image."""
     return Picture(f"{name}, white", numpy.ones((*scalar(use).shape, 3)))
 
 
 def mixed(name, a, b, mask):
-    """(1 - mask) a + mask b, texel by texel: a factor and the Use of what is made, which is called `name`. `a`, `b`: pairs of
-    a factor (a number, or three) and a Use or None; `mask`: such a pair with a number. The uses are placed alike."""
+    """(1 - mask) a + mask b, texel by texel. Returns a factor and the Use of the new picture, which is called `name`.
+    `a`, `b`: pairs of a factor (a number, or three) and a Use or None; `mask`: such a pair with a number. All uses must
+    be placed alike."""
     share = numpy.clip(_texels(*mask), 0, 1)
     sides = [_texels(*side) for side in (a, b)]
     shape = max((share.shape, *(s.shape for s in sides)), key=lambda s: s[0] * s[1])
@@ -30,7 +32,7 @@ def mixed(name, a, b, mask):
 
 
 def _texels(factor, use):
-    """Height x width x 1 or 3."""
+    """The values of a factor times a Use: height x width x 1 or 3."""
     if isinstance(factor, float):
         return numpy.full((1, 1, 1), factor, numpy.float32) if use is None else factor * scalar(use)[..., None]
     texels = numpy.ones((1, 1, 3), numpy.float32) if use is None else linear(use.image)[..., :3]
@@ -38,8 +40,8 @@ def _texels(factor, use):
 
 
 def normals_of_heights(name, use, distance, strength, size):
-    """The normal map of a bump, as a Use. `distance`: of heights 0 and 1, and `size`: of the square of texture coordinates,
-    both in metres; `strength`: how much of the bump there is."""
+    """The normal map of a bump, as a Use. `distance`: metres between heights 0 and 1; `size`: side of the square of
+    texture coordinates in metres; `strength`: weight of the bump."""
     heights = scalar(use) * (distance / size)
     rows, columns = heights.shape
     wrapped = use.wrap == "REPEAT"

@@ -1,43 +1,43 @@
-"""The part of a mesh that has one material, as far as that material has to know it."""
+"""The part of a mesh with one material, as far as the material depends on it."""
 
 import math
 
 import numpy
 
-UNWRAPPED = "lacuna:unwrapped"  # the name of texture coordinates that no UV map of Blender's has
-MOST_TRIANGLES = 200000  # that are unwrapped: about ten seconds
+UNWRAPPED = "lacuna:unwrapped"  # name of texture coordinates; no UV map of Blender has it
+MOST_TRIANGLES = 200000  # limit of unwrapping: about ten seconds
 
 
 def read(collection, attribute, width, kind=numpy.float32):
-    """An attribute of all members of one of Blender's collections: so many values each."""
+    """An attribute of all members of one of Blender's collections, as a flat array with `width` values per member."""
     values = numpy.empty(len(collection) * width, kind)
     collection.foreach_get(attribute, values)
     return values.reshape(-1, width) if width > 1 else values
 
 
 def uv_layer(mesh, wanted):
-    """The UV map of that name, the one for renders where there is none; or None."""
+    """The UV map of the name `wanted`, or the one for renders if no name is given. None if there is none."""
     layers = mesh.uv_layers
     return layers.get(wanted) if wanted else next((l for l in layers if l.active_render), None)
 
 
 def colors_of(mesh, colors):
-    """Of a mesh's colour attribute by loop: red, green, blue and alpha, linear whatever their kind."""
+    """The values of a colour attribute by loop: red, green, blue and alpha, linear whatever their type."""
     values = read(colors.data, "color", 4)
     return values[read(mesh.loops, "vertex_index", 1, numpy.int32)] if colors.domain == "POINT" else values
 
 
 def is_smooth(mesh):
-    """Whether a face has other normals than its own; glTF says that none has by leaving them out."""
+    """Whether some face is not flat. glTF leaves out the normals of meshes with flat faces only."""
     return mesh.has_custom_normals or bool(read(mesh.polygons, "use_smooth", 1, bool).any())
 
 
 class Body:
-    """`slot`: of the material; `corners`: the loops of its triangles, n x 3. Valid as long as the mesh is."""
+    """`slot`: index of the material; `corners`: the loops of its triangles, n x 3. Valid as long as the mesh."""
 
     def __init__(self, thing, mesh, slot, corners, cycles):
         self.corners, self.arrays = corners, None
-        self.key = (thing.original.name_full, f"slot {slot}")  # no other body's
+        self.key = (thing.original.name_full, f"slot {slot}")  # unique
         self._thing, self._mesh, self._cycles, self._tried = thing, mesh, cycles, False
 
     @property
@@ -45,13 +45,13 @@ class Body:
         return self.arrays is not None
 
     def size(self):
-        """The mean side of the square of its texture coordinates, in metres."""
+        """The mean side of the square of texture coordinates, in metres."""
         layer = uv_layer(self._mesh, "")
         return self._side(read(layer.data, "uv", 2)[self.corners]) if layer else 1.0
 
     def texels(self, owner, found, side):
-        """What a material's output (sockets.Source) is on it: side x side x 3, or None; and the size as above, of a square of
-        the unwrapped coordinates."""
+        """The values of a material's output (sockets.Source) on the body: side x side x 3, or None; and the size as
+        above, for the unwrapped coordinates."""
         if not self._tried:
             self._tried = True
             self._unwrap()
@@ -61,7 +61,7 @@ class Body:
         return texels, self._side(self.arrays["uv:unwrapped"].reshape(-1, 3, 2))
 
     def unwrapped(self):
-        """Texture coordinates by corner, 3 n x 2, as glTF has them."""
+        """Texture coordinates by corner, 3 n x 2, in glTF's convention."""
         u, v = self.arrays["uv:unwrapped"].T
         return numpy.stack([u, 1 - v], axis=1)
 
@@ -73,7 +73,7 @@ class Body:
         self.arrays = None if uvs is None else {**self.arrays, "uv:unwrapped": uvs}
 
     def _arrays(self):
-        """What cycles_child.add_body makes it of again."""
+        """The arrays from which cycles_child.add_body makes the body again."""
         mesh, loops = self._mesh, self.corners.ravel()
         used, triangles = numpy.unique(read(mesh.loops, "vertex_index", 1, numpy.int32)[loops], return_inverse=True)
         points = read(mesh.vertices, "co", 3)
@@ -90,7 +90,7 @@ class Body:
         return arrays
 
     def _side(self, uvs):
-        """`uvs`: n x 3 x 2."""
+        """The mean side of the square of the coordinates `uvs`, n x 3 x 2, in metres."""
         points = read(self._mesh.vertices, "co", 3)[read(self._mesh.loops, "vertex_index", 1, numpy.int32)[self.corners]]
         scale = abs(self._thing.matrix_world.to_3x3().determinant()) ** (1 / 3)
         area, of_map = (_area(p).sum() for p in (points, numpy.pad(uvs, ((0, 0), (0, 0), (0, 1)))))
@@ -98,6 +98,6 @@ class Body:
 
 
 def _area(corners):
-    """Twice that of triangles, n x 3 x 3."""
+    """Twice the areas of triangles, n x 3 x 3."""
     a, b, c = numpy.moveaxis(corners, 1, 0)
     return numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1)

@@ -10,7 +10,7 @@ from .sockets import Value, source_of
 
 @dataclass(frozen=True)
 class Tangent:
-    """Which way a surface is brushed: around an axis (0, 1, 2) of the object, or along u of a UV map."""
+    """The direction in which a surface is brushed: around an axis (0, 1, 2) of the object, or along u of a UV map."""
 
     axis: int = 2
     uv_map: str = None  # "": the active one; None: by the axis
@@ -30,14 +30,14 @@ def principled_widths(anisotropy):
 
 
 def anisotropic_widths(anisotropy):
-    """Likewise, of Anisotropic BSDF: across is wider, or along where it is negative."""
+    """The same for Anisotropic BSDF: across is wider for positive values, along for negative ones."""
     a = min(max(anisotropy, -0.99), 0.99)
     return (1 / (1 + a), 1 + a) if a < 0 else (1 - a, 1 / (1 - a))
 
 
 def brushed(roughness, along, across, turn, tangent):
-    """The roughness across the brushing and the Brushing, in glTF's terms: alpha is wider in its direction by strength^2
-    of what is left to one. `turn`: of the tangent, in whole circles."""
+    """The roughness across the brushing and the Brushing, in glTF's terms: along its direction alpha is mix(alpha, 1,
+    strength^2). `turn`: rotation of the tangent in whole circles."""
     wide, narrow = max(along, across), min(along, across)
     rough = roughness.factor * (0.5 if roughness.texture else 1.0)
     alpha = min(max(rough, 0.0), 1.0) ** 2
@@ -49,7 +49,7 @@ def brushed(roughness, along, across, turn, tangent):
 
 
 def tangent_of(socket, groups):
-    """What a Tangent input asks for; None for what cannot be followed."""
+    """The Tangent of a Tangent input; None if its link cannot be followed."""
     found = source_of(socket, groups) if socket else None
     if found is None or found.node is None:
         return Tangent()
@@ -61,7 +61,8 @@ def tangent_of(socket, groups):
 
 
 def around(axis, points, normals):
-    """Unit tangents by corner, around an axis through the middle of the points, as Cycles has them: n x 4, the last 1."""
+    """Unit tangents by corner, around an axis through the centre of the points, as in Cycles: n x 4, the last component
+    1."""
     low, high = points.min(axis=0), points.max(axis=0)
     x, y, z = ((points - (low + high) / 2) / numpy.maximum(high - low, 1e-12)).T
     nought = numpy.zeros_like(x)
@@ -70,7 +71,7 @@ def around(axis, points, normals):
 
 
 def across_normals(way, normals):
-    """The parts of directions that lie in the surface, unit; any one where there is none."""
+    """The projections of directions to the surface, normalised; any tangent where the projection is zero."""
     flat = way - normals * (way * normals).sum(axis=1, keepdims=True)
     size = numpy.linalg.norm(flat, axis=1, keepdims=True)
     least = numpy.eye(3)[numpy.abs(normals).argmin(axis=1)]

@@ -1,10 +1,10 @@
-"""The camera, and what lacuna-render is told of the picture."""
+"""The camera, and lacuna-render's options for the picture."""
 
 import math
 
 
 class CannotRender(Exception):
-    """Says what the scene has that cannot be rendered at all."""
+    """Tells why the scene cannot be rendered at all."""
 
 
 def film(render):
@@ -19,7 +19,7 @@ def film(render):
 
 
 def view(camera, width, height):
-    """Of camera data: the vertical angle in radians, and the shift as a part of the larger side."""
+    """The vertical angle of camera data in radians, and its shift as a fraction of the larger side."""
     fit = camera.sensor_fit
     across = fit == "HORIZONTAL" or (fit == "AUTO" and width >= height)
     side, sensor = (width if across else height), (camera.sensor_height if fit == "VERTICAL" else camera.sensor_width)
@@ -37,7 +37,7 @@ def lens(thing):
     if dof.focus_object:
         to = dof.focus_object.matrix_world.translation - thing.matrix_world.translation
         focus = abs(to.dot(thing.matrix_world.to_3x3() @ _axis()) / (thing.matrix_world.to_3x3() @ _axis()).length)
-    # Blender's lens is in mm, and its unit one metre.
+    # Blender's lens is in mm; its unit of length is one metre.
     radius = camera.lens / (2 * dof.aperture_fstop * 1000) if dof.aperture_fstop > 0 else 0.0
     return (radius, max(focus, 1e-5)) if radius > 0 else None
 
@@ -48,7 +48,7 @@ def _axis():
 
 
 def add(glb, root, thing, render, notes):
-    """The camera object into the document; returns the options of lacuna-render."""
+    """Adds the camera object to the document; returns options of lacuna-render."""
     width, height, crop = film(render)
     camera = thing.data
     if thing.type != "CAMERA" or camera.type != "PERSP":

@@ -1,11 +1,11 @@
-"""The command line of lacuna-render, from the settings of a scene. Knows nothing of Blender."""
+"""The command line of lacuna-render, from the settings of a scene. Independent of Blender."""
 
 
-_PREPARED = ("skelbpt", "spcbpt", "sharebpt")  # read what is made of the scene beforehand
+_PREPARED = ("skelbpt", "spcbpt", "sharebpt")  # methods that need preprocessing
 
 
 def limits(samples, seconds, error_percent):
-    """Whichever comes first; without any, lacuna-render's own."""
+    """Options of the limits, of which the first that is reached counts; without any, lacuna-render's defaults apply."""
     options = []
     if samples > 0:
         options += ["--iterations", str(samples)]
@@ -17,8 +17,8 @@ def limits(samples, seconds, error_percent):
 
 
 def options(settings, frame, threads, transparent=False):
-    """`settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0: all. `transparent`: without the
-    world where the camera sees it."""
+    """The options of a render. `settings`: samples, seconds, error, depth, seed, animate_seed, method. `threads` 0:
+    all. `transparent`: the camera does not see the world."""
     found = ["--method", settings.method, *limits(settings.samples, settings.seconds, settings.error),
              "--max-depth", str(settings.depth), "--seed", str(settings.seed + (frame if settings.animate_seed else 0))]
     if settings.method in _PREPARED:
@@ -31,7 +31,7 @@ def options(settings, frame, threads, transparent=False):
 
 
 def share_done(settings, seconds, iterations):
-    """Of the limits the nearest one, from 0 to 1."""
+    """The progress towards the nearest limit, from 0 to 1."""
     shares = [0.0]
     if settings.seconds > 0:
         shares.append(seconds / settings.seconds)

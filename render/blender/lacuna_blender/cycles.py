@@ -1,4 +1,4 @@
-"""Asks Cycles what shader nodes come to, in a Blender of its own: within a render it cannot be asked."""
+"""Evaluates shader nodes with Cycles in a second Blender process, because Cycles cannot be used within a render."""
 
 import json
 import os
@@ -11,13 +11,13 @@ import numpy
 from . import exr, process
 
 _PATIENCE = 120.0  # seconds for one answer
-_LARGEST = 4096  # texels along the longer side
+_LARGEST = 4096  # most texels along the longer side
 
 
 class Cycles:
-    """A context; the other Blender begins with the first question. Answers are height x width x 3 floats, row 0 at the
-    top, or None where there is none. `side`: texels of what is baked; 0: nothing is. `asking` is told whom each question is
-    about, and may raise what ends the export."""
+    """A context manager; the first question starts the other Blender. Answers are height x width x 3 floats, row 0 at
+    the top, or None if there is none. `side`: texels along a side of baked pictures; 0: nothing is baked. `asking` is
+    called with the name of the object of each question, and may raise an exception to end the export."""
 
     def __init__(self, folder, frame, side, asking):
         self.side = side
@@ -30,26 +30,26 @@ class Cycles:
         self._end()
 
     def panorama(self, world, width):
-        """A world as a latitude-longitude picture, the middle of it +X; `width`: in texels."""
+        """A world as a latitude-longitude picture whose centre is +X; `width`: in texels."""
         return self._ask("panorama", "worlds", world, (width, width // 2))
 
     def flat(self, owner, found, size):
-        """`found`: the output of a node (sockets.Source) of a material or a lamp; `size`: width and height, in texels.
-        Images lie as they are, the coordinates of the picture are theirs."""
+        """The output of a node (sockets.Source) of a material or a lamp as a picture; `size`: width and height in
+        texels. Images in the nodes are not transformed: the picture has their coordinates."""
         share = min(_LARGEST / max(size), 1)
         what = ("lamp", "lights") if isinstance(owner, bpy.types.Light) else ("flat", "materials")
         return self._ask(*what, owner, [max(int(s * share), 1) for s in size], **_place(found))
 
     def unwrapped(self, name, body):
-        """Texture coordinates for the arrays of a meshes.Body, or None."""
+        """Unwrapped texture coordinates for the arrays of a body.Body, or None."""
         return self._ask_for(name, "unwrapped", "npy", body=self._written(body))
 
     def baked(self, owner, found, body, side):
-        """The output of a material's node on a body that has its coordinates; a square of so many texels."""
+        """The output of a material's node on a body with unwrapped coordinates; a square of `side` x `side` texels."""
         return self._ask("baked", "materials", owner, (side, side), "npy", body=self._written(body), **_place(found))
 
     def _ask(self, what, kind, owner, size, end="exr", **more):
-        """About a data-block of one of bpy.data's lists; the same question is asked once."""
+        """Asks about a data-block of one of bpy.data's lists; equal questions are asked once."""
         key = (what, owner.name_full, *size, repr(more))
         if key not in self._known:
             owner = owner.original
@@ -59,7 +59,7 @@ class Cycles:
         return self._known[key]
 
     def _saved(self, owner):
-        """The .blend of a data-block and of what it needs; None where it cannot be written."""
+        """The path of a .blend with a data-block and its dependencies; None if it cannot be written."""
         key = ("saved", owner.name_full)
         if key not in self._known:
             self._known[key] = self._path("blend")
@@ -83,7 +83,7 @@ class Cycles:
         return None
 
     def _written(self, body):
-        key = (body, len(body.arrays))  # once more with coordinates
+        key = (body, len(body.arrays))  # written again once it has coordinates
         if key not in self._known:
             self._known[key] = self._path("npz")
             numpy.savez(self._known[key], **body.arrays)
@@ -122,5 +122,5 @@ class Cycles:
 
 
 def _place(found):
-    """Where an output is, for the other Blender."""
+    """The location of an output, for the other Blender."""
     return {"groups": [g.name for g in found.groups], "node": found.node.name, "output": found.output.identifier}

@@ -1,9 +1,9 @@
-"""What Cycles has for shader nodes. Run by cycles.py in a Blender of its own, without a window:
+"""Evaluates shader nodes with Cycles. cycles.py runs it in a second Blender process without a window:
 
   blender -b --factory-startup -P cycles_child.py
 
-Each line of stdin is a request, as JSON. What is asked for goes to its `out`: a picture as .exr, linear, or arrays. The
-answer is a line of stdout that begins with _ANSWER: "done", or what went wrong."""
+Each line of stdin is a request in JSON. The result goes to its file `out`: a linear picture as .exr, or arrays. The
+answer is a line of stdout that begins with _ANSWER: "done", or the error."""
 
 import json
 import math
@@ -13,12 +13,12 @@ import bpy
 import numpy
 
 _ANSWER = "LACUNA "
-_EXACT = 0.01  # pixels: a sample of a texel's middle
-_PANORAMA = 1 << 24  # samples
+_EXACT = 0.01  # filter width in pixels: samples lie at the centres of texels
+_PANORAMA = 1 << 24  # samples of a panorama
 
 
 def load(request):
-    """An empty scene, and the data-block that is asked about."""
+    """An empty scene and the requested data-block."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     with bpy.data.libraries.load(request["file"]) as (_, wanted):
         setattr(wanted, request["kind"], [request["name"]])
@@ -28,11 +28,11 @@ def load(request):
 
 
 def panorama(request):
-    """A world all around, as a latitude-longitude picture whose middle is +X, as Blender's are."""
+    """A whole world as a latitude-longitude picture whose centre is +X, as in Blender."""
     scene, scene.world = load(request)
     camera = add_camera(scene, "PANO", (0, 0, 0), (math.pi / 2, 0, -math.pi / 2))
     (camera.cycles if hasattr(camera.cycles, "panorama_type") else camera).panorama_type = "EQUIRECTANGULAR"
-    # A sun is a few texels, and has to be met by enough samples.
+    # A sun covers only a few texels, which need enough samples.
     render(scene, request, min(max(_PANORAMA // (request["width"] * request["height"]), 1), 64), width_of_filter=1)
 
 
@@ -54,13 +54,13 @@ def lamp(request):
     sun.energy, sun.angle, sun.color = math.pi, 0, (1, 1, 1)
     scene.collection.objects.link(bpy.data.objects.new("sun", sun))
     white = bpy.data.materials.new("white")
-    white.diffuse_color = (1, 1, 1, 1)  # without nodes: Lambert's
+    white.diffuse_color = (1, 1, 1, 1)  # without nodes: Lambertian
     add_floor(scene, request, white)
     render(scene, request, samples=1, width_of_filter=_EXACT)
 
 
 def unwrapped(request):
-    """Texture coordinates of a body's triangles that lie beside each other: 3 n x 2."""
+    """Non-overlapping texture coordinates of a body's triangles: 3 n x 2."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     mesh = add_body(bpy.context.scene, request).data
     mesh.uv_layers.active = mesh.uv_layers.new(name="unwrapped")
@@ -92,7 +92,7 @@ def baked(request):
 
 
 def add_body(scene, request):
-    """Of the arrays of meshes.Body: the active object."""
+    """Makes an object of the arrays of body.Body and makes it active."""
     arrays = numpy.load(request["body"])
     mesh = bpy.data.meshes.new("body")
     mesh.from_pydata(arrays["points"].tolist(), [], arrays["triangles"].tolist())
@@ -125,7 +125,7 @@ def add_camera(scene, kind, location, rotation):
 
 
 def add_floor(scene, request, material):
-    """Fills the picture, seen from above."""
+    """Adds a plane that fills the picture seen from above."""
     bpy.ops.mesh.primitive_plane_add(size=1)
     floor = bpy.context.object
     side = max(request["width"], request["height"])
@@ -135,7 +135,7 @@ def add_floor(scene, request, material):
 
 
 def shine(tree, request):
-    """Makes the tree an emission of the output that is asked for, which may lie within groups."""
+    """Makes the tree emit the requested output, which may be inside groups."""
     trees = [tree]
     for name in request["groups"]:
         trees.append(trees[-1].nodes[name].node_tree)
@@ -148,7 +148,7 @@ def shine(tree, request):
 
 
 def lie_flat(tree):
-    """Images as they are: the document places them."""
+    """Removes the transforms of images: the document places them."""
     for node in tree.nodes:
         if node.type == "TEX_IMAGE":
             node.projection = "FLAT"
@@ -159,7 +159,7 @@ def lie_flat(tree):
 
 
 def lead_out(tree, output, group):
-    """The same value as an output of the group's node."""
+    """Adds an output with the same value to the group's node."""
     if hasattr(tree, "interface"):  # Blender 4
         made = tree.interface.new_socket("lacuna", in_out="OUTPUT", socket_type="NodeSocketColor")
     else:
@@ -194,7 +194,7 @@ def main():
             request = json.loads(line)
             makers[request["what"]](request)
             said = "done"
-        except Exception as error:  # the parent says it, and goes on without
+        except Exception as error:  # the parent reports it and goes on without the answer
             said = f"{type(error).__name__}: {error}".replace("\n", " ")
         print(_ANSWER + said, flush=True)
 

@@ -10,8 +10,8 @@ import bpy
 from . import camera, command, export, exr, passes, process
 from .notes import Notes
 
-_LOOK = 0.2  # seconds between looks at Esc and at the picture
-_LIVE = "2s"  # between pictures while it renders
+_LOOK = 0.2  # seconds between checks for Esc and for a new picture
+_LIVE = "2s"  # between pictures during the render
 last_notes = []  # what the last render left out, for the panel
 
 
@@ -67,7 +67,7 @@ class LacunaEngine(bpy.types.RenderEngine):
             self._show(exr.read(image), scene, depsgraph.view_layer.name)
 
     def _follow(self, child, scene, layer, image):
-        """Until the child ends; whether it made a whole picture."""
+        """Shows pictures until the child ends. Returns whether it completed a picture."""
         begun, seen, iterations, said = None, None, 0, 0
         while (code := child.wait(_LOOK)) is None:
             if self._stopped():
@@ -77,8 +77,8 @@ class LacunaEngine(bpy.types.RenderEngine):
             newest = _age(image)
             if newest != seen:
                 seen = newest
-                begun = begun or time.monotonic()  # the time limit does not count what came before
-                picture = exr.read(image)  # replaced as a whole, never half
+                begun = begun or time.monotonic()  # the time limit does not include preparation
+                picture = exr.read(image)  # the file is replaced atomically
                 iterations = picture.header.get("iterations", iterations)
                 self._show(picture, scene, layer)
             self.update_progress(command.share_done(scene.lacuna, time.monotonic() - begun if begun else 0, iterations))
@@ -93,7 +93,7 @@ class LacunaEngine(bpy.types.RenderEngine):
         return True
 
     def _asking(self, name):
-        """While the scene is exported."""
+        """Called during the export for each question to Cycles."""
         if self._stopped():
             raise _Stopped
         self.update_stats("", f"Lacuna: asking Cycles about {name}")
@@ -109,7 +109,7 @@ class LacunaEngine(bpy.types.RenderEngine):
                 values = passes.pixels(made.name, picture)
                 if values is not None and len(values) == len(made.rect):
                     made.rect = values
-        finally:  # Blender crashes over a result that is left open
+        finally:  # Blender crashes if a result is left open
             self.end_result(result)
 
     def _say(self, notes):
@@ -137,7 +137,7 @@ def _preferred_program():
 
 
 def _cache_folder(folder):
-    """Beside the .blend, so that the next render of the same scene begins at once."""
+    """The folder for caches, beside the .blend, so that the next render of the same scene starts at once."""
     if not bpy.data.filepath:
         return folder
     beside = os.path.splitext(bpy.data.filepath)[0] + ".cache"

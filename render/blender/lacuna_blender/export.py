@@ -1,6 +1,6 @@
-"""A scene of Blender as a .glb and the options that say the rest. Written from the evaluated depsgraph, and not by
-Blender's own exporter: so modifiers, instances and render visibility are what a render engine is given, and lamps and
-worlds, which that exporter leaves out, are in the same place."""
+"""Exports a scene of Blender as a .glb and command-line options for the rest. It uses the evaluated depsgraph and not
+Blender's own exporter. Therefore modifiers, instances and render visibility are those of a render engine, and lamps and
+worlds, which that exporter leaves out, are exported too."""
 
 import os
 
@@ -14,8 +14,8 @@ _NO_BODY = ("CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE")
 
 
 def write(depsgraph, view, folder, notes, asking):
-    """Writes scene.glb, and what it needs, into `folder`; returns the command line's arguments of the scene. `view`: the
-    camera object; `asking`: as cycles.Cycles wants it. Raises camera.CannotRender."""
+    """Writes scene.glb and its further files to `folder`; returns the scene's command-line arguments. `view`: the
+    camera object; `asking`: see cycles.Cycles. Raises camera.CannotRender."""
     scene = depsgraph.scene
     if view is None:
         raise camera.CannotRender("expected a camera, found none; add one, or choose it in the scene's properties")

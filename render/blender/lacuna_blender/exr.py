@@ -1,5 +1,5 @@
-"""Reads the OpenEXR files that lacuna-render writes, and writes environment maps. Blender's own reader keeps no layer
-of a file whose names are not its own. Scanlines of floats, uncompressed or ZIP: nothing else occurs."""
+"""Reads the OpenEXR files that lacuna-render writes, and writes environment maps. Blender's own reader drops layers
+whose names are not its own. Supports scan lines of floats, uncompressed or ZIP; nothing else occurs."""
 
 import struct
 import zlib
@@ -17,14 +17,14 @@ class Picture:
         self.width, self.height, self.channels, self.header = width, height, channels, header
 
     def stack(self, *names):
-        """The named channels side by side (height x width x n), or None where one is missing."""
+        """The named channels stacked (height x width x n), or None if one is missing."""
         if any(name not in self.channels for name in names):
             return None
         return numpy.stack([self.channels[name] for name in names], axis=-1)
 
 
 def read(path):
-    """Raises ValueError where the file is of another kind, or incomplete."""
+    """Reads a Picture. Raises ValueError if the file is of another kind or incomplete."""
     with open(path, "rb") as file:
         data = file.read()
     try:
@@ -61,7 +61,8 @@ def _channel_names(data):
 
 
 def _unpacked(chunk, size):
-    """The bytes of a ZIP chunk: differences, then even and odd bytes apart. What would not shrink is stored as it is."""
+    """The bytes of a ZIP chunk, which holds differences with even and odd bytes separated. Incompressible chunks are
+    stored as they are."""
     if len(chunk) == size:
         return chunk
     steps = numpy.frombuffer(zlib.decompress(chunk), numpy.uint8).astype(numpy.int64)
@@ -94,7 +95,7 @@ def _decode(data):
 
 
 def write(path, rgb):
-    """`rgb`: height x width x 3 float32, row 0 at the top. Uncompressed."""
+    """Writes an uncompressed .exr. `rgb`: height x width x 3 float32, row 0 at the top."""
     height, width, _ = rgb.shape
 
     def attribute(name, kind, value):

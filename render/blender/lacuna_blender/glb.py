@@ -1,4 +1,4 @@
-"""Writes binary glTF 2.0. Knows nothing of Blender."""
+"""Writes binary glTF 2.0. Independent of Blender."""
 
 import json
 import struct
@@ -18,18 +18,18 @@ class Glb:
         self._extensions = set()
 
     def append(self, kind, entry):
-        """`entry` into the array `kind` of the document."""
+        """Appends `entry` to the array `kind` of the document."""
         entries = self.document.setdefault(kind, [])
         entries.append(entry)
         return len(entries) - 1
 
     def extension(self, owner, name, values):
-        """`values` as extension `name` of `owner`, an object of the document."""
+        """Sets `values` as the extension `name` of `owner`, an object of the document."""
         self._extensions.add(name)
         owner.setdefault("extensions", {})[name] = values
 
     def accessor(self, array):
-        """A NumPy array of float32 (n x 2, 3 or 4) or uint32 (n)."""
+        """Adds an accessor for a NumPy array of float32 (n x 2, 3 or 4) or uint32 (n)."""
         width = array.shape[1] if array.ndim == 2 else 1
         entry = {"bufferView": self._view(array.tobytes()), "count": len(array), "type": _SHAPES[width],
                  "componentType": UNSIGNED if array.dtype.kind == "u" else FLOAT}
@@ -41,14 +41,14 @@ class Glb:
         return self.append("images", {"bufferView": self._view(data), "mimeType": mime, "name": name})
 
     def mesh(self, name, primitives):
-        """`primitives`: (attributes by name, indices, material), arrays as accessor() takes them."""
+        """Adds a mesh. `primitives`: (attributes by name, indices, material), with arrays for accessor()."""
         parts = [{"attributes": {key: self.accessor(array) for key, array in attributes.items()},
                   "indices": self.accessor(indices), "material": material}
                  for attributes, indices, material in primitives]
         return self.append("meshes", {"name": name, "primitives": parts})
 
     def node(self, parent, name, matrix, **members):
-        """`matrix`: 16 numbers, column by column. `parent` None: a root of the scene."""
+        """Adds a node. `matrix`: 16 numbers, column-major. `parent` None: a root of the scene."""
         index = self.append("nodes", {"name": name, "matrix": list(matrix), **members})
         if parent is None:
             self.document["scenes"][0]["nodes"].append(index)
@@ -57,7 +57,7 @@ class Glb:
         return index
 
     def light(self, parent, name, matrix, light):
-        """A light of KHR_lights_punctual in a node of its own."""
+        """Adds a light of KHR_lights_punctual in a node of its own."""
         lights = self.document.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
         self._extensions.add("KHR_lights_punctual")
         lights.append({"name": name, **light})

@@ -1,13 +1,13 @@
-"""Lamps: what has a size becomes a mesh that shines, or many points that do."""
+"""Lamps. Lamps with a size become emissive meshes or many point lights."""
 
 import math
 
 from . import shapes
 from .sockets import Sockets, source_of
 
-SPOT_SAMPLES = 32  # points that stand for a spot's disk
-SMALL_SUN, SUN_SAMPLES = math.radians(2), (16, 64)  # directions that stand for a sun, below and above that angle
-SPOT_RAMP = 0.75  # of Blender's, in the cosine: glTF's squared ramp then passes as much light
+SPOT_SAMPLES = 32  # points that represent a spot's disk
+SMALL_SUN, SUN_SAMPLES = math.radians(2), (16, 64)  # directions that represent a sun, below and above SMALL_SUN
+SPOT_RAMP = 0.75  # of Blender's ramp in the cosine: glTF's squared ramp then passes as much light
 
 
 class Lights:
@@ -17,10 +17,10 @@ class Lights:
         self._glb, self._root, self._materials, self._notes, self._cycles = glb, root, materials, notes, cycles
 
     def add(self, thing, matrix):
-        """A lamp object, evaluated, and its place in the world (mathutils.Matrix)."""
+        """Adds an evaluated lamp object. `matrix`: its transform to world space (mathutils.Matrix)."""
         lamp, name = thing.data, thing.name
         if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
-            return  # it guides Cycles, and does not shine
+            return  # it guides Cycles and does not emit
         power = self._power(lamp, name)
         if max(power) <= 0:
             return
@@ -28,7 +28,7 @@ class Lights:
         {"AREA": self._area, "POINT": self._point, "SPOT": self._spot, "SUN": self._sun}[lamp.type](lamp, name, matrix, power)
 
     def _power(self, lamp, name):
-        """W, of suns W/m2, by channel."""
+        """Power by channel in W; for suns, W/m2."""
         color, factor = lamp.color, lamp.energy
         if lamp.use_nodes and lamp.node_tree:
             output = lamp.node_tree.get_output_node("CYCLES")
@@ -54,7 +54,7 @@ class Lights:
                 self._notes.add(thing.name, f"the lamp is seen by {kind} rays, too")
 
     def _shape(self, lamp, name, corners, triangles, matrix, radiant):
-        """`radiant`: W/sr/m2 times m2, by channel: over the mesh's area it is the radiance."""
+        """Adds an emissive mesh. `radiant`: radiance times area by channel, in W/sr."""
         scale = abs(matrix.to_3x3().determinant()) if lamp.type == "POINT" else matrix.col[0].xyz.cross(matrix.col[1].xyz).length
         area = shapes.area(corners, triangles) * scale
         if area <= 0:
@@ -77,7 +77,8 @@ class Lights:
     def _point(self, lamp, name, matrix, power):
         at = _unscaled(matrix)
         if lamp.shadow_soft_size > 0:
-            # Cycles: W / (4 pi^2 r^2) on the ball, so W / pi over the ball's area of 4 pi r^2.
+            # Cycles: radiance = W / (4 pi^2 r^2) on the ball, that is W / pi over the ball's area
+            # of 4 pi r^2.
             self._shape(lamp, name, *shapes.sphere(lamp.shadow_soft_size), at, [p / math.pi for p in power])
         else:
             self._punctual(name, at, {"type": "point"}, [p / (4 * math.pi) for p in power])
@@ -120,7 +121,7 @@ def _columns(matrix):
 
 
 def _unscaled(matrix):
-    """Place and direction alone: sizes of points, spots and suns do not grow with the object."""
+    """Position and rotation alone: the sizes of points, spots and suns do not scale with the object."""
     from mathutils import Matrix
     place, turn, _ = matrix.decompose()
     return Matrix.Translation(place) @ turn.to_matrix().to_4x4()

@@ -11,12 +11,12 @@ from .textures import placed_alike
 
 @dataclass
 class Written:
-    """A material of the .glb, and what it asks of its meshes."""
+    """A material of the .glb, and the attributes that it needs from its meshes."""
 
     index: int
     uv_maps: list  # names in the order of TEXCOORD_n
     vertex_colors: str = None
-    tangent: object = None  # brushing.Tangent: TANGENT is wanted
+    tangent: object = None  # brushing.Tangent, if TANGENT is needed
 
 
 class Materials:
@@ -24,8 +24,8 @@ class Materials:
         self._glb, self._textures, self._notes, self._cycles, self._made = glb, textures, notes, cycles, {}
 
     def of(self, material, hidden, body):
-        """`material`: bpy.types.Material or None, for which Blender has a grey. `hidden`: from the camera. `body`: what it is
-        on (body.Body), which matters where it has bumps or is baked."""
+        """The Written for a material. `material`: bpy.types.Material, or None, which Blender renders grey. `hidden`:
+        invisible to the camera. `body`: the body.Body with the material, which matters if it has bumps or is baked."""
         metres = _rounded(body.size()) if _has_bumps(material) else 1.0
         shared = (material and material.name_full, hidden, metres)
         own = (*shared, *body.key)
@@ -36,7 +36,7 @@ class Materials:
         return self._made[shared] if shared in self._made else self._made[own]
 
     def lamp(self, name, radiance):
-        """Black, shines to the front, and the camera does not see it: as Blender's lamps are."""
+        """A material like Blender's lamps: black, emits to the front, invisible to the camera."""
         surface = Surface(emission=Value(tuple(radiance)), strength=1.0)
         return self._write(name, surface, True, two_sided=False)
 
@@ -98,7 +98,7 @@ class Materials:
         tangent = s.brushing and s.brushing.tangent
         if tangent and s.normal:
             self._notes.add(name, "the surface is brushed along u of the normal map's UV map")
-            tangent = None  # the renderer's own, which the normal map needs
+            tangent = None  # the renderer's own tangents, which the normal map needs
         return Written(self._glb.append("materials", entry), uv_maps or [""], s.base.vertex_colors, tangent)
 
     def _normals(self, normal, info):
@@ -108,12 +108,13 @@ class Materials:
 
     def _extend(self, entry, s, info):
         transmits = s.transmission.texture or s.transmission.factor > 0
-        # Its own index where light passes; else the one that reflects as much as Blender's layer.
+        # The material's index of refraction if it transmits; else that whose reflectance equals
+        # Blender's layer.
         root = min(max(s.reflectance, 0.0), 0.9) ** 0.5
         ior = s.ior if transmits else (1 + root) / (1 - root)
         own = ((ior - 1) / (ior + 1)) ** 2
         self._glb.extension(entry, "KHR_materials_ior", {"ior": ior})
-        whole = transmits or s.reflectance >= own > 0  # what transmits reflects by its index alone
+        whole = transmits or s.reflectance >= own > 0  # transmission: by the index alone
         self._glb.extension(entry, "KHR_materials_specular",
                             {"specularFactor": 1.0 if whole else s.reflectance / own if own > 0 else 0.0})
         if transmits:
@@ -121,7 +122,7 @@ class Materials:
             if s.transmission.texture:
                 values["transmissionTexture"] = info(self._textures.scalars(R=s.transmission.texture), s.transmission.texture)
             self._glb.extension(entry, "KHR_materials_transmission", values)
-            body = {"thicknessFactor": 1.0}  # and not a sheet
+            body = {"thicknessFactor": 1.0}  # a solid, not a sheet
             if s.absorption:
                 body["attenuationColor"], body["attenuationDistance"] = list(s.absorption[0]), s.absorption[1]
             self._glb.extension(entry, "KHR_materials_volume", body)
@@ -148,7 +149,8 @@ class Materials:
 
 
 def _fits(s):
-    """Whether glTF can have its textures as they lie: some share an image, and there are two sets of coordinates."""
+    """Whether glTF can use its textures as they are placed: some must share an image, and there are only two sets of
+    coordinates."""
     uses = [v.texture for v in (s.base, s.alpha, s.metallic, s.roughness, s.transmission, s.emission)]
     base, alpha, metallic, roughness = ([use] if use else [] for use in uses[:4])
     maps = {use.uv_map for use in (*uses, s.normal and s.normal[0], s.coat_normal and s.coat_normal[0]) if use}
@@ -160,7 +162,7 @@ def _has_bumps(material):
 
 
 def _rounded(size):
-    """In quarters of an octave, so that meshes of about one size share a material."""
+    """The size rounded to quarters of an octave, so that meshes of similar size share a material."""
     return 2 ** (round(4 * math.log2(size)) / 4) if size > 0 else 1.0
 
 

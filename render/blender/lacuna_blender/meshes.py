@@ -1,4 +1,4 @@
-"""Meshes of the .glb, from what modifiers made of Blender's objects."""
+"""Meshes of the .glb, from Blender's objects after modifiers."""
 
 import numpy
 
@@ -9,20 +9,20 @@ GEOMETRY = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 
 
 class Meshes:
-    """Objects that share a mesh and materials share one here as well."""
+    """Objects that share a mesh and materials also share a mesh in the .glb."""
 
     def __init__(self, glb, materials, notes, cycles):
         self._glb, self._materials, self._notes, self._cycles, self._made = glb, materials, notes, cycles, {}
 
     def of(self, thing, hidden):
-        """The mesh of an evaluated object, or None where it has no faces."""
+        """The mesh of an evaluated object, or None if it has no faces."""
         slots = [slot.material for slot in thing.material_slots] or [None]
         source = thing.data if thing.type == "MESH" else thing.original
         key = (source.as_pointer(), tuple(m and m.name_full for m in slots), hidden)
         if key not in self._made:
             try:
                 mesh = thing.to_mesh()
-            except RuntimeError:  # of a curve without a body, say
+            except RuntimeError:  # for example a curve without a body
                 mesh = None
             self._made[key] = self._write(thing, mesh, slots, hidden) if mesh else None
             thing.to_mesh_clear()
@@ -43,7 +43,7 @@ class Meshes:
         primitives = []
         for slot, material in materials.items():
             attributes = {"POSITION": points}
-            if smooth or material.tangent:  # flat faces leave normals out, but TANGENT wants them
+            if smooth or material.tangent:  # flat faces need no normals, but TANGENT does
                 attributes["NORMAL"] = normals
             if material.tangent:
                 attributes["TANGENT"] = self._tangents(name, mesh, material.tangent, points, normals)
@@ -77,7 +77,7 @@ class Meshes:
             try:
                 mesh.calc_tangents(uvmap=layer.name if layer else "")
                 return brushing.across_normals(read(mesh.loops, "tangent", 3), normals)
-            except (RuntimeError, TypeError):  # no such map, or faces of more than four corners
+            except (RuntimeError, TypeError):  # no such map, or faces with more than four corners
                 self._notes.add(name, f"tangents by the UV map {tangent.uv_map} cannot be made: brushed around Z")
         return brushing.around(tangent.axis, points, normals)
 
@@ -94,7 +94,7 @@ class Meshes:
 
 
 def _corner_normals(mesh):
-    """By corner."""
+    """Normals by corner."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
         return read(mesh.corner_normals, "vector", 3)
     mesh.calc_normals_split()
@@ -102,7 +102,7 @@ def _corner_normals(mesh):
 
 
 def _compact(attributes):
-    """The corners' values, equal ones once, and the indices of those."""
+    """Merges corners with equal attributes; returns the values and the indices."""
     rows = numpy.ascontiguousarray(numpy.concatenate(list(attributes.values()), axis=1), numpy.float32)
     keys = rows.view(numpy.dtype((numpy.void, rows.shape[1] * 4))).ravel()
     _, first, indices = numpy.unique(keys, return_index=True, return_inverse=True)

@@ -1,4 +1,4 @@
-"""What of a scene is not rendered as it is in Blender, by the name of the thing: nothing is left out in silence."""
+"""Notes about everything in a scene that is not rendered as in Blender, by name: nothing is left out silently."""
 
 
 class Notes:
@@ -6,7 +6,7 @@ class Notes:
         self._names = {}  # text -> names, in the order in which they came
 
     def add(self, name, text):
-        """`text` says what is lost of the thing called `name`, and what it is instead."""
+        """Adds a note. `text` tells what is lost of the thing called `name`, and what is rendered instead."""
         names = self._names.setdefault(text, [])
         if name not in names:
             names.append(name)

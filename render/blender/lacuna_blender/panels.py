@@ -1,10 +1,10 @@
-"""Panels: our own, and those of Blender that say what Lacuna renders."""
+"""Panels: the add-on's own, and those of Blender whose settings Lacuna uses."""
 
 import bpy
 
 from . import engine
 
-# Eevee's are those of lamps, materials and worlds that all engines could share.
+# Panels of Eevee for lamps, materials and worlds that are not specific to Eevee.
 _SHARED_OF_EEVEE = ("EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface",
                     "DATA_PT_EEVEE_light", "MATERIAL_PT_preview")
 _NOT_OURS = ("VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_simplify")

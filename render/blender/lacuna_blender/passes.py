@@ -1,15 +1,16 @@
-"""Which passes of Blender are filled from which layers of lacuna-render's .exr."""
+"""The mapping from layers of lacuna-render's .exr to Blender's passes."""
 
 import numpy
 
-# Of our own: name, channels, their names, kind, property of the view layer, layers of the .exr.
+# Passes of the add-on: name, number of channels, their names, kind, property of the view layer,
+# channels of the .exr.
 OWN = (("Albedo", 3, "RGB", "COLOR", "use_albedo", ("albedo.R", "albedo.G", "albedo.B")),
        ("Variance", 3, "RGB", "COLOR", "use_variance", ("variance.R", "variance.G", "variance.B")))
-_FAR = 1e10  # what Blender's depth is where nothing is hit
+_FAR = 1e10  # Blender's depth where nothing is hit
 
 
 def pixels(name, picture):
-    """Values of a pass (pixels x channels, rows from the bottom), or None where the picture does not have them."""
+    """Values of a pass (pixels x channels, rows from the bottom), or None if the picture does not have them."""
     values = _values(name, picture)
     return None if values is None else values[::-1].reshape(picture.width * picture.height, -1)
 

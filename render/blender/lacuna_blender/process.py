@@ -1,4 +1,4 @@
-"""lacuna-render as a child process. Knows nothing of Blender."""
+"""lacuna-render as a child process. Independent of Blender."""
 
 import os
 import shutil
@@ -10,11 +10,12 @@ NAME = "lacuna-render.exe" if os.name == "nt" else "lacuna-render"
 
 
 class NotFound(Exception):
-    """Says where lacuna-render was looked for."""
+    """Tells where lacuna-render was searched for."""
 
 
 def find(preferred):
-    """The program: the one that is preferred, else in the PATH, else beside this add-on or where installs put it."""
+    """The path of the program: the preferred one, else that in the PATH, else one beside this add-on or in its place of
+    installation."""
     if preferred:
         if os.path.isfile(preferred) and os.access(preferred, os.X_OK):
             return preferred
@@ -28,25 +29,26 @@ def find(preferred):
 
 
 def mortal(command):
-    """Ends when Blender does, however that ends; where util-linux is not there, it renders on to its limit."""
+    """A command that ends when Blender ends, however that happens. Without util-linux it renders until its limit."""
     keeper = shutil.which("setpriv")
     return [keeper, "--pdeathsig", "INT", *command] if keeper else command
 
 
 class Child:
-    """A running render. What it says is kept, and passed on to `said` line by line, in another thread."""
+    """A running render. Its messages are stored and passed to `said` line by line, in another thread."""
 
     def __init__(self, command, said=print):
         self.lines = []
         self._said = said
-        # A group of its own: Ctrl-C in Blender's terminal ends it through stop(), once.
+        # It has its own process group: Ctrl-C in Blender's terminal reaches it only once, through
+        # stop().
         self._process = subprocess.Popen(mortal(command), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                          stderr=subprocess.PIPE, start_new_session=True)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
     def wait(self, seconds):
-        """The exit code, or None where it still runs after so many seconds."""
+        """The exit code, or None if it still runs after `seconds`."""
         try:
             code = self._process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -55,7 +57,7 @@ class Child:
         return code
 
     def stop(self, grace=5.0):
-        """As Ctrl-C does; after `grace` seconds by force."""
+        """Stops it like Ctrl-C; after `grace` seconds by force."""
         self._process.send_signal(signal.SIGINT)
         if self.wait(grace) is None:
             self._process.kill()
@@ -65,7 +67,7 @@ class Child:
         return [line for line in self.lines if "warning" in line]
 
     def error(self):
-        """The last thing that it said."""
+        """Its last message."""
         return self.lines[-1] if self.lines else "lacuna-render ended without a word"
 
     def _read(self):

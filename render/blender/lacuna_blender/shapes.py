@@ -1,4 +1,4 @@
-"""Meshes of lamps that have a size, in the lamp's own coordinates, and their samples. Knows nothing of Blender."""
+"""Meshes and samples of lamps with a size, in the lamp's own coordinates. Independent of Blender."""
 
 import math
 
@@ -6,14 +6,14 @@ import numpy
 
 
 def rectangle(width, height):
-    """Corners and triangles, in the plane z = 0, facing -z as Blender's area lamps do."""
+    """Corners and triangles in the plane z = 0, facing -z like Blender's area lamps."""
     x, y = width / 2, height / 2
     corners = numpy.array([[-x, -y, 0], [-x, y, 0], [x, y, 0], [x, -y, 0]], numpy.float32)
     return corners, numpy.array([0, 1, 2, 0, 2, 3], numpy.uint32)
 
 
 def ellipse(width, height, sides=48):
-    """The same of an ellipse, a fan about its middle."""
+    """The same for an ellipse: a fan around its centre."""
     turn = numpy.arange(sides) * (2 * math.pi / sides)
     rim = numpy.stack([numpy.cos(turn) * width / 2, numpy.sin(turn) * height / 2, numpy.zeros(sides)], axis=1)
     corners = numpy.concatenate([[[0, 0, 0]], rim]).astype(numpy.float32)
@@ -23,7 +23,8 @@ def ellipse(width, height, sides=48):
 
 
 def sphere(radius, halvings=2):
-    """The same of a ball about the origin, facing outwards: an icosahedron whose edges were halved some times."""
+    """The same for a ball around the origin, facing outwards: an icosahedron whose edges are halved `halvings`
+    times."""
     g = (1 + math.sqrt(5)) / 2
     points = [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g),
               (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)]
@@ -50,13 +51,14 @@ def sphere(radius, halvings=2):
 
 
 def area(corners, triangles):
-    """In the corners' units, squared."""
+    """Area in squared units of the corners."""
     a, b, c = (corners[triangles[i::3]].astype(float) for i in range(3))
     return float(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2)
 
 
 def disk_samples(count):
-    """So many points of the unit disk, evenly: a sunflower's. Their mean is not exactly, but nearly, the middle."""
+    """Evenly distributed points of the unit disk, in a sunflower pattern. Their mean is nearly, but not exactly, the
+    centre."""
     at = numpy.arange(count) + 0.5
     radius, turn = numpy.sqrt(at / count), at * (math.pi * (3 - math.sqrt(5)))
     return numpy.stack([radius * numpy.cos(turn), radius * numpy.sin(turn)], axis=1)

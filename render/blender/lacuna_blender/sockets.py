@@ -1,5 +1,5 @@
-"""Follows the links of a shader tree: through reroutes and groups, to constants, images, vertex colours, and to what
-Cycles makes of images and constants."""
+"""Follows the links of a shader tree, through reroutes and groups, to constants, images and vertex colours, and to
+other nodes, which Cycles evaluates."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ _POINTWISE = frozenset((
     "BLACKBODY", "BRIGHTCONTRAST", "CLAMP", "COMBHSV", "COMBINE_COLOR", "COMBRGB", "COMBXYZ", "CURVE_FLOAT", "CURVE_RGB", "CURVE_VEC",
     "GAMMA", "HUE_SAT", "INVERT", "LIGHT_PATH", "MAP_RANGE", "MATH", "MIX", "MIX_RGB", "RGB", "RGBTOBW", "SEPARATE_COLOR", "SEPHSV",
     "SEPRGB", "SEPXYZ", "SQUEEZE", "VALTORGB", "VALUE", "VECT_MATH", "WAVELENGTH"))
-# Those that depend on more than a place of a surface.
+# Nodes that depend on more than the point on a surface.
 _ELSEWHERE = frozenset((
     "AMBIENT_OCCLUSION", "BEVEL", "CAMERA", "FRESNEL", "HAIR_INFO", "LAYER_WEIGHT", "OBJECT_INFO", "PARTICLE_INFO", "POINT_INFO",
     "VOLUME_INFO", "WIREFRAME"))
@@ -20,7 +20,7 @@ _ELSEWHERE = frozenset((
 
 @dataclass(frozen=True)
 class Source:
-    """An output of a node, and the groups that the node is in, outermost first."""
+    """An output of a node, and the groups that contain the node, outermost first."""
 
     node: object
     output: object
@@ -37,7 +37,7 @@ class Value:
 
 
 def source_of(socket, groups=()):
-    """What feeds an input, or None where nothing does; then the socket's own value counts."""
+    """The source of an input, or None if it has none; then the socket's own value counts."""
     while True:
         if not socket.is_linked:
             return None
@@ -68,7 +68,7 @@ def source_of(socket, groups=()):
 
 
 def made_of(found):
-    """All that is behind an output, each node once, but for what is behind images that lie by UV."""
+    """All sources upstream of an output, each node once, except for those upstream of images that are placed by UV."""
     known, asked = {}, [found]
     while asked:
         source = asked.pop()
@@ -83,7 +83,7 @@ def made_of(found):
 
 
 def _lies_by_uv(source):
-    """Whether this is an image on the surface by a UV map, and a Mapping node at most."""
+    """Whether this is an image placed by a UV map and at most one Mapping node."""
     if source.node.type != "TEX_IMAGE" or source.node.projection != "FLAT":
         return False
     found = source_of(source.node.inputs["Vector"], source.groups)
@@ -96,14 +96,15 @@ def _lies_by_uv(source):
 
 
 def _moves_flat(mapping):
-    """Whether a Mapping node moves, turns and scales as KHR_texture_transform does."""
+    """Whether a Mapping node can be expressed as KHR_texture_transform."""
     inputs = mapping.inputs
     return mapping.vector_type == "POINT" and not any(s.is_linked for s in inputs[1:] if s.enabled) and \
         not any(inputs["Rotation"].default_value[:2])
 
 
 def _depends_on_more(source):
-    """Than on a place of a surface: on the eye, on other objects, on which copy it is."""
+    """Whether a source depends on more than the point on a surface: on the eye, on other objects, or on the
+    instance."""
     node, output = source.node, source.output.name
     return node.type in _ELSEWHERE or node.type == "TEX_COORD" and output in ("Camera", "Window", "Reflection") or \
         node.type == "NEW_GEOMETRY" and output in ("Incoming", "Backfacing") or \
@@ -111,7 +112,7 @@ def _depends_on_more(source):
 
 
 def all_nodes(tree):
-    """Those of groups too."""
+    """All nodes of a tree, including those in groups."""
     for node in tree.nodes:
         yield node
         if node.type == "GROUP" and node.node_tree:
@@ -124,10 +125,11 @@ def constant(socket):
 
 
 class Sockets:
-    """Reads inputs of one material, lamp or world; what it cannot follow goes into `notes` by its name."""
+    """Reads inputs of one material, lamp or world. Inputs that it cannot follow are reported in `notes` under its
+    name."""
 
     def __init__(self, owner, notes, cycles, body=None, baked=False):
-        """`body`: what the material is on; `baked`: whether all textures are baked on it."""
+        """`body`: the body with the material; `baked`: whether all textures are baked on it."""
         self._owner, self._name, self._notes, self._cycles, self._body, self._all = owner, owner.name, notes, cycles, body, baked
 
     def color(self, socket, groups=()):
@@ -182,7 +184,7 @@ class Sockets:
         node = found.node
         if node.type == "NORMAL_MAP" and node.space == "TANGENT":
             socket = node.inputs["Color"]
-            color = self._color(socket, source_of(socket, found.groups))  # never baked: it is about its own UV map
+            color = self._color(socket, source_of(socket, found.groups))  # never baked: it refers to its own UV map
             if color.texture:
                 use = replace(color.texture, uv_map=node.uv_map or color.texture.uv_map)
                 return use, self.scalar(node.inputs["Strength"], found.groups).factor
@@ -202,13 +204,13 @@ class Sockets:
         return Use(node.image, uv_map, place, node.extension, node.interpolation == "Closest")
 
     def _place(self, node, groups):
-        """Blender moves coordinates whose v points up, glTF those whose v points down."""
+        """The transform of a Mapping node for glTF: v points up in Blender and down in glTF."""
         (tx, ty, _), (_, _, turn), (sx, sy, _) = (tuple(node.inputs[n].default_value) for n in ("Location", "Rotation", "Scale"))
         c, s = math.cos(turn), math.sin(turn)
         return (tx - s * sy, 1 - ty - c * sy), turn, (sx, sy)
 
     def _product(self, node, groups):
-        """The product of two colours, of which one at most has a texture; or None."""
+        """The product of two colours, of which at most one has a texture; or None."""
         if node.type == "MIX_RGB":
             factor, a, b = node.inputs[0], node.inputs[1], node.inputs[2]
         elif node.type == "MIX" and node.data_type == "RGBA":
@@ -224,8 +226,8 @@ class Sockets:
         return Value(tuple(p * q for p, q in zip(a.factor, b.factor)), a.texture or b.texture, colors)
 
     def _evaluated(self, found):
-        """What Cycles makes of the nodes behind an output: on the square of their images where they have nothing else, on the
-        body where its place matters. None where that cannot be had."""
+        """Cycles's evaluation of the nodes upstream of an output: on the square of their images if they depend on
+        nothing else, or on the body if its position matters. None if it cannot be evaluated."""
         behind = made_of(found)
         if any(map(_depends_on_more, behind)) or not all(self._usable(s.node) for s in behind if s.node.type == "TEX_IMAGE"):
             return None
@@ -237,7 +239,7 @@ class Sockets:
         return value
 
     def _baked_if_all(self, found):
-        """Where all is to be baked and this is more than a constant."""
+        """The baked value if all textures are to be baked and this is more than a constant; else None."""
         if not self._all or found is None or found.node is None or found.node.type in ("RGB", "VALUE"):
             return None
         behind = made_of(found)
@@ -252,12 +254,12 @@ class Sockets:
         return self._scaled(Use(Picture(name, texels), UNWRAPPED, None, "EXTEND", size=size))
 
     def name_of(self, node, groups, *more):
-        """Of a Picture that is made at a node: no other one's, if `more` says what else it depends on."""
+        """A unique name for a Picture made at a node. `more` must name everything else on which it depends."""
         return ", ".join((self._owner.name_full, *(g.name for g in groups), node.name, *more))
 
     @staticmethod
     def _scaled(use):
-        """What is brighter than one goes into the factor."""
+        """Moves the excess of texels above one into the factor."""
         most = max(float(use.image.texels.max()), 1.0)
         use.image.texels[..., :3] /= most
         return Value((most,) * 3, use)
@@ -296,5 +298,5 @@ def _three(value):
 
 
 def luminance(value):
-    """Of a colour; a number is its own."""
+    """Luminance of a colour; a number is returned as it is."""
     return value if isinstance(value, float) else 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]

@@ -1,4 +1,4 @@
-"""A shader tree as one surface of glTF's kind: what each BSDF is there, and what mixtures become."""
+"""Converts a shader tree to one surface in glTF's model: each BSDF, and mixtures of them."""
 
 import math
 from dataclasses import dataclass, replace
@@ -9,15 +9,15 @@ from .sockets import Sockets, Value, luminance, source_of
 from .textures import placed_alike, scalar
 
 BLACK = Value((0.0, 0.0, 0.0))
-# Disney's coat of 1, Blender 3's, reflects a quarter of what Fresnel has for it.
+# In Blender 3, Disney's coat of weight 1 reflects a quarter of the Fresnel reflectance.
 DISNEY_COAT = 0.25
-# Disney's sheen, (1 - cos)^5, as the sheen of microfibres that glTF has: the albedos of the two are within a third of
-# each other from 30 to 85 degrees.
+# Disney's sheen, (1 - cos)^5, expressed as glTF's sheen of microfibres: their albedos differ by at most a third from 30
+# to 85 degrees.
 DISNEY_SHEEN, DISNEY_SHEEN_ROUGHNESS = 0.1, 0.3
 
 
 class LieApart(Exception):
-    """Textures that become one lie on the surface in different ways: they have to be baked."""
+    """Textures to be combined are placed differently on the surface: they must be baked."""
 
 
 @dataclass
@@ -25,8 +25,8 @@ class Surface:
     base: Value = BLACK
     metallic: Value = Value(0.0)
     roughness: Value = Value(1.0)
-    reflectance: float = 0.0  # of the dielectric layer, seen straight on; 0 is Lambert's
-    ior: float = 1.5  # of what transmits
+    reflectance: float = 0.0  # of the dielectric layer at normal incidence; 0: Lambertian
+    ior: float = 1.5  # for transmission
     transmission: Value = Value(0.0)
     coat: float = 0.0
     coat_roughness: float = 0.0
@@ -38,14 +38,14 @@ class Surface:
     sheen: tuple = (0.0, 0.0, 0.0)
     sheen_roughness: float = 0.0
     brushing: Brushing = None
-    absorption: tuple = None  # of the body behind it: what is left of light, by channel, after so many metres
+    absorption: tuple = None  # of the body: transmittance by channel, and the distance in metres
 
 
 class SurfaceReader:
-    """Of one material, on a body whose square of texture coordinates has sides of `size` metres."""
+    """Reads one material on a body whose square of texture coordinates has sides of `size` metres."""
 
     def __init__(self, material, body, size, notes, cycles, baked=False):
-        """`baked`: whether all textures are baked on the body, and so lie alike."""
+        """`baked`: whether all textures are baked on the body and thus placed alike."""
         self._name, self._size, self._notes, self._baked = material.name, size, notes, baked
         self._sockets = Sockets(material, notes, cycles, body, baked)
         self._readers = {
@@ -55,7 +55,7 @@ class SurfaceReader:
             "ADD_SHADER": self._add, "BACKGROUND": self._emission}
 
     def read(self, socket, groups=()):
-        """The surface of a shader input; black where nothing is linked."""
+        """The surface of a shader input; black if nothing is linked."""
         found = source_of(socket, groups)
         if found is None or found.node is None:
             return Surface()
@@ -63,7 +63,7 @@ class SurfaceReader:
         return reader(found.node, found.groups)
 
     def absorption(self, socket):
-        """Surface.absorption of a volume input, or None, which is said."""
+        """Surface.absorption of a volume input; None, with a note, if it is not supported."""
         found = source_of(socket)
         if found and found.node and found.node.type == "VOLUME_ABSORPTION":
             density = self._number(found.node, found.groups, "Density")
@@ -84,7 +84,7 @@ class SurfaceReader:
         return self._sockets.scalar(socket, groups) if socket else Value(otherwise)
 
     def _number(self, node, groups, *names, otherwise=0.0):
-        """One that has no texture in glTF, or none here."""
+        """A value without a texture; a texture is replaced by a number, with a note."""
         value = self._scalar(node, groups, *names, otherwise=otherwise)
         if value.texture:
             self._note(f"the texture of {names[0]} is left out: 0.5 is used")
@@ -105,7 +105,7 @@ class SurfaceReader:
             self._note("the normals under a Bump node are left out")
         heights = self._scalar(node, groups, "Height")
         if not heights.texture:
-            return None  # even
+            return None  # a constant height has no effect
         distance = self._number(node, groups, "Distance") * heights.factor * (-1 if node.invert else 1)
         strength = min(max(self._number(node, groups, "Strength"), 0.0), 1.0)
         size = heights.texture.size or self._size
@@ -126,7 +126,8 @@ class SurfaceReader:
         return tuple(min(DISNEY_SHEEN * weight * (1 - tint + tint * h), 1.0) for h in hue), DISNEY_SHEEN_ROUGHNESS
 
     def _brush(self, s, node, groups, widths):
-        """Brushes the surface, where the node does: `widths` of an anisotropy, as factors of alpha."""
+        """Sets the surface's brushing if the node is anisotropic. `widths`: function from the anisotropy to factors of
+        alpha."""
         along, across = widths(self._number(node, groups, "Anisotropic", "Anisotropy"))
         if along == across:
             return s
@@ -170,7 +171,7 @@ class SurfaceReader:
         return self._shining(Surface(), node, groups, "Color")
 
     def _shining(self, s, node, groups, *colors):
-        """With an emission of that input, by one of two that has a texture."""
+        """Adds the emission of an input to the surface; only one of colour and strength may have a texture."""
         s.emission, strength = self._color(node, groups, *colors), self._scalar(node, groups, "Emission Strength", "Strength")
         s.strength = strength.factor
         if strength.texture and not s.emission.texture and not strength.texture.channel:
@@ -189,7 +190,7 @@ class SurfaceReader:
         sharp = getattr(node, "distribution", "") == "SHARP"
         s = Surface(base=self._color(node, groups, "Color"), metallic=Value(1.0), normal=self._normal(node, groups),
                     roughness=Value(0.0) if sharp else self._scalar(node, groups, "Roughness"))
-        # Blender 4 has one node for both, and the plain one of 3 has no such input.
+        # Blender 4 has one node for both; the isotropic node of Blender 3 has no such input.
         return self._brush(s, node, groups, anisotropic_widths) if _input(node, "Anisotropy") and not sharp else s
 
     def _glass(self, node, groups):
@@ -231,7 +232,7 @@ class SurfaceReader:
         return self._mixture(a, b, share, node, groups)
 
     def _thinned(self, solid, node, groups, flip):
-        """A mixture with Transparent BSDF; its factor says how much of the second shader there is."""
+        """A mixture with Transparent BSDF; the node's factor is the weight of the second shader."""
         share = self._scalar(node, groups, "Fac", "Factor")
         if not share.texture:
             factor = 1 - share.factor if flip else share.factor
@@ -244,7 +245,8 @@ class SurfaceReader:
         return replace(under, roughness=over.roughness, reflectance=0.04)
 
     def _mixture(self, a, b, share, node, groups):
-        """Two shaders as one surface: what can have a texture is mixed texel by texel, the rest as a whole."""
+        """A mixture of two shaders as one surface. Values that can have a texture are mixed texel by texel; the others
+        are mixed as numbers."""
         f = min(max(share.factor * (float(scalar(share.texture).mean()) if share.texture else 1.0), 0.0), 1.0)
 
         def mean(p, q):
@@ -264,7 +266,7 @@ class SurfaceReader:
         return made
 
     def _mixed(self, field, p, q, share, node, groups):
-        """A Value between two, of that field of a surface."""
+        """The mixture of two Values of a surface's field."""
         uses = [use for use in (share.texture, p.texture, q.texture) if use]
         if p == q:
             return p
@@ -288,7 +290,7 @@ class SurfaceReader:
 
 
 def _light(s):
-    """Its emission, strength included."""
+    """The surface's emission, including its strength."""
     return replace(s.emission, factor=tuple(s.strength * c for c in s.emission.factor))
 
 

@@ -13,7 +13,7 @@ _WRAPS = {"REPEAT": REPEAT, "EXTEND": CLAMP, "CLIP": CLAMP, "MIRROR": MIRROR}
 
 
 class Picture:
-    """Texels that no image of Blender's has: height x width x 3, linear, row 0 at the top."""
+    """Computed texels that are no image of Blender: height x width x 3, linear, row 0 at the top."""
 
     source = "GENERATED"
 
@@ -27,21 +27,21 @@ class Use:
     """An image on a surface. `place`: offset, rotation and scale of KHR_texture_transform, or None."""
 
     image: object  # bpy.types.Image or Picture
-    uv_map: str = ""  # "" is the one that is active for rendering
+    uv_map: str = ""  # "": the one active for rendering
     place: tuple = None
     wrap: str = "REPEAT"
-    nearest: bool = False  # squares of one colour
-    channel: str = ""  # of a scalar: R, G, B or A, "" for the luminance
-    size: float = 0.0  # metres of its square on the surface; 0: as large as that of the mesh's UV map
+    nearest: bool = False  # no interpolation
+    channel: str = ""  # for scalars: R, G, B or A, "" for the luminance
+    size: float = 0.0  # side of its square on the surface in metres; 0: that of the mesh's UV map
 
 
 def placed_alike(uses):
-    """Whether images lie on a surface in the same way, so that their texels may be mixed."""
+    """Whether images are placed alike on a surface, so that their texels may be mixed."""
     return len({replace(use, image=None, channel="") for use in uses}) < 2
 
 
 def png(texels):
-    """`texels`: height x width x 3 or 4 bytes, row 0 at the top."""
+    """A PNG file. `texels`: height x width x 3 or 4 bytes, row 0 at the top."""
     height, width, depth = texels.shape
 
     def chunk(kind, data):
@@ -63,7 +63,7 @@ def to_linear(coded):
 
 
 def stored(image):
-    """Height x width x 4 floats as the image holds them, row 0 at the top."""
+    """The image's stored values, height x width x 4 floats, row 0 at the top."""
     if isinstance(image, Picture):
         return image.texels
     width, height = image.size
@@ -73,7 +73,7 @@ def stored(image):
 
 
 def is_coded(image):
-    """Whether its colours are sRGB's and not linear. Blender keeps those of float images linear."""
+    """Whether the image's colours are coded as sRGB. Those of float images in Blender are linear."""
     return not isinstance(image, Picture) and not image.is_float and \
         image.colorspace_settings.name not in ("Non-Color", "Raw", "Linear", "Linear Rec.709")
 
@@ -93,7 +93,7 @@ def scalar(use):
 
 
 def resized(values, shape):
-    """Nearest texels, so many."""
+    """Values resampled to `shape` by nearest texels."""
     rows = numpy.arange(shape[0]) * values.shape[0] // shape[0]
     columns = numpy.arange(shape[1]) * values.shape[1] // shape[1]
     return values[rows][:, columns]
@@ -106,7 +106,7 @@ class Textures:
         self._glb, self._made = glb, {}
 
     def color(self, use, alpha=None):
-        """sRGB, and the values of another image in alpha. Returns a texture's index."""
+        """Index of an sRGB texture, with the values of another image in alpha."""
         key = ("color", use.image.name, use.wrap, use.nearest, alpha and (alpha.image.name, alpha.channel))
         if key not in self._made:
             data = None if alpha else _file_of(use.image)
@@ -114,7 +114,7 @@ class Textures:
         return self._made[key]
 
     def scalars(self, **channels):
-        """R, G, B or A: a Use or None. Linear; what has no Use is 1."""
+        """Index of a linear texture. `channels`: R, G, B or A, each a Use or None; channels without a Use are 1."""
         first = next(use for use in channels.values() if use)
         key = tuple((c, u and (u.image.name, u.channel, u.wrap, u.nearest)) for c, u in sorted(channels.items()))
         if key not in self._made:
@@ -133,7 +133,7 @@ class Textures:
         return self._made[key]
 
     def info(self, texture, use, uv_set):
-        """What a material says of a texture."""
+        """A material's reference to a texture."""
         info = {"index": texture}
         if uv_set:
             info["texCoord"] = uv_set
@@ -163,7 +163,7 @@ def _bytes(values):
 
 
 def _file_of(image):
-    """The bytes of its file and their kind, where they are what the image shows; else None."""
+    """The bytes and type of the image's file if they can be used unchanged; else None."""
     if image.source != "FILE" or image.is_dirty or not is_coded(image) or image.file_format != "JPEG":
         return None  # a PNG may have an alpha channel, which an opaque surface must not have
     if image.packed_file:

@@ -1,5 +1,4 @@
-"""The world: one colour, or a latitude-longitude image, turned as Blender turns it. What is neither, Cycles makes an
-image of."""
+"""The world: one colour, or a latitude-longitude image with its rotation. Cycles renders all others to an image."""
 
 import math
 import os
@@ -10,13 +9,13 @@ from . import exr
 from .sockets import all_nodes, constant, source_of
 from .textures import linear
 
-# The middle of an image is +X in Blender, and -Z (Blender's +Y) in Lacuna.
+# The centre of an image is +X in Blender, and -Z (Blender's +Y) in Lacuna.
 BETWEEN = 90.0
-_PLAIN, _WITH_SUN, _WIDEST = 512, 2048, 4096  # texels of a panorama, from left to right
+_PLAIN, _WITH_SUN, _WIDEST = 512, 2048, 4096  # widths of panoramas in texels
 
 
 def options(world, folder, notes, cycles):
-    """What lacuna-render is told; an image is written into `folder`."""
+    """The options of lacuna-render for the world; an image is written to `folder`."""
     if world is None:
         return []
     if not world.use_nodes:
@@ -34,7 +33,7 @@ def options(world, folder, notes, cycles):
 
 
 def _plain(found, folder):
-    """Of a Background of constants, or of an image and a Mapping node; None for all others."""
+    """The options for a Background of constants, or of an image and a Mapping node; None for all others."""
     if found.node.type != "BACKGROUND":
         return None
     strength = _constant(found.node.inputs["Strength"], found.groups)
@@ -58,7 +57,7 @@ def _constant(socket, groups):
 def _panorama(world, folder, notes, cycles):
     nodes = list(all_nodes(world.node_tree))
     images = [n.image.size[0] for n in nodes if n.type in ("TEX_ENVIRONMENT", "TEX_IMAGE") and n.image]
-    # A sun is half a degree wide; an image that is turned wants twice its texels.
+    # A sun is half a degree wide; a rotated image needs twice its texels.
     widths = [_WITH_SUN if any(n.type == "TEX_SKY" for n in nodes) else _PLAIN, *(2 * i for i in images)]
     values = cycles.panorama(world, min(max(widths), _WIDEST))
     if values is None:
@@ -77,7 +76,7 @@ def _colour(colour):
 
 
 def _image(found, strength, folder):
-    """An image in all its texels, where it is turned about Z at most; else None."""
+    """The options for an unchanged image, if it is at most rotated about Z; else None."""
     node = found.node
     if node.image is None or node.image.size[0] == 0 or node.projection != "EQUIRECTANGULAR":
         return None
@@ -88,7 +87,7 @@ def _image(found, strength, folder):
 
 
 def _turn(found):
-    """By which angle what feeds an image's Vector turns it about Z; None where it does something else."""
+    """The angle by which the source of an image's Vector rotates it about Z; None if it does anything else."""
     if found is None or _is_direction(found):
         return 0.0
     if found.node is None or found.node.type != "MAPPING" or found.node.vector_type == "TEXTURE":

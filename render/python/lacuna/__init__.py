@@ -91,7 +91,7 @@ class Layers(Mapping[str, NDArray[np.float32]]):
 
 
 class Image:
-    """A picture with its layers and everything that was measured. It is immutable."""
+    """A picture with its layers and statistics. It is immutable."""
 
     def __init__(self, rgb: Any):
         """`rgb`: an array (height, width, 3), or the picture of a render."""
@@ -124,16 +124,17 @@ class Image:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """What `lacuna-render --json` writes; for an image that was read or relit, its header."""
+        """The statistics that `lacuna-render --json` writes; for an image that was read or relit,
+        its header."""
         statistics: dict[str, Any] = json.loads(self._picture.statistics())
         return statistics
 
     def relight(self, lights: Mapping[str, float | Sequence[float]]) -> Image:
-        """The image under other light: {"sun": .1, "lamps": (2, 1.8, 1.4)} multiplies these groups by a
-        number, or by one for each channel; the others stay as they are. It needs a render with
-        light_groups=True; with light_noise=True its "variance" is known as well. Layers that show
-        the old light are left out. Raises UsageError for a group that does not exist or a factor
-        below 0, InputError for an image without groups.
+        """The image under changed light: {"sun": .1, "lamps": (2, 1.8, 1.4)} multiplies these
+        groups by a number, or by one number per channel; the others stay as they are. The render
+        must have had light_groups=True; with light_noise=True the result has a "variance" as well.
+        Layers that depend on the old light are left out. Raises UsageError for a group that does
+        not exist or a factor below 0, InputError for an image without groups.
         """
         factors = {group: _three(factor) for group, factor in lights.items()}
         return Image(self._picture.relight(factors))
@@ -143,7 +144,7 @@ class Image:
         self._picture.save(os.fspath(path))
 
     def compare(self, reference: Image | NDArray[Any]) -> dict[str, float]:
-        """mae, rmse, mape and relmse against a reference. Raises InputError where sizes differ."""
+        """mae, rmse, mape and relmse against a reference. Raises InputError if sizes differ."""
         other = reference if isinstance(reference, Image) else Image(reference)
         return self._picture.compare(other._picture)
 
@@ -192,9 +193,9 @@ def render(
     method: set={"candidates": 200}.
 
     `on_progress` is called when a phase begins and after each iteration, with a Progress: phase,
-    iterations, limit, seconds, time_limit, accuracy, and preview(), the picture as it is now or
-    None. An exception that it raises ends the render. Ctrl-C ends it as well: the output is
-    written, then KeyboardInterrupt is raised. Other Python threads run meanwhile.
+    iterations, limit, seconds, time_limit, accuracy, and preview(), the current picture or None. An
+    exception that it raises ends the render. Ctrl-C ends it as well: the output is written, then
+    KeyboardInterrupt is raised. Other Python threads run meanwhile.
 
     Raises UsageError, InputError, RunError. Warnings are LacunaWarning.
     """

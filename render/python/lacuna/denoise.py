@@ -1,4 +1,4 @@
-"""Gives a picture with its layers albedo and normal to Open Image Denoise, if that is installed:
+"""Denoises a picture with its layers albedo and normal by Open Image Denoise, if that is installed:
 
     python3 -m lacuna.denoise picture.exr denoised.exr
 

@@ -1,4 +1,4 @@
-"""Scenes from arrays. Units and axes are glTF's: +Y up, radiance and W/sr 1:1."""
+"""Scenes from arrays. Units and axes are glTF's: +Y up, radiance and W/sr unscaled."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ class Scene:
         self._builder = SceneBuilder()
 
     def add_texture(self, rgba: Any) -> int:
-        """An image (height, width, 4) of 8-bit R, G, B, A, the top row first."""
+        """Adds an image (height, width, 4) of 8-bit R, G, B, A, top row first. Returns its
+        index."""
         array = np.asarray(rgba)
         if array.dtype != np.uint8:
             raise UsageError(f"add_texture: expected 8-bit unsigned integers, found {array.dtype}")
@@ -92,9 +93,10 @@ class Scene:
         material: int | None = None,
         place: bool = True,
     ) -> int:
-        """Positions (n, 3), triangles (m, 3), counterclockwise from in front; normals (n, 3), uvs
-        (n, 2; v points down) and colours (n, 4; factors of the base colour) are optional. The mesh
-        is placed once, untransformed, unless `place` is False: see add_instance.
+        """Adds a mesh of positions (n, 3) and triangles (m, 3), counterclockwise seen from the
+        front. Normals (n, 3), uvs (n, 2; v points down) and colours (n, 4; factors of the base
+        colour) are optional. The mesh is placed once, untransformed, unless `place` is False: see
+        add_instance. Returns its index.
         """
         mesh = self._builder.add_mesh(
             _rows("positions", positions, 3, np.float32),
@@ -109,13 +111,14 @@ class Scene:
         return mesh
 
     def add_instance(self, mesh: int, to_world: Any = None) -> None:
-        """Places a mesh by a matrix (4, 4); the same mesh any number of times."""
+        """Places a mesh by a matrix (4, 4). A mesh can be placed any number of times."""
         self._builder.add_instance(mesh, _columns(to_world))
 
     def add_camera(
         self, to_world: Any, *, yfov: float = 0.8, aspect: float = 0.0, name: str = ""
     ) -> None:
-        """Adds a camera that looks along -Z of its matrix (look_at). `yfov`: radians, the whole vertical angle."""
+        """Adds a camera that looks along -Z of its matrix (look_at). `yfov`: full vertical angle in
+        radians."""
         self._builder.add_camera(name, _columns(to_world), yfov, aspect)
 
     def add_lamp(
@@ -127,8 +130,8 @@ class Scene:
         inner: float = 0.0,
         outer: float = np.pi / 4,
     ) -> None:
-        """Adds a lamp: "point", "spot" (W/sr) or "directional" (W/m^2 across its rays). It shines
-        along -Z. `inner` and `outer` are the angles of a spot: radians from its axis.
+        """Adds a lamp: "point", "spot" (W/sr) or "directional" (W/m^2 normal to its rays). It
+        shines along -Z. `inner` and `outer` are the half angles of a spot in radians.
         """
         self._builder.add_lamp(kind, intensity, _columns(to_world), inner, outer)
 

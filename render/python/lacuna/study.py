@@ -1,4 +1,4 @@
-"""Studies: error against time of methods, scenes and seeds, by the program lacuna-study."""
+"""Studies of error against time, over methods, scenes and seeds, by the program lacuna-study."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _SHARED = "$LACUNA_SHARED_SCENES/"
 
 
 def find_program(name: str) -> str:
-    """The path of a program of Lacuna: the one that was built or installed with this package, else
-    the one in the PATH. Raises RunError if there is none.
+    """The path of a program of Lacuna: the one built or installed with this package, else the one
+    in the PATH. Raises RunError if there is none.
     """
     package = Path(__file__).absolute().parent
     # The package is BUILD/python/lacuna, or PREFIX/lib/python3/dist-packages/lacuna.
@@ -47,7 +47,7 @@ def _absolute(path: Any) -> Any:
 
 
 def _from_here(value: Any, key: str = "") -> Any:
-    """The study with the paths in it absolute, so that its file may lie anywhere."""
+    """The study with absolute paths, so that its file may lie anywhere."""
     if isinstance(value, Mapping):
         return {k: _from_here(v, k) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
@@ -60,10 +60,11 @@ def _from_here(value: Any, key: str = "") -> Any:
 
 
 def _run(command: list[str], on_message: Callable[[str], None] | None) -> None:
-    """In a session of its own: an interrupt comes to us alone, and from us to the program, once."""
+    """Runs the program in its own session: an interrupt reaches only this process, which passes it
+    on once."""
     said: list[str] = []
     stopped: BaseException | None = None
-    # A file name in a message may be of any bytes.
+    # A file name in a message may contain any bytes.
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True, errors="replace",
                                start_new_session=True)
@@ -77,7 +78,7 @@ def _run(command: list[str], on_message: Callable[[str], None] | None) -> None:
                         on_message(said[-1])
                 code = process.wait()
                 break
-            except BaseException as why:  # Ctrl-C, or what the callback raised
+            except BaseException as why:  # Ctrl-C, or an exception of the callback
                 stopped = stopped or why
                 process.send_signal(signal.SIGINT)
     if stopped is not None:
@@ -92,14 +93,14 @@ def _numbers(texts: list[str]) -> Array:
 
 
 def _phases(texts: list[str]) -> dict[str, Array]:
-    """`eye paths=0.52;light paths=0.11` of each row, by name."""
+    """Parses `eye paths=0.52;light paths=0.11` of each row into arrays by name."""
     rows = [dict(part.rsplit("=", 1) for part in text.split(";") if part) for text in texts]
     names = dict.fromkeys(name for row in rows for name in row)
     return {name: np.array([float(row.get(name, 0)) for row in rows]) for name in names}
 
 
 def _curves(path: Path) -> dict[tuple[str, str, int], dict[str, Any]]:
-    """By scene, name and seed, each a dict of columns."""
+    """Curves by scene, name and seed, each a dict of columns."""
     rows: dict[tuple[str, str, int], list[dict[str, str]]] = {}
     with path.open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
@@ -116,7 +117,7 @@ def _curves(path: Path) -> dict[tuple[str, str, int], dict[str, Any]]:
 
 
 def _by_name(results: dict[str, Any], key: str) -> dict[str, dict[str, Any]]:
-    """What stands in arrays by scene and method."""
+    """Results in arrays by scene and method, as dicts by their names."""
     return {
         scene["name"]: {m["name"]: value for m, value in zip(results["methods"], row)}
         for scene, row in zip(results["scenes"], results[key])
@@ -142,7 +143,7 @@ def _read(output: Path, file: Path) -> dict[str, Any]:
     results["costs"] = _by_name(results, "costs")
     names = [scene["name"] for scene in results["scenes"]]
     results["knobs"] = dict(zip(names, results["knobs"]))
-    del results["error_map"]  # the page's colours
+    del results["error_map"]  # only for the page
     return results
 
 
@@ -154,13 +155,13 @@ def study(
     threads: int | None = None,
     on_message: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """Runs a study, or what an earlier call left to do, and returns its results.
+    """Runs a study, or the rest that an earlier call left, and returns its results.
 
     `file_or_dict`: the path of a study's file, or its content (render/README.md, "lacuna-study");
     paths in a dict are relative to the working directory. `output`: the folder for the page
-    index.html, tables and pictures. Runs that are there already are not repeated. `quick` and
-    `threads` are the options of the program. `on_message` is called with each line that the program
-    prints, at least one every ten seconds.
+    index.html, tables and pictures. Existing runs are not repeated. `quick` and `threads` are the
+    options of the program. `on_message` is called with each line that the program prints, at least
+    one every ten seconds.
 
     The result is a dict:
 
@@ -175,7 +176,7 @@ def study(
     scenes, methods, measures, seeds, baseline, knobs, title, ..: how it was made.
 
     Raises UsageError, InputError or RunError, by the program's exit code. Ctrl-C ends the program
-    in order, then KeyboardInterrupt is raised; the same call goes on from there.
+    in an orderly way, then KeyboardInterrupt is raised; the same call continues from there.
     """
     program = find_program("lacuna-study")
     folder = Path(os.path.abspath(output))
