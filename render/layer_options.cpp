@@ -59,9 +59,9 @@ LayerExpression parse(const std::string& text) {
     if (equals == std::string::npos) {
         throw UsageError("--layer: expected NAME=EXPRESSION, found '" + text + "'");
     }
-    LayerExpression layer{text.substr(0, equals), text.substr(equals + 1), {}};
+    LayerExpression layer{text.substr(0, equals), text.substr(equals + 1), "--layer " + text, {}};
     checkName(layer.name);
-    layer.parsed = parseExpression(layer.text, layer.what());
+    layer.parsed = parseExpression(layer.text, layer.title);
     return layer;
 }
 

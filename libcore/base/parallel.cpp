@@ -36,7 +36,7 @@ int sensible(int threads) {
 
 /// Throws RunError if the system cannot start `count` threads. oneTBB would throw where nobody can
 /// catch it, so that the check comes before.
-void requireRoomForThreads(int count) {
+void requireRoomForThreads(int count, const std::string& title) {
     std::promise<void> allStarted;
     const std::shared_future<void> wait = allStarted.get_future().share();
     std::vector<std::thread> probes;
@@ -51,14 +51,14 @@ void requireRoomForThreads(int count) {
     allStarted.set_value();
     for (std::thread& probe : probes) probe.join();
     if (room) return;
-    throw RunError("--threads: expected to start " + std::to_string(count) +
+    throw RunError(title + ": expected to start " + std::to_string(count) +
                    " threads, found room for " + std::to_string(started) +
                    "; use fewer, or raise the limits of processes or memory (ulimit)");
 }
 
-int checked(int threads) {
+int checked(int threads, const std::string& title) {
     const int count = sensible(threads);
-    requireRoomForThreads(count);
+    requireRoomForThreads(count, title);
     return count;
 }
 }  // namespace
@@ -71,7 +71,8 @@ struct ThreadPool::Impl {
     tbb::task_arena arena;
 };
 
-ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>(checked(threads))) {}
+ThreadPool::ThreadPool(int threads, const std::string& title)
+    : impl_(std::make_unique<Impl>(checked(threads, title))) {}
 ThreadPool::~ThreadPool() = default;
 
 int ThreadPool::threads() const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace lacuna {
 
@@ -18,8 +19,9 @@ inline const std::atomic<bool> kNeverCancelled{false};
 /// flush-to-zero set in some workers, and denormals would depend on the order of calls.)
 class ThreadPool {
   public:
-    /// Throws RunError where the system has no room for that many threads.
-    explicit ThreadPool(int threads = 0);
+    /// Throws RunError where the system has no room for that many threads; `title` is what its message
+    /// calls their number ("--threads").
+    explicit ThreadPool(int threads = 0, const std::string& title = "threads");
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;

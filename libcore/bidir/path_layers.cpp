@@ -52,7 +52,7 @@ void requireNames(std::span<const LayerExpression> expressions, const std::set<s
             if (all.contains(name)) continue;
             const Names shown(all.begin(),
                               std::next(all.begin(), std::ptrdiff_t(std::min(all.size(), kShown))));
-            throw UsageError(e.what() + ": position " + std::to_string(position) +
+            throw UsageError(e.title + ": position " + std::to_string(position) +
                              ": expected the name of a light, node or material (" +
                              (all.empty() ? "the scene has none" : joined(shown, ", ")) +
                              (all.size() > kShown ? ", ..." : "") + "), found \"" + name + "\"");
@@ -64,7 +64,7 @@ void requireNames(std::span<const LayerExpression> expressions, const std::set<s
 /// expressions mention need letters.
 Letter letterAt(std::size_t index) {
     if (index > std::numeric_limits<Letter>::max()) {
-        throw UsageError("--layer: expected expressions that tell fewer objects apart by names");
+        throw UsageError("light path expressions: expected ones that tell fewer objects apart by names");
     }
     return Letter(index);
 }
@@ -157,7 +157,7 @@ void PathLayers::addExpressions(const Scene& scene, std::span<const LayerExpress
     std::vector<Automaton> automata;
     for (const LayerExpression& e : expressions) {
         names_.push_back(e.name);
-        automata.emplace_back(e.parsed.root, alphabet, e.what());
+        automata.emplace_back(e.parsed.root, alphabet, e.title);
     }
     for (std::size_t i = 0; i < automata.size(); i += automata_.back().size()) {
         automata_.emplace_back(std::span(automata).subspan(i), std::uint32_t(first + i));

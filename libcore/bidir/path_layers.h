@@ -19,10 +19,8 @@ class Scene;
 /// A layer of the paths that an expression matches.
 struct LayerExpression {
     std::string name, text;
+    std::string title;  ///< what its errors begin with, in the words of whoever gave it
     ParsedExpression parsed;
-
-    /// The text that its errors begin with.
-    std::string what() const { return "--layer " + name + "=" + text; }
 };
 
 /// The name of the layer of a group of lights.

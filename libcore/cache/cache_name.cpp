@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "libcore/base/error.h"
 #include "libcore/base/text_list.h"
 
 namespace lacuna {
@@ -93,18 +92,6 @@ std::vector<std::string> cachesIn(const std::string& directory, const std::strin
     }
     std::sort(files.begin(), files.end());
     return files;
-}
-
-void makeCacheDirectory(const std::string& file) {
-    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
-    if (directory.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    if (error) {
-        throw RunError(directory.string() +
-                       ": expected to make this directory for caches, found: " + error.message() +
-                       "; name another directory for caches (--cache DIR)");
-    }
 }
 
 }  // namespace lacuna

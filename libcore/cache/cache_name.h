@@ -40,7 +40,4 @@ std::string cacheFile(const std::string& directory, const CacheStamp& stamp,
 /// All files DIRECTORY/*.kind, sorted by name; none where there is no such directory.
 std::vector<std::string> cachesIn(const std::string& directory, const std::string& kind);
 
-/// Creates the directory of `file`. Throws RunError, which asks for another directory.
-void makeCacheDirectory(const std::string& file);
-
 }  // namespace lacuna

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string_view>
@@ -106,6 +107,18 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "Print no progress and no remarks on stderr");
     app.add_flag("-v,--verbose", options.verbose, "Print more on stderr");
+}
+
+void makeCacheDirectory(const std::string& file) {
+    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
+    if (directory.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error) {
+        throw RunError(directory.string() +
+                       ": expected to make this directory for caches, found: " + error.message() +
+                       "; name another directory for caches (--cache DIR)");
+    }
 }
 
 std::optional<int> parseCommandLine(CLI::App& app, int argc, const char* const* argv,

@@ -23,6 +23,9 @@ struct CommonOptions {
 /// --cache --threads --seed --json --quiet -v. `app` and `options` must outlive the parsing.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
+/// Creates the directory of `file`, a cache. Throws RunError, which asks for another directory.
+void makeCacheDirectory(const std::string& file);
+
 /// Adds --version and --help-as and parses the command line. `words` complete values in shells.
 /// Returns an exit code if help or version was printed; else nullopt. Throws UsageError for a wrong
 /// command line.

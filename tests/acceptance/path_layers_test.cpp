@@ -17,8 +17,8 @@ using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 std::vector<LayerExpression> expressions(const NamedTexts& texts) {
     std::vector<LayerExpression> all;
     for (const auto& [name, text] : texts) {
-        LayerExpression e{name, text, {}};
-        e.parsed = parseExpression(text, e.what());
+        LayerExpression e{name, text, "--layer " + name + "=" + text, {}};
+        e.parsed = parseExpression(text, e.title);
         all.push_back(std::move(e));
     }
     return all;
