@@ -94,7 +94,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
         statistics.add(part.statistics);
         seconds += part.seconds;
         for (SumTree::Node& node : part.sums.blocks) blocks.add(std::move(node), &pool);
-        SumTree open(plan.sampleIterations(), plan.partsOfSample());
+        SumTree open(plan.sampleIterations(), plan.relationInSample());
         for (SumTree::Node& node : part.sums.open) open.add(std::move(node), &pool);
         FilmSum sum;
         open.addTo(sum, &pool);
@@ -106,7 +106,7 @@ Merged mergeParts(const std::vector<std::string>& paths, bool gaps, const Thread
     }
     FilmSum sum;
     blocks.addTo(sum, &pool);
-    join(sum, last, Parts::Samples, &pool);
+    join(sum, last, SumRelation::Samples, &pool);
 
     merged.mean = sum.meanColour();
     setPicture(merged.image, sum, lightGroupsOf(merged.image, files.front().path));

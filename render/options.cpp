@@ -45,9 +45,10 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
     app.add_option("--crop", o.cropText, "Render these pixels of the picture only (half open)")
         ->type_name("x0,x1,y0,y1")
         ->group(picture);
-    app.add_option("--exposure", o.exposureText,
-                   "Stops, or auto, which maps the log-average luminance to mid-grey; for .png only "
-                   "(default: auto)")
+    app.add_option(
+           "--exposure", o.exposureText,
+           "Stops, or auto, which maps the log-average luminance to mid-grey; for .png only "
+           "(default: auto)")
         ->type_name("E|auto")
         ->group(picture);
     app.add_option("--tone", o.toneText,

@@ -18,8 +18,9 @@ void ProposalLayers::add(const PathEvent& event) {
 
 Layers ProposalLayers::means() const {
     LayeredImage image(width_, height_);
-    for (std::size_t part = 0; part < names_.size(); ++part) {
-        image.setRgb("part." + names_[part], meanOfSum(sums_[part], iterations_, width_, height_));
+    for (std::size_t label = 0; label < names_.size(); ++label) {
+        image.setRgb("part." + names_[label],
+                     meanOfSum(sums_[label], iterations_, width_, height_));
     }
     return image.channels();
 }

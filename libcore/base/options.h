@@ -109,50 +109,51 @@ class OptionTable {
     }
     /// Sets what help shows for the default of the option that was added last.
     OptionTable& standardText(std::string text) {
-        rows_.back().option.standardText = std::move(text);
+        bindings_.back().option.standardText = std::move(text);
         return *this;
     }
-    /// Adds the options of a part of the record, with `prefix` before their names.
-    template <class Field, class Part>
-    OptionTable& include(const std::string& prefix, Field field, const OptionTable<Part>& part) {
-        for (const auto& row : part.rows()) {
-            Option option = row.option;
+    /// Adds the options of a record within the record, with `prefix` before their names.
+    template <class Field, class Inner>
+    OptionTable& include(const std::string& prefix, Field field, const OptionTable<Inner>& inner) {
+        for (const auto& binding : inner.bindings()) {
+            Option option = binding.option;
             option.name = prefix + option.name;
             add(
                 std::move(option),
-                [field, set = row.set](Record& r, const std::string& value) {
+                [field, set = binding.set](Record& r, const std::string& value) {
                     set(std::invoke(field, r), value);
                 },
-                [field, get = row.get](const Record& r) { return get(std::invoke(field, r)); });
+                [field, get = binding.get](const Record& r) { return get(std::invoke(field, r)); });
         }
         return *this;
     }
 
     std::vector<Option> options() const {
         std::vector<Option> all;
-        for (const Row& row : rows_) all.push_back(row.option);
+        for (const Binding& b : bindings_) all.push_back(b.option);
         return all;
     }
     /// The record that complete settings describe. The settings may hold options of other tables
     /// too. `prefix` stands before the names of this table's options in the settings.
     Record read(const Settings& settings, const std::string& prefix = {}) const {
         Record record = defaults_;
-        for (const Row& row : rows_) row.set(record, settings.at(prefix + row.option.name));
+        for (const Binding& b : bindings_) b.set(record, settings.at(prefix + b.option.name));
         return record;
     }
     /// Names and values of a record.
     std::vector<std::pair<std::string, std::string>> values(const Record& record) const {
         std::vector<std::pair<std::string, std::string>> all;
-        for (const Row& row : rows_) all.emplace_back(row.option.name, row.get(record));
+        for (const Binding& b : bindings_) all.emplace_back(b.option.name, b.get(record));
         return all;
     }
 
-    struct Row {
+    /// An option and the field that holds its value.
+    struct Binding {
         Option option;
         std::function<void(Record&, const std::string&)> set;  ///< takes a checked value
         std::function<std::string(const Record&)> get;
     };
-    const std::vector<Row>& rows() const { return rows_; }
+    const std::vector<Binding>& bindings() const { return bindings_; }
 
   private:
     static std::string text(bool on) { return on ? "on" : "off"; }
@@ -177,12 +178,12 @@ class OptionTable {
     OptionTable& add(Option option, std::function<void(Record&, const std::string&)> set,
                      std::function<std::string(const Record&)> get) {
         option.standard = get(defaults_);
-        rows_.push_back({std::move(option), std::move(set), std::move(get)});
+        bindings_.push_back({std::move(option), std::move(set), std::move(get)});
         return *this;
     }
 
     Record defaults_;
-    std::vector<Row> rows_;
+    std::vector<Binding> bindings_;
 };
 
 /// The record of a method without options.

@@ -19,8 +19,8 @@ inline const std::atomic<bool> kNeverCancelled{false};
 /// flush-to-zero set in some workers, and denormals would depend on the order of calls.)
 class ThreadPool {
   public:
-    /// Throws RunError where the system has no room for that many threads; `title` is what its message
-    /// calls their number ("--threads").
+    /// Throws RunError if the system cannot start that many threads. The message begins with `title`,
+    /// the user's name for their number ("--threads").
     explicit ThreadPool(int threads = 0, const std::string& title = "threads");
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;

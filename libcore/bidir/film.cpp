@@ -41,7 +41,7 @@ Film::Film(int width, int height, BlockPlan plan, std::uint64_t first)
     : width_(width),
       height_(height),
       plan_(plan),
-      open_(plan.sampleIterations(), plan.partsOfSample()),
+      open_(plan.sampleIterations(), plan.relationInSample()),
       block_(first) {}
 
 FilmSum sumOfBlock(const SumTree& open, std::span<BlockLayers* const> layers,
@@ -91,7 +91,8 @@ FilmSum Film::openSum(const ThreadPool* threads, Layered layered) const {
 FilmSum Film::sum(const ThreadPool* threads, Layered layered) const {
     FilmSum sum;
     blocks_.addTo(sum, threads, layered);
-    if (!open_.empty()) join(sum, openSum(threads, layered), Parts::Samples, threads, layered);
+    if (!open_.empty())
+        join(sum, openSum(threads, layered), SumRelation::Samples, threads, layered);
     return sum;
 }
 

@@ -59,7 +59,9 @@ struct BlockPlan {
     /// Iterations of an independent sample.
     std::uint64_t sampleIterations() const { return areSamples ? iterations : groupIterations; }
     /// How the iterations of a sample relate to each other.
-    Parts partsOfSample() const { return areSamples ? Parts::OfAlikeSample : Parts::OfEvenSample; }
+    SumRelation relationInSample() const {
+        return areSamples ? SumRelation::OfAlikeSample : SumRelation::OfEvenSample;
+    }
 };
 
 /// The open block's iterations as one sum, with what its layers hold. `threads` may be null.

@@ -33,10 +33,11 @@ void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) 
 /// Joins the means and spreads of two sums, one number at a time. Only the results are
 /// rounded to float.
 struct Joint {
-    Joint(const FilmSum& left, const FilmSum& right, Parts parts)
+    Joint(const FilmSum& left, const FilmSum& right, SumRelation relation)
         : nLeft(double(left.iterations)),
           nRight(double(right.iterations)),
-          between(parts == Parts::OfAlikeSample ? 0.0 : nLeft * nRight / (nLeft + nRight)) {}
+          between(relation == SumRelation::OfAlikeSample ? 0.0
+                                                         : nLeft * nRight / (nLeft + nRight)) {}
 
     double mean(double left, double right) const {
         return (nLeft * left + nRight * right) / (nLeft + nRight);
@@ -140,23 +141,23 @@ FilmSum::MeanColour FilmSum::meanColour() const {
     return m;
 }
 
-void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* threads,
+void join(FilmSum& left, const FilmSum& right, SumRelation relation, const ThreadPool* threads,
           Layered layered) {
     if (right.iterations == 0) return;
     if (left.iterations == 0) {
         left = copyOf(right, layered);
         return;
     }
-    const Joint joint(left, right, parts);
+    const Joint joint(left, right, relation);
     const auto isForgotten = [&](const FilmSum& sum) {
-        return parts == Parts::Samples && sum.samples == 1;
+        return relation == SumRelation::Samples && sum.samples == 1;
     };
     if (isForgotten(left)) {
         left.spread.clear();
         left.wholeSquares = {};
     }
     const bool isKept = !isForgotten(right), hasRight = isKept && !right.spread.empty();
-    const bool spreads = parts != Parts::OfAlikeSample || !left.spread.empty() || hasRight;
+    const bool spreads = relation != SumRelation::OfAlikeSample || !left.spread.empty() || hasRight;
     if (spreads) left.spread.resize(left.mean.size());
     forPixels(left.mean.size(), threads, [&](std::size_t i) {
         Rgb unused, none;
@@ -175,7 +176,7 @@ void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* th
     if (layered == Layered::Yes) joinLayers(left, right, joint);
     for (const HalfDifference& d : right.differences) addDifference(left.differences, d);
     left.iterations += right.iterations;
-    left.samples = parts == Parts::Samples ? left.samples + right.samples : 1;
+    left.samples = relation == SumRelation::Samples ? left.samples + right.samples : 1;
 }
 
 void SumTree::measure(const ErrorMeter* meter, std::uint64_t first, std::uint64_t iterations) {
@@ -203,13 +204,13 @@ void SumTree::joinLast(const ThreadPool* threads) {
     // A node's content depends on its range alone, not on who makes it. Only halves of the same
     // size are compared: the last block may have fewer iterations than others.
     const bool even = left.sum->iterations == right.sum->iterations;
-    const Parts parts = 2 * left.size <= sampleItems_ ? within_ : Parts::Samples;
+    const SumRelation relation = 2 * left.size <= sampleItems_ ? within_ : SumRelation::Samples;
     const std::uint64_t end = first_ + (right.begin + right.size) * itemIterations_;
     std::optional<HalfDifference> difference;
     if (meter_ && even && ErrorMeter::wants(2 * left.sum->iterations, end)) {
         difference = meter_->difference(*left.sum, *right.sum, threads);
     }
-    join(*left.sum, *right.sum, parts, threads);
+    join(*left.sum, *right.sum, relation, threads);
     if (difference) addDifference(left.sum->differences, *difference);
     left.size *= 2;
     nodes_.pop_back();
@@ -220,9 +221,10 @@ void SumTree::addTo(FilmSum& sum, const ThreadPool* threads, Layered layered) co
     FilmSum last;
     for (const Node& node : nodes_) {
         const bool whole = node.size >= sampleItems_;
-        join(whole ? sum : last, *node.sum, whole ? Parts::Samples : within_, threads, layered);
+        join(whole ? sum : last, *node.sum, whole ? SumRelation::Samples : within_, threads,
+             layered);
     }
-    join(sum, last, Parts::Samples, threads, layered);
+    join(sum, last, SumRelation::Samples, threads, layered);
 }
 
 }  // namespace lacuna

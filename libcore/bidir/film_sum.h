@@ -71,7 +71,7 @@ struct FilmSum {
 enum class Layered { Yes, No };
 
 /// How two sums relate to each other.
-enum class Parts {
+enum class SumRelation {
     Samples,       ///< independent of each other
     OfEvenSample,  ///< parts of one sample, farther apart than independent samples
     OfAlikeSample  ///< parts of one sample, alike: their distance is no measure of noise
@@ -79,7 +79,7 @@ enum class Parts {
 
 /// Adds `right` to `left` [Chan83]. The spread inside a sample is dropped where the sample meets
 /// another one. `threads` may be null.
-void join(FilmSum& left, const FilmSum& right, Parts parts, const ThreadPool* threads,
+void join(FilmSum& left, const FilmSum& right, SumRelation relation, const ThreadPool* threads,
           Layered layered = Layered::Yes);
 
 /// Sums consecutive items. Item i is a leaf of the binary tree whose nodes are [k 2^l, (k+1) 2^l),
@@ -94,7 +94,7 @@ class SumTree {
 
     /// `sampleItems` consecutive items, from a multiple of that number on, are one sample. `within`
     /// is what they are to each other.
-    explicit SumTree(std::uint64_t sampleItems, Parts within = Parts::OfEvenSample)
+    explicit SumTree(std::uint64_t sampleItems, SumRelation within = SumRelation::OfEvenSample)
         : sampleItems_(sampleItems), within_(within) {}
 
     /// Compares the halves of nodes from now on. Item i is `iterations` iterations; the first one has the number
@@ -114,7 +114,7 @@ class SumTree {
     void joinLast(const ThreadPool* threads);
 
     std::uint64_t sampleItems_;
-    Parts within_;
+    SumRelation within_;
     const ErrorMeter* meter_ = nullptr;
     std::uint64_t first_ = 0, itemIterations_ = 1;
     std::vector<Node> nodes_;

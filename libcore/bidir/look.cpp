@@ -17,10 +17,10 @@ Rgb atMostOne(const Rgb& c) {
     return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
 }
 
-/// A part of a ray that is followed backwards from the eye.
-struct Part {
+/// One of the rays that mirrors and glass split a ray into, followed backwards from the eye.
+struct SplitRay {
     Rgb weight;   ///< throughput to the eye, by channel
-    float share;  ///< of the ray; all parts together are 1
+    float share;  ///< of the first ray; the shares of all rays add up to 1
     int events = 0;
 };
 
@@ -35,43 +35,43 @@ class Looker {
   public:
     Looker(const Scene& scene, RayTally& tally) : scene_(scene), tally_(tally) {}
 
-    void follow(const Vec3& direction, const SurfacePoint& point, const Part& part) {
+    void follow(const Vec3& direction, const SurfacePoint& point, const SplitRay& ray) {
         const Bsdf bsdf = scene_.bsdfAt(point);
         const Vec3 normal = dot(bsdf.ns(), direction) > 0.0f ? -bsdf.ns() : bsdf.ns();
         if (bsdf.connectable()) {
-            end(part, atMostOne(bsdf.layerAlbedo()), normal);
+            end(ray, atMostOne(bsdf.layerAlbedo()), normal);
             return;
         }
-        if (part.events == kMostEvents || part.share < kFaint) {
-            end(part, Rgb(1.0f), normal);
+        if (ray.events == kMostEvents || ray.share < kFaint) {
+            end(ray, Rgb(1.0f), normal);
             return;
         }
         const std::array<Branch, 2> branches = eventsAt(bsdf, -direction);
         const float whole = mean(branches[0].through) + mean(branches[1].through);
         if (!(whole > 0.0f)) {
-            end(part, Rgb{}, normal);
+            end(ray, Rgb{}, normal);
             return;
         }
         for (const Branch& b : branches) {
-            const float share = part.share * (mean(b.through) / whole);
-            if (share > 0.0f) goOn(point, b, {part.weight * b.through, share, part.events + 1});
+            const float share = ray.share * (mean(b.through) / whole);
+            if (share > 0.0f) goOn(point, b, {ray.weight * b.through, share, ray.events + 1});
         }
     }
 
     Look look() const { return {atMostOne(sum_.albedo), sum_.normal}; }
 
   private:
-    void end(const Part& part, const Rgb& albedo, const Vec3& normal) {
-        sum_.albedo += part.weight * albedo;
-        sum_.normal += normal * part.share;
+    void end(const SplitRay& ray, const Rgb& albedo, const Vec3& normal) {
+        sum_.albedo += ray.weight * albedo;
+        sum_.normal += normal * ray.share;
     }
 
-    void goOn(const SurfacePoint& from, const Branch& branch, Part part) {
+    void goOn(const SurfacePoint& from, const Branch& branch, SplitRay ray) {
         const Sight sight{from.position, from.ng, branch.direction, RayKind::EyeWalk};
         const auto next = firstSeen(scene_, sight, tally_);
         if (!next) return;
-        part.weight *= transmittance(from, branch.direction, *next);
-        follow(branch.direction, *next, part);
+        ray.weight *= transmittance(from, branch.direction, *next);
+        follow(branch.direction, *next, ray);
     }
 
     /// The delta reflection and, where light passes, the delta transmission. The two ends of the range of uLobe, the

@@ -64,7 +64,8 @@ void requireNames(std::span<const LayerExpression> expressions, const std::set<s
 /// expressions mention need letters.
 Letter letterAt(std::size_t index) {
     if (index > std::numeric_limits<Letter>::max()) {
-        throw UsageError("light path expressions: expected ones that tell fewer objects apart by names");
+        throw UsageError(
+            "light path expressions: expected ones that tell fewer objects apart by names");
     }
     return Letter(index);
 }

@@ -19,7 +19,7 @@ class Scene;
 /// A layer of the paths that an expression matches.
 struct LayerExpression {
     std::string name, text;
-    std::string title;  ///< what its errors begin with, in the words of whoever gave it
+    std::string title;  ///< the beginning of its error messages
     ParsedExpression parsed;
 };
 

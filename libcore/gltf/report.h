@@ -16,8 +16,8 @@ namespace lacuna::gltf {
                          const std::string& todo = "export the scene again");
 
 /// Warnings, one per kind however often it occurs, in order of first occurrence. Their advice names
-/// options (--env, --units) as command lines spell them: every tool that loads a scene has these, and a user
-/// would have to look for them otherwise.
+/// options (--env, --units) as command lines spell them: every tool that loads a scene has these options,
+/// and the user would have to look for them otherwise.
 class Warnings {
   public:
     /// Notes `count` occurrences of `kind` (nothing if 0); `where` is remembered for the first.

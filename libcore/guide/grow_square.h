@@ -45,19 +45,19 @@ class SquareGrower {
     SquareGrower(Samples& samples, const SquareShape& shape) : samples_(samples), shape_(shape) {}
 
     GrownSquare grow(std::span<Index> of) {
-        parts_.assign(1, {});
+        growing_.assign(1, {});
         leaves_ = 0;
         split(0, of, {0.0, 0.0}, {1.0, 1.0}, 0);
-        std::vector<SquareDensity::Node> nodes(parts_.size());
+        std::vector<SquareDensity::Node> nodes(growing_.size());
         finish(0, 1.0, 1.0, nodes);
-        return {SquareDensity(std::move(nodes)), parts_[0].mass};
+        return {SquareDensity(std::move(nodes)), growing_[0].mass};
     }
 
   private:
     static constexpr double kLeastProbability = 1e-6;  // of a half: rounding must not make it zero
 
     /// A node with its mass, which is not made a probability yet.
-    struct Part {
+    struct GrowingNode {
         double mass = 0.0, effective = 0.0;
         std::uint32_t code = 0;
     };
@@ -65,10 +65,10 @@ class SquareGrower {
     void split(std::size_t node, std::span<Index> of, SquarePoint low, SquarePoint size,
                int level) {
         const double effective = samples_.effective(std::span<const Index>(of));
-        parts_[node].effective = effective;
+        growing_[node].effective = effective;
         if (level == shape_.mostLevels || effective < shape_.fewest) {
-            parts_[node].code = leaves_++;
-            parts_[node].mass = samples_.leafMass(of, size[0] * size[1]);
+            growing_[node].code = leaves_++;
+            growing_[node].mass = samples_.leafMass(of, size[0] * size[1]);
             return;
         }
         const std::size_t axis = std::size_t(level) % 2;
@@ -77,27 +77,28 @@ class SquareGrower {
         const auto upper = std::partition(
             of.begin(), of.end(), [&](Index i) { return samples_.pointOf(i)[axis] < middle; });
         const auto count = std::size_t(upper - of.begin());
-        const std::size_t child = parts_.size();
-        parts_.resize(child + 2);
+        const std::size_t child = growing_.size();
+        growing_.resize(child + 2);
         split(child, of.first(count), low, size, level + 1);
         low[axis] = middle;
         split(child + 1, of.subspan(count), low, size, level + 1);
-        parts_[node].code = std::uint32_t(child) | SquareDensity::kInner |
-                            (axis == 1 ? SquareDensity::kSecondAxis : 0);
-        parts_[node].mass = parts_[child].mass + parts_[child + 1].mass;
+        growing_[node].code = std::uint32_t(child) | SquareDensity::kInner |
+                              (axis == 1 ? SquareDensity::kSecondAxis : 0);
+        growing_[node].mass = growing_[child].mass + growing_[child + 1].mass;
     }
 
     /// Sets the probabilities below a node. `learned` is the learned probability of its part,
     /// `size` that of the even density.
     void finish(std::size_t node, double learned, double size,
                 std::vector<SquareDensity::Node>& nodes) const {
-        const Part& part = parts_[node];
-        nodes[node].code = part.code;
-        if (!(part.code & SquareDensity::kInner)) return;
-        const std::size_t child = part.code & ~(SquareDensity::kInner | SquareDensity::kSecondAxis);
-        const double lower = parts_[child].mass, upper = parts_[child + 1].mass;
+        const GrowingNode& growing = growing_[node];
+        nodes[node].code = growing.code;
+        if (!(growing.code & SquareDensity::kInner)) return;
+        const std::size_t child =
+            growing.code & ~(SquareDensity::kInner | SquareDensity::kSecondAxis);
+        const double lower = growing_[child].mass, upper = growing_[child + 1].mass;
         const double share = lower + upper > 0.0 ? lower / (lower + upper) : 0.5;
-        const double n = part.effective, v = shape_.virtualSamples;
+        const double n = growing.effective, v = shape_.virtualSamples;
         const double learnedLower = learned * (n * share + v * 0.5) / (n + v);
         const double even = shape_.evenShare;
         const double mixed = even * 0.5 * size + (1.0 - even) * learnedLower;
@@ -110,7 +111,7 @@ class SquareGrower {
 
     Samples& samples_;
     SquareShape shape_;
-    std::vector<Part> parts_;
+    std::vector<GrowingNode> growing_;
     std::uint32_t leaves_ = 0;
 };
 

@@ -112,7 +112,7 @@ float AlbedoTable::alphaNode(int i) {
     return std::min(1.0f, std::bit_cast<float>(bits));
 }
 
-AlbedoTable::Row AlbedoTable::row(float alpha) {
+AlbedoTable::AlphaPosition AlbedoTable::positionOf(float alpha) {
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(std::clamp(alpha, kAlphaMin, 1.0f)) -
                                std::bit_cast<std::uint32_t>(kAlphaMin);
     return {std::uint8_t(bits >> kAlphaBits),

@@ -25,9 +25,9 @@ inline constexpr float kTableError = 1.5e-3f;
 /// The table of one index of refraction.
 class AlbedoTable {
   public:
-    /// Position of alpha between two rows, quantised so that it fits into every Bsdf. E and E_avg
+    /// Position of alpha between two nodes, quantised so that it fits into every Bsdf. E and E_avg
     /// must be read with the same position.
-    struct Row {
+    struct AlphaPosition {
         std::uint8_t index = 0;
         std::uint16_t fraction = 0;  ///< in units of 1 / 65536
     };
@@ -36,18 +36,18 @@ class AlbedoTable {
 
     float ior() const { return ior_; }
     float smoothAverage() const { return smoothAverage_; }  ///< E_avg of the smooth layer
-    static Row row(float alpha);
-    float average(Row row) const {
-        return interpolate(averages_[row.index], averages_[row.index + 1u], weight(row));
+    static AlphaPosition positionOf(float alpha);
+    float average(AlphaPosition alpha) const {
+        return interpolate(averages_[alpha.index], averages_[alpha.index + 1u], weight(alpha));
     }
     /// E(mu), mu in [0, 1].
-    float directional(Row row, float mu) const {
+    float directional(AlphaPosition alpha, float mu) const {
         const std::uint32_t bits = std::bit_cast<std::uint32_t>(mu * (1.0f - kMuShift) + kMuShift) -
                                    std::bit_cast<std::uint32_t>(kMuShift);
         const float f = float(bits & ((1u << kMuBits) - 1u)) * (1.0f / float(1u << kMuBits));
-        const float* a = values_.data() + row.index * std::uint32_t(kMuNodes) + (bits >> kMuBits);
+        const float* a = values_.data() + alpha.index * std::uint32_t(kMuNodes) + (bits >> kMuBits);
         const float* b = a + kMuNodes;
-        return interpolate(interpolate(a[0], a[1], f), interpolate(b[0], b[1], f), weight(row));
+        return interpolate(interpolate(a[0], a[1], f), interpolate(b[0], b[1], f), weight(alpha));
     }
 
   private:
@@ -62,7 +62,7 @@ class AlbedoTable {
     static constexpr int kAlphaNodes = 14 * 8 + 2;
 
     static float interpolate(float a, float b, float t) { return a + (b - a) * t; }
-    static float weight(Row row) { return float(row.fraction) * (1.0f / 65536.0f); }
+    static float weight(AlphaPosition alpha) { return float(alpha.fraction) * (1.0f / 65536.0f); }
     static float muNode(int i);
     static float alphaNode(int i);
 

@@ -163,10 +163,10 @@ Bsdf::Bsdf(const Parameters& parameters, Vec3 ng, Vec3 ns, const AlbedoTables& t
             const AlbedoTable* exact = tables.find(coatIor_);
             table_ = alpha_ > 0.0f ? (exact ? exact : tables.covering(coatIor_)) : nullptr;
             if (table_) {
-                const AlbedoTable::Row row = AlbedoTable::row(alpha_);
-                rowIndex_ = row.index;
-                rowFraction_ = row.fraction;
-                average = table_->average(row);
+                const AlbedoTable::AlphaPosition position = AlbedoTable::positionOf(alpha_);
+                alphaIndex_ = position.index;
+                alphaFraction_ = position.fraction;
+                average = table_->average(position);
             } else {
                 average = exact ? exact->smoothAverage() : float(fresnelAverage(double(coatIor_)));
             }

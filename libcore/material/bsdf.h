@@ -388,9 +388,9 @@ class Bsdf {
     float diffuseScale_ = 0;  ///< plastic / (pi times the mean share that all coats leave)
     float clearcoat_ = 0, clearcoatAlpha_ = 0;
     std::uint16_t flags_ = 0;
-    std::uint8_t rowIndex_ : 7 = 0;  ///< AlbedoTable::Row
+    std::uint8_t alphaIndex_ : 7 = 0;  ///< AlbedoTable::AlphaPosition
     std::uint8_t isPane_ : 1 = 0;
-    std::uint16_t rowFraction_ = 0;
+    std::uint16_t alphaFraction_ = 0;
     float diffuseThrough_ = 0;  ///< share of the diffuse base's light that is transmitted
     PackedColor throughColor_, sheenColor_;
     PackedUnit sheenRoughness_;

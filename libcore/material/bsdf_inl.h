@@ -15,14 +15,14 @@ namespace lacuna {
 
 /// E(mu) of the dielectric layer's brightest channel with specular factor 1.
 inline float Bsdf::coatAlbedo(float mu) const {
-    return table_ ? table_->directional({rowIndex_, rowFraction_}, mu)
+    return table_ ? table_->directional({alphaIndex_, alphaFraction_}, mu)
                   : fresnelDielectric(mu, coatIor_);
 }
 
 /// E(mu) of the clearcoat with factor 1.
 inline float Bsdf::clearcoatAlbedo(float mu) const {
     return clearcoatAlpha_ > 0.0f
-               ? clearcoatTable().directional(AlbedoTable::row(clearcoatAlpha_), mu)
+               ? clearcoatTable().directional(AlbedoTable::positionOf(clearcoatAlpha_), mu)
                : fresnelDielectric(mu, kClearcoatIor);
 }
 

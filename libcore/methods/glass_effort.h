@@ -1,6 +1,7 @@
 // Estimates how often techniques behind glass pay in a view: next event through glass, next event along known ways and
 // the search for specular chains. Small pictures are rendered for it before the render, and their samples are thrown
-// away. (theory.md, "Effort behind glass")
+// away. This is no row; it lies in this folder because the rows pt and bpt render the
+// pictures. (theory.md, "Effort behind glass")
 #pragma once
 
 #include "libcore/bidir/render_setup.h"

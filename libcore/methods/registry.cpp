@@ -122,7 +122,7 @@ MethodRow asSet(MethodRow row, const Settings& settings) {
 }
 
 std::uint64_t lightPathsOf(const Settings& settings) {
-    if (!settings.contains(splatOptions().rows()[0].option.name)) return 0;
+    if (!settings.contains(splatOptions().bindings()[0].option.name)) return 0;
     return splatOptions().read(settings).lightPaths;
 }
 

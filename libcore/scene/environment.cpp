@@ -41,14 +41,14 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
     };
     for (int y = 0; y <= height_; ++y) {
         const double top = edge(y), bottom = edge(y + 1);
-        rows_.push_back({top, bottom, 2.0 * std::numbers::pi / width_ * (top - bottom)});
+        bands_.push_back({top, bottom, 2.0 * std::numbers::pi / width_ * (top - bottom)});
     }
 
     std::vector<double> weights;
-    weights.reserve(rows_.size() * std::size_t(width_));
+    weights.reserve(bands_.size() * std::size_t(width_));
     double sum[3] = {0, 0, 0};
     for (int y = 0; y <= height_; ++y) {
-        const double solidAngle = rows_[std::size_t(y)].solidAngle;
+        const double solidAngle = bands_[std::size_t(y)].solidAngle;
         for (int x = 0; x < width_; ++x) {
             const Corners c = cornersOf(x, y);
             const Rgb radiance = c.leftAbove * 0.25f + c.rightAbove * 0.25f + c.leftBelow * 0.25f +
@@ -70,13 +70,13 @@ Environment::Environment(const Image& image, double scale, double rotationDegree
 }
 Environment::Table Environment::tableOf(std::span<const double> weights) const {
     Table table{DiscreteDistribution(weights), {}};
-    for (std::size_t y = 0; y <= rows_.size(); ++y) {
+    for (std::size_t y = 0; y <= bands_.size(); ++y) {
         table.rows.push_back(table.cells.before(y * std::size_t(width_)));
     }
     return table;
 }
 double Environment::evenly(int row) const {
-    return (1.0 + kRounding) * rows_[std::size_t(row)].solidAngle / (4.0 * std::numbers::pi);
+    return (1.0 + kRounding) * bands_[std::size_t(row)].solidAngle / (4.0 * std::numbers::pi);
 }
 
 Environment::Place Environment::placeOf(Vec3 d) const {
@@ -106,8 +106,8 @@ Rgb Environment::radianceAt(const Place& p) const {
 /// double: at the poles, the rounding of its length is a considerable part of a row.
 double Environment::shareBelow(int y, Vec3 direction) const {
     const Vec3d d(direction);
-    const Row& row = rows_[std::size_t(y)];
-    return std::clamp((row.top - d.y / length(d)) / (row.top - row.bottom), 0.0, 1.0);
+    const LatitudeBand& band = bands_[std::size_t(y)];
+    return std::clamp((band.top - d.y / length(d)) / (band.top - band.bottom), 0.0, 1.0);
 }
 
 namespace {
@@ -154,11 +154,11 @@ Bilinear bilinear(const auto& corners) {
 
 }  // namespace
 
-Environment::Sample Environment::sample(double uCell, float u1, float u2, Part part) const {
+Environment::Sample Environment::sample(double uCell, float u1, float u2, SkyPart part) const {
     return inCell(table(part).cells.sample(uCell), u1, u2);
 }
 
-Environment::Sample Environment::sampleSquare(double across, double down, Part part) const {
+Environment::Sample Environment::sampleSquare(double across, double down, SkyPart part) const {
     if (even_) {
         return {directionAt(1.0 - 2.0 * down, float(across) + turn_), {image_[0], kEvenPdfW}};
     }
@@ -193,18 +193,18 @@ SquarePoint Environment::squareOf(Vec3 direction) const {
     return {end > begin ? share(across / (end - begin)) : 0.0, begin + down * (end - begin)};
 }
 
-SkySides Environment::sides(Part part) const {
+SkySides Environment::sides(SkyPart part) const {
     SkySides::Sum sum;
     // Cells of a coarse sky are large: each is sampled at several points, at most five degrees
     // apart.
     const int across = 1 + 72 / width_, down = 1 + 36 / height_;
-    for (std::size_t i = 0; i < rows_.size() * std::size_t(width_); ++i) {
+    for (std::size_t i = 0; i < bands_.size() * std::size_t(width_); ++i) {
         const double share = table(part).cells.pmf(i) / double(across * down);
         if (!(share > 0.0)) continue;
-        const Row& row = rows_[i / std::size_t(width_)];
+        const LatitudeBand& band = bands_[i / std::size_t(width_)];
         const auto x = double(i % std::size_t(width_)) + 0.5;
         for (int j = 0; j < down; ++j) {
-            const double cosine = row.top + (row.bottom - row.top) * (j + 0.5) / down;
+            const double cosine = band.top + (band.bottom - band.top) * (j + 0.5) / down;
             for (int k = 0; k < across; ++k) {
                 const double turns = (x + (k + 0.5) / across) / double(width_);
                 sum.add(directionAt(cosine, float(turns) - 0.5f + turn_), share);
@@ -217,11 +217,11 @@ SkySides Environment::sides(Part part) const {
 Environment::Sample Environment::inCell(const DiscreteDistribution::Pick& pick, double u1,
                                         double u2) const {
     const int x = int(pick.index) % width_, y = int(pick.index) / width_;
-    const Row& row = rows_[std::size_t(y)];
+    const LatitudeBand& band = bands_[std::size_t(y)];
     const Bilinear density = bilinear(cornersOf(x, y));
     const double below = density.down().sample(u2);
     const double right = density.across(below).sample(u1);
-    const double cosine = row.top + (row.bottom - row.top) * below;
+    const double cosine = band.top + (band.bottom - band.top) * below;
     const Vec3 direction =
         directionAt(cosine, float((double(x) + 0.5 + right) / double(width_)) - 0.5f + turn_);
     // Rounding may lead to the next cell; the density is that of the resulting direction.
@@ -237,7 +237,7 @@ float Environment::pdfWAt(const Place& p, Vec3 direction) const {
     if (!(all > 0.0)) return 0.0f;
     const double here = across.begin + (across.end - across.begin) * double(p.right);
     const double pmf = whole_.cells.pmf(std::size_t(p.y) * std::size_t(width_) + std::size_t(p.x));
-    return float(pmf * here / (all * rows_[std::size_t(p.y)].solidAngle));
+    return float(pmf * here / (all * bands_[std::size_t(p.y)].solidAngle));
 }
 
 }  // namespace lacuna

@@ -44,13 +44,13 @@ class Environment {
     };
     /// The part of the sky that is sampled: the whole radiance, or the part of each cell above the
     /// mean [Karlik19].
-    enum class Part { Whole, AboveMean };
-    /// Samples a direction. The reported density is that of Part::Whole, whatever the part. Must not be called for a
+    enum class SkyPart { Whole, AboveMean };
+    /// Samples a direction. The reported density is that of SkyPart::Whole, whatever the part. Must not be called for a
     /// black map or an empty part.
-    Sample sample(double uTexel, float u1, float u2, Part part = Part::Whole) const;
+    Sample sample(double uTexel, float u1, float u2, SkyPart part = SkyPart::Whole) const;
     /// Samples the same density from a point of the unit square. The map keeps low-discrepancy
     /// points even.
-    Sample sampleSquare(double across, double down, Part part = Part::Whole) const;
+    Sample sampleSquare(double across, double down, SkyPart part = SkyPart::Whole) const;
     /// The inverse: the point {across, down} of the square that is mapped to `direction`. Must not
     /// be called for a black map.
     SquarePoint squareOf(Vec3 direction) const;
@@ -61,8 +61,8 @@ class Environment {
     /// Share of the light above the mean: 0 for a constant sky, near 1 if a small sun has all the light.
     double contrast() const { return above_.cells.total(); }
     /// Irradiance of surfaces from the part, by side. Must not be called for an empty part.
-    SkySides sides(Part part) const;
-    /// Density of sampling Part::AboveMean over that of Part::Whole; 0 if there is no contrast.
+    SkySides sides(SkyPart part) const;
+    /// Density of sampling SkyPart::AboveMean over that of SkyPart::Whole; 0 if there is no contrast.
     double aboveMean(Vec3 direction) const {
         return above_.cells.empty() ? 0.0 : aboveMeanAt(placeOf(direction));
     }
@@ -93,7 +93,7 @@ class Environment {
         /// distant memory accesses.
         std::vector<double> rows;
     };
-    const Table& table(Part part) const { return part == Part::Whole ? whole_ : above_; }
+    const Table& table(SkyPart part) const { return part == SkyPart::Whole ? whole_ : above_; }
     Table tableOf(std::span<const double> weights) const;
     /// Probability of a cell of this row in a constant sky, plus a margin for rounding. Only the
     /// excess over it counts as above the mean.
@@ -102,11 +102,11 @@ class Environment {
 
     int width_, height_;
     std::vector<Rgb> image_;
-    struct Row {
+    struct LatitudeBand {
         double top, bottom;  ///< cosines of its edges to +Y
         double solidAngle;   ///< of one cell, exact, so that densities integrate to one
     };
-    std::vector<Row> rows_;  // of cells
+    std::vector<LatitudeBand> bands_;  // by row of cells
     Table whole_;
     Table above_;  ///< by the part above the mean; the total is its share
     Rgb integral_;

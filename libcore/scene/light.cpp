@@ -154,7 +154,7 @@ Lights::Lights(std::vector<EmissiveTriangle> triangles, std::span<const Punctual
     selection_ = *byPower_;
     findBalls();
     sumBalls();
-    drawSky(Environment::Part::AboveMean);
+    drawSky(Environment::SkyPart::AboveMean);
     chooseUnit(std::accumulate(powers_->begin(), powers_->end(), 0.0));
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
         const EmissiveTriangle& t = triangles_[i];
@@ -185,16 +185,16 @@ Lights Lights::guidedBy(std::shared_ptr<const EmissionGuide> guide) const {
 
 Lights Lights::withoutHits() const {
     Lights lights = *this;
-    if (environment_) lights.drawSky(Environment::Part::Whole);
+    if (environment_) lights.drawSky(Environment::SkyPart::Whole);
     return lights;
 }
 
 /// Sets the part of the sky that next-event estimation samples, and rebuilds the tree with its
 /// weight.
-void Lights::drawSky(Environment::Part part) {
-    skyPart_ = environment_ ? part : Environment::Part::Whole;
+void Lights::drawSky(Environment::SkyPart part) {
+    skyPart_ = environment_ ? part : Environment::SkyPart::Whole;
     skyKept_ = kept_ = 1.0;
-    if (skyPart_ == Environment::Part::AboveMean) {
+    if (skyPart_ == Environment::SkyPart::AboveMean) {
         skyKept_ = environment_->contrast();
         kept_ = selection_.before(environmentIndex_) + skyKept_ * selection_.pmf(environmentIndex_);
     }
@@ -279,7 +279,7 @@ LampTree Lights::makeTree() const {
         if (kinds_[i] == LightKind::Environment) {
             // The irradiance of a surface from the whole sky, on average over its orientations: a
             // quarter.
-            const double share = skyPart_ == Environment::Part::Whole
+            const double share = skyPart_ == Environment::SkyPart::Whole
                                      ? std::max(environment_->contrast(), kEvenSky)
                                      : skyKept_;
             if (share > 0.0) distant.push_back({i, {}, 0.25 * share * powers[i] / disk});
@@ -341,7 +341,7 @@ const double Lights::kByPower = 0.1;
 /// Extends the even numbers of 24 bits by 26 bits each, taken from `rest`: skies have texels of
 /// tiny probability.
 Environment::Sample Lights::sampleSky(double rest, float across, float down,
-                                      Environment::Part part) const {
+                                      Environment::SkyPart part) const {
     const double scaled = rest * 0x1p26, first = std::floor(scaled);
     const SquarePoint u{double(across) + first * 0x1p-50,
                         double(down) + (scaled - first) * 0x1p-24};
@@ -499,7 +499,7 @@ double Lights::pointSamples(const LightPlace& y0, const Vec3& from) const {
         const double samples = ball->pdfA(from, y0.position, a.ng) * a.area;
         return guide_ ? samples / double(guidedPdf(y0)) : samples;
     }
-    if (y0.light != environmentIndex_ || skyPart_ == Environment::Part::Whole) return 1.0;
+    if (y0.light != environmentIndex_ || skyPart_ == Environment::SkyPart::Whole) return 1.0;
     return environment_->aboveMean(y0.position);
 }
 
@@ -510,7 +510,7 @@ LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
 
 /// Samples a point on the light. `u` picks among an environment's texels.
 LightPoint Lights::pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
-                           Environment::Part sky) const {
+                           Environment::SkyPart sky) const {
     if (light < area_.size()) {
         const SquarePoint at = warpPoint(light, {double(draw.u1), double(draw.u2)});
         return pointOnTriangle(light, uniformTriangle(float(at[0]), float(at[1])));

@@ -228,15 +228,15 @@ class Lights {
         return {float(double(c.r) * s), float(double(c.g) * s), float(double(c.b) * s)};
     }
     Environment::Sample sampleSky(double rest, float across, float down,
-                                  Environment::Part part) const;
+                                  Environment::SkyPart part) const;
     std::vector<double> powers() const;
-    void drawSky(Environment::Part part);
+    void drawSky(Environment::SkyPart part);
     void chooseUnit(double power);
     void findBalls();
     void sumBalls();
     LampTree makeTree() const;
     LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
-                       Environment::Part sky = Environment::Part::Whole) const;
+                       Environment::SkyPart sky = Environment::SkyPart::Whole) const;
     std::optional<LightPoint> seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                                           const Vec3& from) const;
     LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const;
@@ -301,7 +301,7 @@ class Lights {
     std::shared_ptr<const LampTree> tree_;  // a ball is its first light
     // The part of the sky for next-event estimation, its share of the sky's power, and the share of
     // the probability of all lights that remains.
-    Environment::Part skyPart_ = Environment::Part::Whole;
+    Environment::SkyPart skyPart_ = Environment::SkyPart::Whole;
     double skyKept_ = 1.0, kept_ = 1.0;
     std::shared_ptr<const EmissionGuide> guide_;  // null: by power and uniform
     float diskRadius_;

@@ -36,9 +36,9 @@ std::string optionName(const std::string& name);
 template <class Record>
 Settings changedValues(const OptionTable<Record>& table, const Record& record) {
     Settings changed;
-    for (const auto& row : table.rows()) {
-        const std::string value = row.get(record);
-        if (value != row.option.standard) changed[row.option.name] = value;
+    for (const auto& binding : table.bindings()) {
+        const std::string value = binding.get(record);
+        if (value != binding.option.standard) changed[binding.option.name] = value;
     }
     return changed;
 }

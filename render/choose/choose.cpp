@@ -40,23 +40,23 @@ constexpr std::uint64_t kFewestSubpaths = 1000, kMostSubpaths = 100'000;
 constexpr double kSplatsPerCropPixel = 4.0;
 constexpr double kFewestSplats = 10'000.0;
 
-/// A candidate. rayCost is the cost of one of its rays relative to bpt, including look-ups and
+/// A method that is tried. rayCost is the cost of one of its rays relative to bpt, including look-ups and
 /// waiting. It varies with the scene, so that with a time limit the trial's own seconds count
 /// instead.
-struct Row {
+struct MethodCandidate {
     const char* method;
     double rayCost;
     double fall;           ///< with even numbers, errors ~ iterations^-fall
     double alike;          ///< variances ~ pixels^-alike: more pixels have more similar neighbours
     const char* strength;  ///< text after "light " if it wins
     bool wholeFilm = false;         ///< an iteration's cost depends on the film, not the crop
-    const char* setting = nullptr;  ///< a fixed setting of the row
+    const char* setting = nullptr;  ///< a fixed setting of the method
 
     std::string name() const {
         return setting ? std::string(method) + " with " + setting : std::string(method);
     }
 };
-constexpr Row kRows[] = {
+constexpr MethodCandidate kCandidates[] = {
     {"bpt", 1.0, 0.54, 0.0, "is found from both ends"},
     {"pt", 1.1, 0.58, 0.0, "is found from the eye alone"},
     {"sharebpt", 1.5, 0.53, 0.07,
@@ -85,7 +85,7 @@ std::vector<std::string> subspaceSettings(double paths, std::uint64_t subpaths) 
 }
 
 /// Whether its picture is only consistent, not unbiased.
-bool merges(const Row& candidate) {
+bool merges(const MethodCandidate& candidate) {
     const MethodRow& row = findMethod(candidate.method);
     std::vector<std::string> assignments;
     if (candidate.setting) assignments.push_back(candidate.setting);
@@ -99,7 +99,7 @@ bool learns(const MethodRow& row) {
 
 /// A candidate and its trial.
 struct Tried {
-    const Row* row = nullptr;
+    const MethodCandidate* candidate = nullptr;
     Trial trial;
     Verdict verdict;
     double cost = 0.0;  ///< cost of an iteration of the picture as a share of the budget
@@ -114,10 +114,10 @@ class Pilot {
     RowChoice choose(const std::function<void(const Image&)>& show) {
         sizeUp();
         show(enlarged(*small_, tried_.front().trial.halves, stage_.settings.crop));
-        for (const Row& row : std::span(kRows).subspan(1)) {
-            if (row.wholeFilm && smallFilmPixels() > kMostFilmPixels) continue;
-            if (!options_.allowBias && merges(row)) continue;
-            if (mayKeepCaches(row)) tryRow(row);
+        for (const MethodCandidate& candidate : std::span(kCandidates).subspan(1)) {
+            if (candidate.wholeFilm && smallFilmPixels() > kMostFilmPixels) continue;
+            if (!options_.allowBias && merges(candidate)) continue;
+            if (mayKeepCaches(candidate)) tryOut(candidate);
         }
         judge();
         return best();
@@ -135,7 +135,7 @@ class Pilot {
         small_.emplace(stage_.camera->film(), stage_.settings.crop, std::min(pixels, busy));
         Trial first;
         const ProcessorShare processors;
-        run(kRows[0], assignments(kRows[0], 0), kFewestTrialRays / 4.0, first);
+        run(kCandidates[0], assignments(kCandidates[0], 0), kFewestTrialRays / 4.0, first);
         budget_ = double(iterations()) * first.rays;
         if (byClock()) {
             seconds_ = *options_.timeSeconds;
@@ -147,7 +147,7 @@ class Pilot {
         const double wanted = rays_ / (kRaysPerPixel * kTrialIterations);
         small_.emplace(stage_.camera->film(), stage_.settings.crop,
                        std::clamp(wanted, kFewestPixels, kMostPixels));
-        tryRow(kRows[0]);
+        tryOut(kCandidates[0]);
     }
 
     std::uint64_t iterations() const {
@@ -157,7 +157,8 @@ class Pilot {
 
     double smallFilmPixels() const { return pixelsOf(small_->film); }
 
-    std::vector<std::string> assignments(const Row& candidate, std::uint64_t subpaths) const {
+    std::vector<std::string> assignments(const MethodCandidate& candidate,
+                                         std::uint64_t subpaths) const {
         const MethodRow& row = findMethod(candidate.method);
         std::vector<std::string> result;
         if (learns(row)) {
@@ -191,9 +192,9 @@ class Pilot {
         return wanted < filmPixels() ? std::uint64_t(wanted) : 0;
     }
 
-    /// Whether caches of the row can be written. If not, the row is left out; this is no error.
-    bool mayKeepCaches(const Row& row) const {
-        if (!learns(findMethod(row.method))) return true;
+    /// Whether caches of the candidate can be written. If not, the candidate is left out; this is no error.
+    bool mayKeepCaches(const MethodCandidate& candidate) const {
+        if (!learns(findMethod(candidate.method))) return true;
         const std::string directory =
             cacheDirectory(options_.scene, options_.common.cacheDirectory);
         try {
@@ -201,24 +202,25 @@ class Pilot {
             const AtomicFile probe(directory + "/x");
             return true;
         } catch (const RunError& e) {
-            progress_.warning("warning: auto does without " + row.name() + ": " + e.what());
+            progress_.warning("warning: auto does without " + candidate.name() + ": " + e.what());
             return false;
         }
     }
 
-    void tryRow(const Row& row) {
+    void tryOut(const MethodCandidate& candidate) {
         Tried tried;
-        tried.row = &row;
-        run(row, assignments(row, trialSubpaths()), rays_ / row.rayCost, tried.trial);
-        tried.cost =
-            byClock() ? tried.trial.seconds / seconds_ : tried.trial.rays * row.rayCost / budget_;
+        tried.candidate = &candidate;
+        run(candidate, assignments(candidate, trialSubpaths()), rays_ / candidate.rayCost,
+            tried.trial);
+        tried.cost = byClock() ? tried.trial.seconds / seconds_
+                               : tried.trial.rays * candidate.rayCost / budget_;
         tried_.push_back(std::move(tried));
     }
 
     double filmPixels() const { return pixelsOf(stage_.camera->film()); }
 
-    void run(const Row& candidate, const std::vector<std::string>& assignments, double rays,
-             Trial& trial) {
+    void run(const MethodCandidate& candidate, const std::vector<std::string>& assignments,
+             double rays, Trial& trial) {
         const MethodRow& row = findMethod(candidate.method);
         const Settings settings = resolve(row, assignments);
         RenderOptions options = options_;
@@ -265,9 +267,9 @@ class Pilot {
     /// half of the trial. Training is already done and not counted.
     double shareLeft(const Tried& t) const {
         const double ofAll = double(t.trial.iterations) * t.cost;  // of the picture's iterations
-        const double left = ofAll * std::pow(small_->scale, -t.row->alike);
+        const double left = ofAll * std::pow(small_->scale, -t.candidate->alike);
         if (sampling() == Sampling::Independent) return left;
-        return left * std::pow(std::min(1.0, 0.5 * ofAll), 2.0 * t.row->fall - 1.0);
+        return left * std::pow(std::min(1.0, 0.5 * ofAll), 2.0 * t.candidate->fall - 1.0);
     }
 
     RowChoice best() const {
@@ -276,23 +278,26 @@ class Pilot {
         std::vector<Verdict> verdicts;
         for (std::size_t i = 0; i < tried_.size(); ++i) {
             verdicts.push_back(tried_[i].verdict);
-            if (tried_[i].row->name() == kUsual) usual = i;
+            if (tried_[i].candidate->name() == kUsual) usual = i;
         }
         const Tried& chosen = tried_[rowToTake(verdicts, usual)];
-        RowChoice choice{
-            chosen.row->method, assignments(*chosen.row, poolSubpaths()), sampling(), "", {}};
+        RowChoice choice{chosen.candidate->method,
+                         assignments(*chosen.candidate, poolSubpaths()),
+                         sampling(),
+                         "",
+                         {}};
         // If the trials saw no light, all speeds are 1.
         const auto speed = [&](const Tried& t) {
             return t.verdict.loss > 0.0 ? bpt.verdict.loss / t.verdict.loss : 1.0;
         };
-        for (const Tried& t : tried_) choice.speeds.emplace_back(t.row->name(), speed(t));
+        for (const Tried& t : tried_) choice.speeds.emplace_back(t.candidate->name(), speed(t));
         if (&chosen == &bpt || speed(chosen) <= 1.0) {
             choice.why = "no other method was clearly better in a pilot";
         } else {
             char times[64];
             std::snprintf(times, sizeof times, "%.2g times as fast as bpt in a pilot",
                           speed(chosen));
-            choice.why = std::string(times) + ": light " + chosen.row->strength;
+            choice.why = std::string(times) + ": light " + chosen.candidate->strength;
         }
         return choice;
     }
@@ -317,7 +322,7 @@ class Pilot {
 }  // namespace
 
 std::string triedMethods() {
-    return joined(kRows, ", ", &Row::name);
+    return joined(kCandidates, ", ", &MethodCandidate::name);
 }
 
 RowChoice chooseMethod(const RenderOptions& options, const Stage& stage, const ThreadPool& pool,

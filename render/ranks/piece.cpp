@@ -39,7 +39,7 @@ Part PieceMaker::make(const Work& work, const std::function<bool()>& stop) {
         if (!maker_.beginBlock(work.begin, cancel, totals)) return part;
         open_ = block;
     }
-    SumTree tree(plan.sampleIterations(), plan.partsOfSample());
+    SumTree tree(plan.sampleIterations(), plan.relationInSample());
     tree.measure(plan.areSamples ? nullptr : &meter_, block * plan.iterations, 1);
     for (std::uint64_t i = 0; i < work.count; ++i) {
         const bool must = work.first && i == 0;

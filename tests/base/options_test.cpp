@@ -14,7 +14,7 @@ namespace {
 
 enum class Metal { Tin, Lead };
 
-struct Part {
+struct Inner {
     int count = 3;
 };
 
@@ -24,12 +24,12 @@ struct Record {
     bool loud = true;
     Metal metal = Metal::Lead;
     std::string note = "a b";
-    Part part;
+    Inner inner;
 };
 
-OptionTable<Part> partTable(const Part& defaults = {}) {
-    OptionTable<Part> table(defaults);
-    table.integer("count", &Part::count, -5, 10, "parts", "how many");
+OptionTable<Inner> innerTable(const Inner& defaults = {}) {
+    OptionTable<Inner> table(defaults);
+    table.integer("count", &Inner::count, -5, 10, "parts", "how many");
     return table;
 }
 
@@ -43,7 +43,7 @@ OptionTable<Record> table(const Record& defaults = {}) {
     t.choice<Metal>("metal", &Record::metal, {{"tin", Metal::Tin}, {"lead", Metal::Lead}},
                     "what it is made of");
     t.text("note", &Record::note, "whatever");
-    t.include("part.", &Record::part, partTable(defaults.part));
+    t.include("part.", &Record::inner, innerTable(defaults.inner));
     return t;
 }
 
@@ -66,7 +66,7 @@ void expectDefaults(const Record& r) {
     EXPECT_TRUE(r.loud);
     EXPECT_EQ(r.metal, Metal::Lead);
     EXPECT_EQ(r.note, "a b");
-    EXPECT_EQ(r.part.count, 3);
+    EXPECT_EQ(r.inner.count, 3);
 }
 
 TEST(OptionTable, aRecordsOwnValuesAreTheDefaults) {
@@ -83,7 +83,7 @@ TEST(OptionTable, aRecordsOwnValuesAreTheDefaults) {
     expectDefaults(table().read(resolved({})));
     Record others;
     others.metal = Metal::Tin;
-    others.part.count = -2;
+    others.inner.count = -2;
     EXPECT_EQ(table(others).options()[3].standard, "tin");
     EXPECT_EQ(table(others).options()[5].standard, "-2");
 }
@@ -111,7 +111,7 @@ TEST(OptionTable, readsWhatIsGivenAndTheLastOfSeveral) {
     EXPECT_FALSE(r.loud);
     EXPECT_EQ(r.metal, Metal::Tin);
     EXPECT_EQ(r.note, "x=y, z") << "all behind the first =";
-    EXPECT_EQ(r.part.count, -5);
+    EXPECT_EQ(r.inner.count, -5);
     EXPECT_EQ(table().read(resolved({"note="})).note, "");
 }
 
@@ -122,7 +122,7 @@ TEST(OptionTable, valuesReadBack) {
     record.share = 0.1 + 0.2;
     record.loud = false;
     record.metal = Metal::Tin;
-    record.part.count = 10;
+    record.inner.count = 10;
     std::vector<std::string> assignments;
     for (const auto& [name, value] : table().values(record)) {
         assignments.push_back(std::string(name).append("=").append(value));
@@ -211,8 +211,8 @@ TEST(OptionTable, incompleteSettingsAreNoRecord) {
 
 TEST(OptionTable, readsItsOwnAmongOthers) {
     const Settings all = {{"train.count", "7"}, {"count", "1"}, {"else", "x"}};
-    EXPECT_EQ(partTable().read(all, "train.").count, 7);
-    EXPECT_EQ(partTable().read(all).count, 1);
+    EXPECT_EQ(innerTable().read(all, "train.").count, 7);
+    EXPECT_EQ(innerTable().read(all).count, 1);
 }
 
 TEST(NumberText, isTheShortestThatReadsBack) {

@@ -269,10 +269,11 @@ TEST(FilmSum, countsIterationsBeyond32Bits) {
     const ThreadPool threads(1);
     FilmSum sum = FilmSum::ofIteration(std::vector<Rgb>{Rgb(1.0f)}, 1, threads);
     sum.spread = {Rgb(0.0f)};
-    for (int doubled = 0; doubled < 35; ++doubled) join(sum, FilmSum(sum), Parts::Samples, nullptr);
+    for (int doubled = 0; doubled < 35; ++doubled)
+        join(sum, FilmSum(sum), SumRelation::Samples, nullptr);
     FilmSum other = sum;
     other.mean[0] = Rgb(3.0f);
-    join(sum, other, Parts::Samples, nullptr);
+    join(sum, other, SumRelation::Samples, nullptr);
     EXPECT_EQ(sum.iterations, 1ull << 36);
     EXPECT_EQ(sum.samples, 1ull << 36);
     EXPECT_EQ(sum.image(1, 1).at(0, 0), Rgb(2.0f));

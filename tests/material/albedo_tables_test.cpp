@@ -48,7 +48,7 @@ void checkTable(float ior, int points, int samples, std::uint64_t seed, double s
         const float mu = i % 2 == 0 ? float(low * std::pow(1 / double(low), random.real()))
                                     : 0.05f + 0.95f * random.next();
         const Moments m = monteCarloAlbedo(double(mu), double(alpha), double(ior), samples, random);
-        const double e = double(table.directional(AlbedoTable::row(alpha), mu));
+        const double e = double(table.directional(AlbedoTable::positionOf(alpha), mu));
         const double excess = std::max(0.0, std::abs(e - m.mean()) - double(kTableError));
         EXPECT_GT(normalTail(excess / std::max(1e-9, m.standardError()), 2), significance)
             << "ior " << ior << " mu " << mu << " alpha " << alpha << ": " << e << " " << m.mean()
@@ -71,17 +71,17 @@ TEST(AlbedoTables, AverageIsTheIntegralOfWhatIsLookedUp) {
     for (const float ior : {1.0f, 1.01f, 1.5f, 3.0f}) {
         const AlbedoTable table(ior);
         for (const float alpha : {1e-4f, 3e-3f, 0.0123f, 0.2f, 0.77f, 1.0f}) {
-            const AlbedoTable::Row row = AlbedoTable::row(alpha);
+            const AlbedoTable::AlphaPosition position = AlbedoTable::positionOf(alpha);
             double sum = 0;
             constexpr int kSteps = 200000;
             for (int i = 0; i < kSteps; ++i) {
                 // mu = t^2 resolves the horizon
                 const double t = (i + 0.5) / kSteps;
-                sum += double(table.directional(row, float(t * t))) * 4 * t * t * t / kSteps;
+                sum += double(table.directional(position, float(t * t))) * 4 * t * t * t / kSteps;
             }
-            EXPECT_NEAR(double(table.average(row)), sum, 2e-6) << ior << " " << alpha;
-            EXPECT_GE(table.directional(row, 0.0f), 0.0f);
-            EXPECT_LE(table.directional(row, 1.0f + 1e-6f), 1.0f);
+            EXPECT_NEAR(double(table.average(position)), sum, 2e-6) << ior << " " << alpha;
+            EXPECT_GE(table.directional(position, 0.0f), 0.0f);
+            EXPECT_LE(table.directional(position, 1.0f + 1e-6f), 1.0f);
         }
     }
 }
@@ -110,9 +110,9 @@ TEST(AlbedoTables, LookUpAndDeterminism) {
     EXPECT_EQ(AlbedoTables().covering(1.5f), nullptr);
     EXPECT_EQ(clearcoatTable().ior(), Bsdf::kClearcoatIor);
     for (int i = 0; i < 1000; ++i) {
-        const AlbedoTable::Row row = AlbedoTable::row(float(i) / 999);
+        const AlbedoTable::AlphaPosition position = AlbedoTable::positionOf(float(i) / 999);
         const float mu = float((i * 37) % 1000) / 999;
-        EXPECT_EQ(a.find(1.5f)->directional(row, mu), b.find(1.5f)->directional(row, mu));
+        EXPECT_EQ(a.find(1.5f)->directional(position, mu), b.find(1.5f)->directional(position, mu));
     }
 }
 

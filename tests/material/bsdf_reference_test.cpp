@@ -368,7 +368,7 @@ TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
         const double alpha = 0.36;
         const auto albedo = [&](double mu) {
             return weight *
-                   double(clearcoatTable().directional(AlbedoTable::row(0.36f), float(mu)));
+                   double(clearcoatTable().directional(AlbedoTable::positionOf(0.36f), float(mu)));
         };
         for (int i = 0; i < 1000; ++i) {
             const Vec3d e = randomAbove(random), l = randomAbove(random);

@@ -4,7 +4,7 @@
 
 #include "libcore/image/exr.h"
 #include "render/accuracy.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

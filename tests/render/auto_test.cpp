@@ -11,7 +11,7 @@
 #include "render/choose/choice.h"
 #include "render/choose/judge.h"
 #include "render/choose/processor_share.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "libcore/image/exr.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "libcore/image/exr.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -14,7 +14,7 @@
 #include "render/live/layer_names.h"
 #include "render/live/live_view.h"
 #include "render/live/tev_packets.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 #include "tests/render/tev_double.h"
 
 namespace lacuna::test {

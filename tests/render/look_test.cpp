@@ -3,7 +3,7 @@
 
 #include "libcore/image/exr.h"
 #include "libcore/image/image_io.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "libcore/image/exr.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -6,8 +6,6 @@
 #include <fstream>
 
 #include "libcore/base/error.h"
-#include "libcore/tool/effects.h"
-#include "libcore/tool/progress.h"
 #include "render/curve_log.h"
 #include "render/options.h"
 
@@ -23,10 +21,6 @@ TEST(RenderUnits, Durations) {
     for (const char* text : {"", "s", "0", "0s", "-1s", "1 s", "1ms", "infs", "nans", "0x1s"}) {
         EXPECT_THROW(parseDuration("--time", text), UsageError) << text;
     }
-    EXPECT_EQ(durationText(0.4), "0s");
-    EXPECT_EQ(durationText(65.0), "1m05s");
-    EXPECT_EQ(durationText(7380.0), "2h03m");
-    EXPECT_EQ(durationText(-3.0), "0s");
 }
 
 TEST(RenderUnits, CropsAndReplays) {
@@ -42,11 +36,6 @@ TEST(RenderUnits, CropsAndReplays) {
     EXPECT_TRUE(light.light);
     EXPECT_EQ(light.path, 12345678901u);
     EXPECT_EQ(light.iteration, 9u);
-}
-
-TEST(RenderUnits, CommandLinesAreQuoted) {
-    const char* const arguments[] = {"tool", "a b", "it's", "--set", "x=1", ""};
-    EXPECT_EQ(commandLineText(6, arguments), "tool 'a b' 'it'\\''s' --set x=1 ''");
 }
 
 TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
@@ -99,49 +88,6 @@ TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
     EXPECT_NO_THROW(full.write({1, 1.0, 1.0, {}, std::nullopt, {}}));
     if (std::filesystem::exists("/dev/full")) {
         EXPECT_THROW(CurveLog("/dev/full"), RunError);
-    }
-}
-
-TEST(RenderUnits, EffectsFollowWhatInstancesUse) {
-    SceneDescription scene;
-    scene.materials.resize(3);
-    scene.materials[1].transmission = 1.0f;
-    scene.materials[1].metallic = 0.0f;
-    scene.materials[1].thin = false;
-    scene.materials[1].roughness = 0.0f;
-    scene.materials[2].emission = Rgb(1.0f);
-    scene.materials[2].alphaMode = Material::Alpha::Blend;
-    scene.meshes.resize(3);
-    for (std::uint32_t m = 0; m < 3; ++m) {
-        scene.meshes[m].material = m;
-        scene.meshes[m].triangles = {{0, 1, 2}};
-    }
-    const auto simulated = [&](const std::string& name) {
-        for (const Effect& e : effectsOf(scene, 0.0, nullptr)) {
-            if (e.name == name) return e.simulated;
-        }
-        ADD_FAILURE() << name;
-        return false;
-    };
-    // Nothing is placed: nothing is called for.
-    for (const Effect& e : effectsOf(scene, 0.0, nullptr)) EXPECT_FALSE(e.simulated) << e.name;
-    scene.instances = {{1, {}}};
-    EXPECT_TRUE(simulated("smooth_refraction"));
-    EXPECT_TRUE(!simulated("rough_refraction") && !simulated("area_lights"));
-    EXPECT_TRUE(!simulated("diffuse"));
-    // Of any roughness it is rendered as smooth where its index is 1: light goes straight on.
-    scene.materials[1].roughness = 0.5f;
-    EXPECT_TRUE(!simulated("smooth_refraction") && simulated("rough_refraction"));
-    scene.materials[1].ior = 1.0f;
-    EXPECT_TRUE(simulated("smooth_refraction") && !simulated("rough_refraction"));
-    scene.instances = {{0, {}}, {2, {}}, {2, {}}};
-    EXPECT_TRUE(!simulated("smooth_refraction") && simulated("area_lights"));
-    EXPECT_TRUE(simulated("glossy") && !simulated("mirror"));
-    EXPECT_TRUE(simulated("alpha_blend") && !simulated("alpha_mask"));
-    for (const Effect& e : effectsOf(scene, 0.0, nullptr)) {
-        if (e.name == "area_lights") {
-            EXPECT_EQ(e.reason, "2 emissive triangles");
-        }
     }
 }
 

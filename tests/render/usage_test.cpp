@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libcore/methods/registry.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

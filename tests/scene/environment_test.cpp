@@ -46,8 +46,8 @@ TEST(Environment, SidesGetWhatIsBeforeThem) {
     image.at(48, 8) = Rgb(1e5f);
     for (const double turn : {0.0, 77.0}) {
         const Environment sky(image, 1.0, turn, "sky");
-        const SkySides sides = sky.sides(Environment::Part::AboveMean);
-        const Vec3 sun = sky.sample(0.5, 0.5f, 0.5f, Environment::Part::AboveMean).direction;
+        const SkySides sides = sky.sides(Environment::SkyPart::AboveMean);
+        const Vec3 sun = sky.sample(0.5, 0.5f, 0.5f, Environment::SkyPart::AboveMean).direction;
         Rng rng(3, 0, StreamKind::User, 0);
         double sum = 0.0;
         for (int i = 0; i < 1000; ++i) {
@@ -60,7 +60,7 @@ TEST(Environment, SidesGetWhatIsBeforeThem) {
         EXPECT_NEAR(sum, 1.0, 0.15);
     }
     const Environment even(Image(4, 2, Rgb(1.0f)), 1.0, 0.0, "even");
-    const SkySides all = even.sides(Environment::Part::Whole);
+    const SkySides all = even.sides(Environment::SkyPart::Whole);
     for (const Vec3 side : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0.6f, 0, 0.8f}}) {
         EXPECT_NEAR(all.at(side), 1.0f, 0.05f);
         EXPECT_EQ(SkySides().at(side), 1.0f);
@@ -255,8 +255,8 @@ TEST(Environment, WhatIsAboveTheMeanIsDrawnAsItSays) {
         for (int i = 0; i < kDraws; ++i) {
             const double a = rng.uniformDouble(), b = rng.uniformDouble();
             const Environment::Sample s =
-                square ? e.sampleSquare(a, b, Environment::Part::AboveMean)
-                       : e.sample(a, float(b), rng.uniform(), Environment::Part::AboveMean);
+                square ? e.sampleSquare(a, b, Environment::SkyPart::AboveMean)
+                       : e.sample(a, float(b), rng.uniform(), Environment::SkyPart::AboveMean);
             EXPECT_EQ(s.seen.pdfW, e.pdfW(s.direction));
             const double density = double(s.seen.pdfW) * e.aboveMean(s.direction);
             others += density == 0.0;

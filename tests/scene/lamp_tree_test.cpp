@@ -99,7 +99,7 @@ double shareOf(const Lights& lights, std::uint32_t l, const Viewpoint& from) {
     if (l != lights.environmentIndex()) return lights.seenSamples({l}, from) * lights.pmf(l);
     const Environment& sky = *lights.environment();
     if (sky.contrast() == 0.0) return lights.seenSamples({l, {0, 1, 0}}, from) * lights.pmf(l);
-    const Vec3 drawn = sky.sample(0.5, 0.5f, 0.5f, Environment::Part::AboveMean).direction;
+    const Vec3 drawn = sky.sample(0.5, 0.5f, 0.5f, Environment::SkyPart::AboveMean).direction;
     return lights.seenSamples({l, drawn}, from) / sky.aboveMean(drawn) * lights.pmf(l);
 }
 
@@ -270,7 +270,7 @@ TEST(LampTree, aSkyIsPickedByWhatASideGetsOfIt) {
     const double power = double(mean(sky.integral())) * sky.contrast();
     const PunctualLight sun = directionalLight({0, -1, 0}, Rgb(float(power)));
     const Lights lights({}, {&sun, 1}, {}, &sky, 1.0f);
-    const Vec3 toSun = sky.sample(0.5, 0.5f, 0.5f, Environment::Part::AboveMean).direction;
+    const Vec3 toSun = sky.sample(0.5, 0.5f, 0.5f, Environment::SkyPart::AboveMean).direction;
     const auto share = [&](const Vec3& side) {
         return lights.tree().pmf({{}, normalize(side)}, lights.environmentIndex());
     };

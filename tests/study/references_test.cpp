@@ -9,8 +9,8 @@
 
 #include "libcore/image/exr.h"
 #include "render/study/study_file.h"
+#include "tests/fixtures/render_tool.h"
 #include "tests/material/statistics.h"
-#include "tests/render/render_tool.h"
 
 namespace lacuna::test {
 namespace {

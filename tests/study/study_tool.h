@@ -1,7 +1,7 @@
 // Runs lacuna-study itself in a directory of the test's own.
 #pragma once
 
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 

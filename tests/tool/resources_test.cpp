@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

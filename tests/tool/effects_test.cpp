@@ -9,7 +9,7 @@
 #include "libcore/base/error.h"
 #include "libcore/image/image_io.h"
 #include "libcore/tool/effect_switches.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "libcore/image/image_io.h"
 #include "libcore/material/albedo_tables.h"
 #include "libcore/material/bsdf.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

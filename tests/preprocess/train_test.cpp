@@ -8,7 +8,7 @@
 #include <set>
 
 #include "libcore/image/image_io.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {

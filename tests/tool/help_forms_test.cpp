@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "libcore/methods/registry.h"
-#include "tests/render/render_tool.h"
+#include "tests/fixtures/render_tool.h"
 
 namespace lacuna::test {
 namespace {
