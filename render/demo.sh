@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds the renderer and shows what its methods make of one scene: bash render/demo.sh
+# Builds the renderer and compares its methods on one scene: bash render/demo.sh
 #
 # Installs missing Debian packages first (apt-get, as root or through sudo). Then runs a study: the
 # picture of scenes/door.glb by every method for the same time, three seeds each.
-# What it found is in out/demo/: index.html (open it in any browser), tables, curves, pictures.
-# Stopped and started again, it goes on where it stopped. These variables change it (defaults in
+# The results are in out/demo/: index.html (open it in any browser), tables, curves, pictures.
+# If it is stopped, the next call continues from there. These variables change it (defaults in
 # brackets):
 #   STUDY [tests/studies/door.json]   OUT [out/demo]
 set -euo pipefail

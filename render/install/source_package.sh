@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Debian's source package of the last commit, and what it builds: bash render/install/source_package.sh OUT
+# Makes Debian's source package of the last commit and builds its packages: bash render/install/source_package.sh OUT
 #
-#   --source   does not build it
+#   --source   only makes the source package
 #
-# Needs debhelper and dpkg-dev beside the packages of .ci/packages; asks lintian where it is installed.
+# Needs debhelper and dpkg-dev in addition to the packages of .ci/packages; runs lintian if it is installed.
 set -euo pipefail
 project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 options=(-us -uc)

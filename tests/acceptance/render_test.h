@@ -1,10 +1,10 @@
 // Renders a scene with one row of the method table and compares pictures by z-tests.
 //
-// What the tests state: `kFalseAlarm` is the probability that one comparison of two pictures fails
-// by chance (Sidak over its pixels, blocks and channels; Student's t over independent samples, with
-// the fewer ones of the two). A program has a few hundred comparisons, so one in about 10^4 changes of
-// random numbers raises a false alarm. Scenes must keep samples tame enough for that, and renders
-// be long enough: no tiny light behind a mirror, no corner that is lit by unweighted connections.
+// The significance of the tests: `kFalseAlarm` is the probability that one comparison of two pictures fails by chance
+// (Sidak over its pixels, blocks and channels; Student's t over independent samples, with the smaller number of samples
+// of the two). A program has a few hundred comparisons, so that one in about 10^4 changes of random numbers raises a
+// false alarm. This requires scenes with moderate variance and renders that are long enough: no tiny light behind a
+// mirror, no corner that is lit by unweighted connections.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace lacuna::test {
 
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// What is rendered and how long.
+/// The settings of a render: picture, length and method's parameters.
 struct Shot {
     int width = 16, height = 16;
     int maxDepth = 5;
@@ -35,25 +35,26 @@ struct Shot {
     int iterations = 256;
     std::uint64_t seed = 1;
     Sampling sampling = Sampling::Independent;
-    std::uint64_t lightPaths = 0;  ///< where the row has that parameter; 0: one per pixel
-    float gain = 1;                ///< what pixels are multiplied by before they are judged
+    std::uint64_t lightPaths = 0;  ///< if the row has that parameter; 0: one per pixel
+    float gain = 1;                ///< factor of pixels before they are compared
     int candidates = 0;            ///< likewise; 0: one light subpath per pixel
-    double radius = 0.01;          ///< likewise: what merging then blurs no test here can see
+    double radius = 0.01;          ///< likewise; the blur of merging is invisible
     std::vector<std::string> settings = {};
-    const ThreadPool* threads = nullptr;  ///< null: one, as observers may count on
-    std::uint64_t guide = 0;  ///< seed of a random emission guide that light paths follow; 0: none
-    std::uint64_t walkGuide = 0;  ///< likewise of a guide that walks follow
+    const ThreadPool* threads = nullptr;  ///< null: one thread, on which observers may rely
+    std::uint64_t guide = 0;      ///< seed of a random emission guide for light paths; 0: none
+    std::uint64_t walkGuide = 0;  ///< likewise for a guide of walks
     TechniqueFilm* techniques = nullptr;
-    const PathLayers* layers = nullptr;  ///< that Picture::layers has then
-    bool transparentBackground = false;  ///< and A in Picture::layers
+    const PathLayers* layers = nullptr;  ///< layers for Picture::layers
+    bool transparentBackground = false;  ///< adds A to Picture::layers
     GlassEffort glassEffort = {};
     PathObserver observer = nullptr;
 };
 
-/// 12 x 12 pixels, 512 light subpaths, paths of three edges: for tests of tenths of a second.
+/// 12 x 12 pixels, 512 light subpaths, paths of three edges: for tests that take tenths of a
+/// second.
 Shot quickShot(int iterations = 100);
 
-/// Sums of one render: by pixel, and by blocks of 4 x 4 pixels where the size allows it.
+/// Sums of one render: by pixel, and by blocks of 4 x 4 pixels if the size allows it.
 struct Picture {
     explicit Picture(PixelRect crop, BlockPlan plan = {})
         : pixels(crop.width(), crop.height(), plan),
@@ -67,18 +68,18 @@ struct Picture {
     double standardError() const;
 };
 
-/// Everything that must live as long as a render; for tests that drive the integrator themselves.
+/// The objects that must live as long as a render, for tests that drive the integrator themselves.
 class Render {
   public:
-    /// The row's caches are made for the scene (scene_caches.h).
+    /// Makes the row's caches for the scene (scene_caches.h).
     Render(const Scene& scene, const MethodRow& row, const Shot& shot);
-    /// With a method (and its caches) of one's own under the techniques of `row`.
+    /// Uses `method` (with its caches) and the techniques of `row`.
     Render(const Scene& scene, const MethodRow& row, const Shot& shot, Method& method);
 
     Picture run();
     BidirIntegrator& integrator() { return *integrator_; }
     const Camera& camera() const { return camera_; }
-    /// One iteration into pixels(); statistics are added up.
+    /// Renders one iteration into pixels() and adds to the statistics.
     void iterate(std::uint32_t iteration);
     void warmUp();
     std::span<const Rgb> pixels() const { return pixels_; }
@@ -101,8 +102,9 @@ class Render {
 
 Picture render(const Scene& scene, const MethodRow& row, const Shot& shot);
 
-/// Every pixel, every block and the mean, each channel, within what kFalseAlarm allows. Also that
-/// no sample was invalid. Prints the smallest bias of the mean that would have been seen.
+/// Expects every pixel, every block and the mean of each channel to agree within the limits of
+/// kFalseAlarm, and no sample to be invalid. Prints the smallest bias of the mean that would have
+/// been detected.
 enum class Judge { Everything, BlocksAndMean, MeanOnly };
 void expectSame(const Picture& a, const Picture& b, const std::string& what,
                 Judge judge = Judge::Everything);
@@ -118,30 +120,30 @@ using RadianceAlong = std::function<Vec3d(Vec3d direction)>;
 std::vector<Rgb> meanOverPixels(const Camera& camera, const Shot& shot,
                                 const RadianceAlong& radiance);
 
-/// The largest deviation that the comparisons above have met in the running test, as a share of
-/// what each allowed; and what stabilityCase() calls that.
+/// The largest deviation in the comparisons of the running test, as a share of the allowed one; and
+/// its unit for stabilityCase().
 double worstDeviation();
 inline constexpr const char* kOfAllowed = "of the deviation allowed";
 
 // Rows
 // ----------------------------------------------------------------------------------------------
 
-/// Those that every test of pictures is for: photon mapping alone is left out. What few photons in a
-/// small radius give is too noisy to judge, and merging_test.cpp is for the rest.
+/// The rows for every test of pictures: all except photon mapping. A few photons in a small radius
+/// are too noisy to be compared; merging_test.cpp tests photon mapping.
 std::vector<std::string> rowNames(Rows rows);
-/// Those of them that have it with the settings that they have unasked.
+/// Those of them that have the technique with their default settings.
 std::vector<std::string> rowNamesWith(bool (Techniques::*technique)() const, Rows rows);
-/// With photon mapping, and all that merge as they are set: for tests of weights.
+/// The rows for tests of weights: they include photon mapping, and rows merge as they are set.
 std::vector<std::string> rowNamesOfWeights();
 MethodRow rowNamed(const std::string& name);
-/// What all rows of the test that runs are judged by: rendered for the first of them alone. `what` tells its
-/// pictures apart.
+/// The reference of all rows of the running test, rendered only once, for the first row. `what` distinguishes the
+/// test's references.
 const Picture& renderedOnce(const std::string& what, const std::function<Picture()>& picture);
 /// A test over rows by their names.
 class RowTest : public testing::TestWithParam<std::string> {
   protected:
     MethodRow row() const { return rowNamed(GetParam()); }
-    /// What path tracing makes of `builder`'s scene, renderedOnce().
+    /// The path-traced picture of `builder`'s scene, by renderedOnce().
     static const Picture& reference(const SceneBuilder& builder, const Shot& shot,
                                     const std::string& what = "");
 };
@@ -157,23 +159,24 @@ struct ByParameter {
     }
 };
 
-/// Splats alone cannot make what the lens sees through mirrors and smooth glass.
+/// Whether the row can render what the lens sees through mirrors and smooth glass; splats alone
+/// cannot.
 bool seesThroughDeltas(const MethodRow& row);
-/// `shot` with 32 light subpaths per pixel for a row of splats alone. Light subpaths start on all
-/// of the scene (those of a sky: on a disk as wide) and few of them meet what one pixel sees; with
-/// one subpath per pixel a pixel's variance is that of the handful of splats that it happened to
-/// get, and a z-test means nothing.
+/// `shot` with 32 light subpaths per pixel for a row with splats only. Light subpaths start
+/// anywhere in the scene (those of a sky on a disk as wide), and few of them reach the surfaces
+/// that one pixel sees. With one subpath per pixel, a pixel's variance is estimated from a handful
+/// of splats, and a z-test is meaningless.
 Shot withSplatsForEveryPixel(const Shot& shot, const MethodRow& row);
 bool merges(const MethodRow& row);
-/// Rows that merge between deltas and nowhere else: without any they are what they are without merging, bit
-/// for bit.
+/// Rows that merge only between deltas: in scenes without deltas they equal the rows without merging, bit for bit.
 bool mergesBetweenDeltas(const MethodRow& row);
-/// Rows whose light walks reach s >= 2: they make the caustics of lights that cannot be hit.
+/// Rows whose light walks reach s >= 2: they render the caustics of lights that cannot be hit.
 bool walksFromLights(const MethodRow& row);
 bool isTestRow(const MethodRow& row);
-/// What it leaves out is left to walks that run into lamps.
+/// The row without next-event estimation through glass; walks that hit lamps make these paths
+/// instead.
 MethodRow withoutRefractions(MethodRow row);
-/// pt, its lamps picked by power: what rows do that pick by sight is judged by what does not.
+/// pt with lamps picked by power, as the reference for rows that pick lamps by sight.
 const MethodRow& pathTracer();
 
 }  // namespace lacuna::test

@@ -1,5 +1,5 @@
-// The caches that the preprocess tools would have written for a scene, coarse and made on the spot,
-// so that rows which need some are tested with them.
+// Coarse versions, made in memory, of the caches that the preprocessing tools write, so that rows
+// that need caches can be tested.
 #pragma once
 
 #include "libcore/methods/registry.h"
@@ -7,9 +7,9 @@
 
 namespace lacuna::test {
 
-/// Gives `method` what `row` needs: a skeleton of the empty space at 24 voxels, subspaces trained
-/// on 4000 paths. A scene without surfaces or without a voxel of empty space has no skeleton:
-/// nothing is given then, as methods must work without.
+/// Gives `method` the assets that `row` needs: a skeleton of the empty space at 24 voxels,
+/// subspaces trained on 4000 paths. A scene without surfaces or without an empty voxel has no
+/// skeleton. Then nothing is given, because methods must work without it.
 void giveCaches(Method& method, const MethodRow& row, const Scene& scene, const ThreadPool& pool);
 
 }  // namespace lacuna::test

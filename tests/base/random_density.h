@@ -1,4 +1,4 @@
-// Densities on the unit square of nonsense.
+// Random densities on the unit square.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace lacuna::test {
 
-/// Halves that are halved again at random, with any probabilities.
+/// A random tree of halvings with random probabilities.
 inline SquareDensity randomDensity(Rng& rng, int mostLeaves) {
     std::vector<SquareDensity::Node> nodes(1);
     std::uint32_t leaves = 0;

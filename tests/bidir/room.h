@@ -1,11 +1,11 @@
-// A closed room with a lamp that scatters as well, for walks.
+// A closed room with a lamp that also scatters, for tests of walks.
 #pragma once
 
 #include "tests/scene/scene_builder.h"
 
 namespace lacuna::test {
 
-/// The camera sees the lamp in its upper half. `texels` of its walls' texture along each side.
+/// The camera sees the lamp in its upper half. The walls' texture has `texels` along each side.
 inline std::unique_ptr<Scene> room(int texels) {
     SceneBuilder b;
     Texture checks;

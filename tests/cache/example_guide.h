@@ -1,4 +1,4 @@
-// A small guide of emission that is sound in all its parts.
+// A small valid emission guide.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace lacuna::test {
 
-/// Of three lights.
+/// A guide of three lights.
 inline std::shared_ptr<EmissionGuide> exampleGuide() {
     Rng rng(4, 0, StreamKind::User, 0);
     auto guide = std::make_shared<EmissionGuide>();

@@ -1,14 +1,14 @@
-// A small file of subspaces that is sound in all its parts.
+// A small valid file of subspaces.
 #pragma once
 
 #include "libcore/cache/subspace_file.h"
 
 namespace lacuna::test {
 
-/// What the example says that it was made of.
+/// The stamp of the example.
 inline const CacheStamp kStamp{{{"scene", "0123abc"}, {"camera", "1 Cam"}, {"paths", "1000"}}};
 
-/// With so many subspaces on the light's side and on the eye's.
+/// An example with this number of light and eye subspaces.
 inline SubspaceFile example(std::uint32_t light, std::uint32_t eye) {
     SubspaceFile file;
     file.stamp = kStamp;

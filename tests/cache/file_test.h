@@ -1,4 +1,5 @@
-// For files of caches that are binary sections: a folder for one file, and that it is refused.
+// Fixture for section files of caches: a folder for one file, and the check that a bad file is
+// refused.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class CacheFileTest : public testing::Test {
     void replace(const std::string& bytes) const {
         std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
     }
-    /// That `read` throws for the file as it is, with what is to be done about it.
+    /// Expects `read` to throw for the current file, with the remedy in the message.
     template <class Read>
     static void expectRefusal(const std::string& what, const std::string& remedy,
                               const Read& read) {

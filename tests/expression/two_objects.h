@@ -1,4 +1,4 @@
-// An alphabet that expressions are tried over.
+// An alphabet for tests of expressions.
 #pragma once
 
 #include "libcore/expression/automaton.h"

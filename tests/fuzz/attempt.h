@@ -1,4 +1,4 @@
-// What all parsers have in common: bytes as a file, and what a proper refusal looks like.
+// Shared parts of all parsers' tests: bytes as a file, and the check of proper refusals.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace lacuna::test {
 
-/// The path of a file with this content, the same one for all calls with this name. Its folder is this
-/// process's own and gone at its end.
+/// Writes a file with this content and returns its path, which depends only on the name. Its folder belongs to this
+/// process and is deleted at its end.
 std::string fileOf(const std::string& name, Bytes bytes);
 
-/// Throws std::logic_error unless it is one line that says what was expected.
+/// Throws std::logic_error unless the message is one line that says what was expected.
 void requireProper(const Error& refusal);
 
-/// Whether `read` comes to its end. What it throws must be a proper InputError or UsageError.
+/// Whether `read` succeeds. It may only throw a proper InputError or UsageError.
 template <class Read>
 bool attempt(const Read& read) {
     try {

@@ -1,11 +1,11 @@
-// What the fuzzer starts from: sound files of every kind.
+// Seeds of the fuzzer: valid files of every kind.
 #pragma once
 
 #include <filesystem>
 
 namespace lacuna::test {
 
-/// Files into a folder of `folder` for each parser (parsers.h), which accepts all of them.
+/// Writes files that each parser (parsers.h) accepts to a subfolder of `folder` for that parser.
 void writeSeeds(const std::filesystem::path& folder);
 
 }  // namespace lacuna::test

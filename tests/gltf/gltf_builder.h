@@ -1,5 +1,5 @@
 // Writes small glTF assets for the tests: a JSON tree that a test edits freely, and a binary buffer
-// that grows with each view. Nothing is validated: the tests want wrong files too.
+// that grows with each view. Nothing is validated: tests need wrong files too.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace lacuna::test {
 using nlohmann::json;
 using ByteVector = std::vector<std::uint8_t>;
 
-/// A directory that is gone when the test is over.
+/// A temporary directory that is deleted at the end of the test.
 class TempDir {
   public:
     TempDir() {
@@ -85,13 +85,13 @@ class GltfBuilder {
     json root = {{"asset", {{"version", "2.0"}}}};
     ByteVector binary;
 
-    /// Appends an element to a top-level array; its index.
+    /// Appends an element to a top-level array and returns its index.
     int add(const char* array, json element) {
         root[array].push_back(std::move(element));
         return int(root[array].size()) - 1;
     }
 
-    /// A buffer view on `bytes`, aligned to 4.
+    /// Adds a buffer view of `bytes`, aligned to 4.
     int view(const ByteVector& bytes, int stride = 0);
 
     /// Tightly packed accessor of `type` ("SCALAR", "VEC2", ...).
@@ -111,7 +111,7 @@ class GltfBuilder {
 
     /// A .glb of this text and this binary chunk (none if it is empty).
     static ByteVector pack(const std::string& text, const ByteVector& binary);
-    /// The JSON with its one buffer declared (unless the test declared buffers itself).
+    /// The JSON with its one buffer declared (unless the test declares buffers itself).
     json document() const;
     ByteVector glb() const;
     SceneDescription load(LampUnits units = LampUnits::Radiometric) const;
@@ -134,12 +134,12 @@ struct TriangleBuilder : GltfBuilder {
 /// Number of warnings that contain `text`.
 int warningsWith(const SceneDescription& scene, const std::string& text);
 
-/// Expects loadGltf(path) to throw InputError, one well-formed line that holds every one of
+/// Expects loadGltf(path) to throw InputError with one well-formed line that contains all of
 /// `parts`.
 void expectRefused(const std::string& path, const std::vector<std::string>& parts);
 void expectRefused(const GltfBuilder& builder, const std::vector<std::string>& parts);
 
-/// Everything that the rest of the program relies on in a description.
+/// Expects a description to have all properties on which the program relies.
 void expectValid(const SceneDescription& scene);
 
 }  // namespace lacuna::test

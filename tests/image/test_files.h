@@ -1,4 +1,4 @@
-// Helpers of the image tests: a directory of its own per test, files as bytes, random pictures.
+// Helpers of the image tests: a directory per test, files as bytes, random pictures.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ inline Bytes slurp(const std::string& path) {
 }
 
 inline void spill(const std::string& path, const Bytes& bytes) {
-    // Truncating an old file would make some file systems flush it: slow in tests with thousands.
+    // To truncate an old file makes some file systems flush it, which is slow in tests with
+    // thousands of files.
     std::filesystem::remove(path);
     std::ofstream out(path, std::ios::binary);
     out.write(bytes.data(), std::streamsize(bytes.size()));
@@ -38,7 +39,7 @@ inline void spill(const std::string& path, const std::string& text) {
     spill(path, Bytes(text.begin(), text.end()));
 }
 
-/// Values over many magnitudes, negative ones, a denormal and -0: what has to survive bit by bit.
+/// Values that must be preserved bit by bit: of many magnitudes, negative ones, a denormal and -0.
 inline std::vector<float> randomFloats(std::size_t n, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> exponent(-30.0f, 30.0f), sign(-1.0f, 1.0f);
@@ -48,7 +49,7 @@ inline std::vector<float> randomFloats(std::size_t n, unsigned seed) {
     return out;
 }
 
-/// Positive radiance, smooth enough to compress like a render.
+/// Positive random radiance.
 inline Image randomImage(int width, int height, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> value(0.01f, 2.0f);
@@ -79,7 +80,7 @@ class FileTest : public ::testing::Test {
     }
 
     std::string path(const std::string& name) const { return (directory_ / name).string(); }
-    /// Names of everything in the directory: a test that nothing was left behind.
+    /// Names of everything in the directory, to test that nothing was left behind.
     std::vector<std::string> listing() const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(directory_)) {

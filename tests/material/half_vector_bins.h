@@ -1,6 +1,6 @@
 // Bins over all directions, and integrals over them, in the coordinates of the half vector about a
-// normal: narrow lobes and wide ones are resolved alike. The Jacobian from half vectors to
-// directions is taken numerically, so that it is independent of the formulas under test.
+// normal, which resolve narrow and wide lobes alike. The Jacobian from half vectors to directions
+// is computed numerically, so that it is independent of the formulas under test.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class HalfVectorBins {
     static constexpr int kSectors = 8;
     static constexpr int kSteps = 14;  ///< midpoints per bin and axis
 
-    /// About `normal`, which `from` is on the side of that it is of ng.
+    /// Bins about `normal`. `from` must be on the same side of it as of ng.
     HalfVectorBins(const Case& c, Vec3 normal) : case_(c) {
         const Vec3d v = Vec3d(c.from);
         n_ = c.front ? Vec3d(normal) : -Vec3d(normal);
@@ -39,7 +39,8 @@ class HalfVectorBins {
             along_ = normalize(flat);
             stretch_ = 1 + (1 / alpha - 1) * std::pow(double(c.parameters.anisotropy), 2);
         }
-        // GGX falls off with the fourth power of the slope: rings by factors where alpha is small.
+        // GGX falls off with the fourth power of the slope: for small alpha, the rings' radii grow
+        // by factors.
         for (double k : {0.3, 0.6, 1.0, 1.6, 3.0, 8.0, 24.0, 72.0, 216.0, 648.0}) {
             if (k <= 8 || alpha * k < 0.1) {
                 edges_.push_back(std::atan(alpha * k));
@@ -52,8 +53,8 @@ class HalfVectorBins {
         std::sort(edges_.begin(), edges_.end());
         for (const double edge : edges_) tangents_.push_back(std::tan(edge));
         tangents_.back() = kInfinity;
-        // Rounded to float, grazing directions v and w lose their half vector, v + w being short:
-        // then the core of a narrow lobe is one bin.
+        // Rounding to float destroys the half vector of grazing directions v and w, because v + w
+        // is short. Then the core of a narrow lobe is one bin.
         const double core = 1e-7 / v_.z > 0.02 * alpha ? std::atan(8 * alpha) * 0.999 : 0;
         unresolved_ =
             std::size_t(std::upper_bound(edges_.begin(), edges_.end(), core) - edges_.begin() - 1);
@@ -62,7 +63,7 @@ class HalfVectorBins {
                             length(Vec3d(c.parameters.clearcoatNormal)) > 0;
         kinds_ = passes ? 2 : 1;
         eta_ = c.indexOn(!c.front) / c.indexOn(c.front);
-        // ior 1 transmits straight on: delta, without half vectors
+        // ior 1 transmits straight: a delta, without half vectors
         if (!c.parameters.thin && eta_ == 1.0) {
             kinds_ = 1;
         }
@@ -127,7 +128,7 @@ class HalfVectorBins {
   private:
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-    /// The eighth of the circle, from -pi on.
+    /// The octant of the circle, counted from -pi.
     static std::size_t sectorOf(double x, double y) {
         static_assert(kSectors == 8);
         const bool steep = std::abs(y) > std::abs(x);
@@ -143,19 +144,19 @@ class HalfVectorBins {
         explicit SineCosine(double angle) : sine(std::sin(angle)), cosine(std::cos(angle)) {}
         double sine, cosine;
     };
-    /// The middle of an interval, and a little less and more: what a derivative is taken of.
+    /// The centre of an interval and two points beside it, for a numerical derivative.
     struct Angle {
-        static constexpr double kStep = 1e-4;  ///< of the width
+        static constexpr double kStep = 1e-4;  ///< share of the width
         Angle(double middle, double wide)
             : width(wide), at(middle), less(middle - wide * kStep), more(middle + wide * kStep) {}
         double width;
         SineCosine at, less, more;
     };
 
-    /// Bins are of the half vectors of a surface that is as rough along its grain as it is across.
+    /// Bins are in the half vectors of a surface that is as rough along its grain as across it.
     Vec3d stretched(Vec3d h, double by) const { return h + along_ * ((by - 1) * dot(h, along_)); }
 
-    /// The direction that a half vector (given by its angles) leads to; false if there is none.
+    /// The direction for a half vector, given by its angles; false if there is none.
     bool direction(int kind, const SineCosine& theta, const SineCosine& phi, Vec3d& to) const {
         const Vec3d h = normalize(
             stretched({theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine}, stretch_));
@@ -182,8 +183,8 @@ class HalfVectorBins {
             Vec3d plus, minus;
             const bool hasPlus = direction(kind, moreTheta, morePhi, plus);
             const bool hasMinus = direction(kind, lessTheta, lessPhi, minus);
-            // `direction` sets its result also for a reflection beyond the horizon; not for the
-            // rest.
+            // `direction` sets its result also for a reflection beyond the horizon, but not in
+            // other failures.
             if (hasPlus && hasMinus) {
                 return (plus - minus) * 0.5;
             }
@@ -201,16 +202,16 @@ class HalfVectorBins {
     double eta_ = 1;
     int kinds_ = 1;
     std::vector<double> edges_, tangents_;
-    std::size_t unresolved_ = 0;  ///< number of innermost rings that are one bin
+    std::size_t unresolved_ = 0;  ///< number of innermost rings merged to one bin
 };
 
-/// Bins for lobes about both normals. Each direction is divided among a bin about either, smoothly,
-/// so that each lobe lies in the bins about its own normal.
+/// Bins for lobes about both normals. Each direction is shared, with smooth weights, by one bin
+/// about each normal, so that each lobe lies mainly in the bins about its own normal.
 class TwoNormalBins {
   public:
     explicit TwoNormalBins(const Case& c) : case_(c) {
         const Vec3d ng(c.bsdf.ng()), ns(c.bsdf.ns()), from(c.from);
-        // An eye may see lobes about one of them alone.
+        // An eye may see only the lobes about one normal.
         const double eyeNg = c.side == Side::Eye ? shareOfNg(from, ng, ns) : 0.5;
         if (eyeNg > 0 && c.tilted) ng_.emplace(c, c.bsdf.ng());
         if (eyeNg < 1 && dot(from, ns) * dot(from, ng) > 0) ns_.emplace(c, c.bsdf.ns());
@@ -218,7 +219,8 @@ class TwoNormalBins {
 
     std::size_t size() const { return ngSize() + (ns_ ? ns_->size() : 0); }
 
-    /// Bin of a direction, or size() if it has no half vector here. `u` decides which of its two.
+    /// Bin of a direction, or size() if it has no half vector here. `u` selects one of its two
+    /// bins.
     std::size_t binOf(Vec3 to, double u) const {
         if (u < shareOfNs(to)) return ngSize() + ns_->binOf(to);
         const std::size_t bin = ng_->binOf(to);
@@ -247,7 +249,7 @@ class TwoNormalBins {
         if (!ng_) return 1;
         const Vec3d ng(case_.bsdf.ng()), ns(case_.bsdf.ns()), v(case_.from);
         const Vec3d w = normalize(Vec3d(to));
-        // Bins about a normal know nothing of directions on another side of it.
+        // Bins about a normal do not cover directions that ng and ns put on different sides.
         if (dot(w, ng) * dot(w, ns) <= 0) return 0;
         const bool toFront = dot(w, ng) > 0;
         // The cosine between a normal and the half vector about it.
@@ -259,7 +261,8 @@ class TwoNormalBins {
             return dot(normalize(v * from + w * into), n) * (into > from ? -1 : 1);
         };
         const double aboutNs = cosine(ns), aboutNg = cosine(ng);
-        // No microfacet about a normal refracts one into the other.
+        // If no microfacet about a normal refracts one direction to the other, only the other
+        // normal has a bin.
         if (aboutNs <= 0) return 0;
         if (aboutNg <= 0) return 1;
         const double toNs = std::pow(1 - aboutNs, 2), toNg = std::pow(1 - aboutNg, 2);

@@ -1,5 +1,5 @@
-// The grid that the contract of a BSDF is tested on: material x roughness x angle x side of the
-// surface x shading normal x walk.
+// The grid of tests of the BSDF's contract: material x roughness x angle x side of the surface x
+// shading normal x walk.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ inline Vec3 polar(double degrees, double azimuthDegrees) {
         Vec3d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
 }
 
-/// A rotation that no axis is special in.
+/// A rotation in which no axis is special.
 inline const Frame& world() {
     static const Frame frame(normalize(Vec3{0.36f, -0.48f, 0.8f}));
     return frame;
@@ -59,13 +59,13 @@ inline const Frame& world() {
 inline Bsdf::Parameters ownClearcoat(Bsdf::Parameters p, float weight, float roughness) {
     p = clearcoated(p, weight, roughness);
     p.clearcoatNormal = world().toWorld(polar(10, 300));
-    p.thin = true;  // bins of directions below one normal and above another are those of sheets
+    p.thin = true;  // only for sheets do bins cover directions between the two normals' horizons
     return p;
 }
 
 inline Bsdf::Parameters brushed(Bsdf::Parameters p, float anisotropy) {
     p.anisotropy = anisotropy;
-    p.tangent = world().toWorld(polar(80, 65)) * 3.0f;  // neither unit nor quite on the surface
+    p.tangent = world().toWorld(polar(80, 65)) * 3.0f;  // neither unit nor quite in the surface
     return p;
 }
 
@@ -78,7 +78,7 @@ inline Bsdf::Parameters withSheen(Bsdf::Parameters p, Rgb color, float roughness
 inline Bsdf::Parameters leaf(Bsdf::Parameters p, float share, Rgb color) {
     p.diffuseTransmission = share;
     p.diffuseTransmissionColor = color;
-    p.thin = true;  // diffuse transmission knows no index: eta^2 is taken out of none
+    p.thin = true;  // diffuse transmission has no index, and thus no eta^2
     return p;
 }
 
@@ -88,7 +88,7 @@ inline Bsdf::Parameters paneOf(Rgb color) {
     return p;
 }
 
-/// Every kind of lobe alone and together; roughness is set by the test.
+/// Every kind of lobe, alone and combined; the test sets the roughness.
 inline std::vector<Material> materials() {
     const Rgb white(1.0f), red(0.9f, 0.3f, 0.1f), black(0.0f);
     return {
@@ -151,9 +151,10 @@ inline std::vector<Material> materials() {
 
 /// alpha = 0, 1e-4 (rounded up), 0.01, 0.09, 0.36, 1.
 inline constexpr std::array<float, 6> kRoughness{0.0f, 0.01001f, 0.1f, 0.3f, 0.6f, 1.0f};
-/// 5: a sample that is tilted by a hundredth shows there, and nowhere else.
+/// Only 5 degrees would reveal samples tilted by a hundredth.
 inline constexpr std::array<double, 6> kDegrees{0.0, 5.0, 30.0, 60.0, 85.0, 89.9};
-/// Where ng leans 20 degrees towards the known direction: that is above ng and below ns's plane.
+/// With ng tilted by 20 degrees towards the known direction, this angle is above ng's plane and
+/// below ns's.
 inline constexpr double kBelowDegrees = 97.0;
 
 /// Tables for every ior of `materials()`.
@@ -174,9 +175,9 @@ struct Case {
     Bsdf bsdf;
     Bsdf::Parameters parameters;
     Vec3 from;    ///< the known direction
-    Side side;    ///< of the walk that samples
-    bool tilted;  ///< ns and ng differ, or the clearcoat's normal is another one
-    bool front;   ///< `from` lies outside, by ng
+    Side side;    ///< the walk that samples
+    bool tilted;  ///< ns and ng differ, or the clearcoat has its own normal
+    bool front;   ///< `from` is outside, according to ng
 
     double indexOn(bool outside) const {
         return outside || parameters.thin ? 1.0 : double(parameters.ior);
@@ -187,8 +188,8 @@ struct Case {
     double pdf(const BsdfEvaluation& e) const {
         return double(side == Side::Eye ? e.pdfWToLight : e.pdfWToEye);
     }
-    /// f |to.ng| with the eye walk's eta^2 taken out: what may not gain energy. Green: a channel
-    /// in which the coloured materials are neither black nor white.
+    /// f |to.ng| without the eye walk's eta^2, which must not gain energy. It uses green, in which
+    /// the coloured materials are neither black nor white.
     double energy(const BsdfEvaluation& e, Vec3 to) const {
         const bool toFront = dot(to, bsdf.ng()) > 0;
         const double cosine = std::abs(double(dot(to, bsdf.ng())));
@@ -198,7 +199,7 @@ struct Case {
     }
 };
 
-/// w of bsdf.h, in double from what it means: 1 - 4 m / |toEye . ng|, with m the cosine between ng
+/// w of bsdf.h, in double from its definition: 1 - 4 m / |toEye . ng|, with m the cosine between ng
 /// and the eye's mirror direction about ns.
 inline double shareOfNg(Vec3d toEye, Vec3d ng, Vec3d ns) {
     const double side = dot(toEye, ng) > 0 ? 1 : -1;
@@ -206,8 +207,7 @@ inline double shareOfNg(Vec3d toEye, Vec3d ng, Vec3d ns) {
     return std::clamp(1 - 4 * m / std::abs(dot(toEye, ng)), 0.0, 1.0);
 }
 
-/// Moments of the weights that an eye walk's samples have: their mean is the albedo seen from
-/// toEye.
+/// Moments of the weights of an eye walk's samples; their mean is the albedo seen from toEye.
 inline Moments albedoSeenFrom(const Bsdf& bsdf, Vec3 toEye, int samples, Random& random) {
     Moments albedo;
     for (int i = 0; i < samples; ++i) {
@@ -233,10 +233,11 @@ inline std::vector<Case> grid() {
                     const Side side = (bits & 4) != 0 ? Side::Light : Side::Eye;
                     Bsdf::Parameters p = m.parameters;
                     p.roughness = roughness;
-                    // Not rougher along the grain than quadrature about one half vector resolves.
+                    // The roughness along the grain is limited to what quadrature about one half
+                    // vector resolves.
                     const float alpha = std::max(1e-3f, roughness * roughness);
                     p.anisotropy = std::min(p.anisotropy, std::sqrt(7 * alpha));
-                    // `from` stays on the same side of ng: ng leans towards it.
+                    // `from` stays on the same side of ng, because ng is tilted towards it.
                     const Vec3 ng = world().toWorld(tilted ? polar(20, 77) : Vec3{0, 0, 1});
                     const Vec3 up = world().toWorld(polar(degrees, 40));
                     cases.push_back({m.name + ", roughness " + std::to_string(roughness) + ", " +

@@ -1,4 +1,4 @@
-// Statistical tests whose false-alarm rate is stated for all of them together (Sidak).
+// Statistical tests with one false-alarm rate for all of them together (Sidak).
 #pragma once
 
 #include <cmath>
@@ -18,20 +18,20 @@ class Random {
     std::mt19937_64 engine_;
 };
 
-/// P(Z > z), both tails where `sides` is 2.
+/// P(Z > z); both tails if `sides` is 2.
 inline double normalTail(double z, int sides = 1) {
     return 0.5 * sides * std::erfc(z / std::sqrt(2.0));
 }
 
 /// The value that Student's t with `dof` degrees of freedom exceeds as often as a normal variable
-/// exceeds z: what a bound of z standard errors becomes where those were estimated from dof + 1
-/// samples. After Wallace 1959; within 1 % of itself for dof >= 20 and z <= 6.
+/// exceeds z. It replaces a bound of z standard errors if these were estimated from dof + 1
+/// samples. After Wallace 1959; accurate to 1 % for dof >= 20 and z <= 6.
 inline double studentQuantile(double z, double dof) {
     const double scaled = z * (8.0 * dof + 3.0) / (8.0 * dof + 1.0);
     return std::sqrt(dof * std::expm1(scaled * scaled / dof));
 }
 
-/// P(chi^2 with `dof` > x) after Wilson and Hilferty; far in the tail within a factor of two.
+/// P(chi^2 with `dof` > x) after Wilson and Hilferty; accurate to a factor of two far in the tail.
 inline double chiSquareTail(double x, double dof) {
     const double k = 2.0 / (9.0 * dof);
     return normalTail((std::cbrt(x / dof) - (1.0 - k)) / std::sqrt(k));
@@ -42,8 +42,8 @@ inline double sidak(double total, double tests) {
     return -std::expm1(std::log1p(-total) / tests);
 }
 
-/// Standard errors, estimated from dof + 1 samples, that one of `tests` two-sided tests exceeds
-/// with probability `total`.
+/// The number of standard errors, estimated from dof + 1 samples, that any of `tests` two-sided
+/// tests exceeds with probability `total`.
 inline double allowedErrors(double total, double tests, double dof) {
     const double significance = sidak(total, tests);
     double low = 0.0, high = 40.0;

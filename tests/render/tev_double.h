@@ -1,5 +1,5 @@
-// Listens as tev does and keeps what it is told. Its decoder was written after tev's own, and shares
-// nothing with what sends.
+// A stand-in for tev: listens and records what it receives. Its decoder follows tev's own and
+// shares no code with the sender.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,7 @@ class TevDouble {
   public:
     enum class Manner {
         Reads,
-        NeverReads,   ///< accepts and takes nothing, until `setManner`
+        NeverReads,   ///< accepts connections but reads nothing, until `setManner`
         LeavesEarly,  ///< closes its first connection in the middle of a tile
         Absent,       ///< refuses connections, until `setManner`
     };
@@ -41,12 +41,12 @@ class TevDouble {
     struct State {
         std::map<std::string, Picture> pictures;  ///< by name
         int connections = 0, created = 0;
-        std::string fault;  ///< what tev would not have understood
+        std::string fault;  ///< the first packet error that tev would report
     };
     State state() const;
-    /// False if that does not come about in a time that is long for anything.
+    /// Waits for a state; false if it does not come about in a generous time.
     bool waitFor(const std::function<bool(const State&)>& wanted) const;
-    /// A picture of that name, every pixel of it.
+    /// Waits for a picture of that name with all its pixels.
     bool waitForPicture(const std::string& name) const;
 
   private:
@@ -66,7 +66,7 @@ class TevDouble {
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;
     State state_;
-    std::map<std::string, std::vector<bool>> seen_;  ///< pixels, by picture
+    std::map<std::string, std::vector<bool>> seen_;  ///< received pixels, by picture
     std::thread thread_;
 };
 

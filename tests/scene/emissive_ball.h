@@ -1,4 +1,4 @@
-// A lamp as modellers make of a sphere.
+// A lamp in the shape of a modeller's sphere.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace lacuna::test {
 
-/// `rings` from pole to pole, twice as many sides around. The seam's corners are where sines of a
-/// whole turn put them; triangles of no size at the poles are left in.
+/// A ball with `rings` from pole to pole and twice as many sides around. The seam's corners have
+/// the rounding of the sine of a whole turn. Degenerate triangles at the poles are included.
 inline std::vector<EmissiveTriangle> emissiveBall(Vec3 middle, float radius, int rings) {
     const auto corner = [&](int i, int j) {
         const float turn = kPi * float(i) / float(rings), down = kPi * float(j) / float(rings);

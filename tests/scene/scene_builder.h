@@ -1,4 +1,5 @@
-// Scenes in a few lines of code: meshes, materials, lights and cameras into a SceneDescription.
+// Builds scenes in a few lines of code: meshes, materials, lights and cameras of a
+// SceneDescription.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,7 @@ inline Affine translation(Vec3d t) {
 inline Affine scaling(Vec3d s) {
     return {{Vec3d{s.x, 0, 0}, Vec3d{0, s.y, 0}, Vec3d{0, 0, s.z}, Vec3d{}}};
 }
-/// About a (not necessarily unit) axis, right-handed.
+/// Right-handed rotation about an axis, which need not be unit.
 inline Affine rotation(Vec3d axis, double degrees) {
     const Vec3d k = normalize(axis);
     const double angle = degrees * std::numbers::pi / 180;
@@ -55,7 +56,7 @@ inline Mesh triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t material = 0) {
     return m;
 }
 
-/// Everything of `b` behind everything of `a`, which must agree on whether there are normals.
+/// Appends `b` to `a`. Both or neither must have normals.
 inline Mesh joined(Mesh a, const Mesh& b) {
     const auto base = std::uint32_t(a.positions.size());
     a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
@@ -125,7 +126,7 @@ inline lacuna::Material pane(Rgb color = Rgb(1.0f), float ior = 1.5f) {
     m.baseColor = color;
     return m;
 }
-/// Solid; `absorption` per unit of length.
+/// A solid of glass; `absorption` per unit length.
 inline lacuna::Material colouredGlass(Rgb absorption, float ior = 1.5f, float roughness = 0) {
     lacuna::Material m = glass(ior, roughness);
     m.absorption = absorption;
@@ -210,7 +211,7 @@ class SceneBuilder {
         use.value = std::int32_t(d.textures.size() - 1);
         return use;
     }
-    /// A mesh and its first instance; returns the mesh. Used once, it is baked.
+    /// Adds a mesh and its first instance; returns the mesh. A mesh that is used once is baked.
     std::uint32_t add(Mesh m, const Affine& toWorld = {}) {
         d.meshes.push_back(std::move(m));
         const auto mesh = std::uint32_t(d.meshes.size() - 1);

@@ -1,4 +1,4 @@
-// The sphere in cells, for densities of directions.
+// Cells of the sphere of directions, for tests of densities.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,20 @@
 
 namespace lacuna::test {
 
-/// Around `axis`: z (the cosine to it) times azimuth. z runs over [zLow, 1], for narrow lobes.
+/// Cells around `axis`: z (the cosine to it) times azimuth. z runs over [zLow, 1], for narrow
+/// lobes.
 class SphereBins {
   public:
     explicit SphereBins(Vec3 axis, int rings = 16, int sectors = 16, double zLow = -1)
         : frame_(axis), rings_(rings), sectors_(sectors), zLow_(zLow) {}
 
     std::size_t size() const { return std::size_t(rings_) * sectors_; }
-    /// size() for a direction outside.
+    /// Index of the cell of a direction; size() if it is outside.
     std::size_t find(Vec3 direction) const {
         // 1 - cos without cancellation.
         const double oneMinus = 0.5 * lengthSquared(Vec3d(direction) - Vec3d(frame_.n));
         const double ring = (1 - oneMinus / (1 - zLow_)) * rings_;
-        if (ring < -1e-3 * rings_) return size();  // farther off than rounding puts it
+        if (ring < -1e-3 * rings_) return size();  // farther outside than by rounding
         const double turn = std::atan2(dot(direction, frame_.t), dot(direction, frame_.s)) /
                                 (2 * std::numbers::pi) +
                             0.5;
@@ -59,7 +60,7 @@ class SphereBins {
     double zLow_;
 };
 
-/// Uniform on the sphere.
+/// A uniform random direction.
 inline Vec3 randomDirection(Rng& rng) {
     const double z = 2 * rng.uniformDouble() - 1, phi = 2 * std::numbers::pi * rng.uniformDouble();
     const double r = std::sqrt(1 - z * z);

@@ -1,4 +1,4 @@
-// A mesh's points and normals in the world, in double and straight from the definitions.
+// Points and normals of a mesh in world space, in double and directly from the definitions.
 #pragma once
 
 #include <string>
@@ -33,7 +33,7 @@ struct ExactSurface {
     Vec2 uv;
 };
 
-/// At barycentric (u, v) of one triangle. Normals are interpolated, then transformed.
+/// The surface at barycentric (u, v) of one triangle. Normals are interpolated, then transformed.
 inline ExactSurface exactSurface(const Mesh& mesh, std::size_t index, const Affine& m, double u,
                                  double v) {
     const auto& t = mesh.triangles[index];
@@ -41,7 +41,7 @@ inline ExactSurface exactSurface(const Mesh& mesh, std::size_t index, const Affi
     const auto corner = [&](int i) { return Vec3d(mesh.positions[t[i]]); };
     ExactSurface s;
     s.position = m.point(corner(0) * w + corner(1) * u + corner(2) * v);
-    // The front is the image of the mesh's front, whatever becomes of the winding.
+    // The front is the image of the mesh's front, whatever the winding becomes.
     s.ng = normalize(m.normal(cross(corner(1) - corner(0), corner(2) - corner(0))) * sign);
     s.ns = s.ng;
     if (!mesh.normals.empty()) {
@@ -55,10 +55,10 @@ inline ExactSurface exactSurface(const Mesh& mesh, std::size_t index, const Affi
     return s;
 }
 
-/// How a mesh stands in a scene: moved to world space at load, or as an Embree instance.
+/// How a mesh is placed in a scene: transformed to world space at load, or as an Embree instance.
 enum class Placement { Baked, Instanced };
 
-/// `mesh` under `toWorld`, alone but for (Instanced) a second instance too far below to be hit
+/// Adds `mesh` under `toWorld`. For Instanced, adds a second instance too far below to be hit
 /// first.
 inline void place(SceneBuilder& b, const Mesh& mesh, const Affine& toWorld, Placement placement) {
     const std::uint32_t index = b.add(mesh, toWorld);

@@ -1,4 +1,4 @@
-// Runs lacuna-study itself in a directory of the test's own.
+// Runs lacuna-study in a directory of the test's own.
 #pragma once
 
 #include "tests/fixtures/render_tool.h"
@@ -9,8 +9,8 @@ class StudyTool : public RenderTool {
   protected:
     std::string ownTool() const override { return LACUNA_STUDY; }
 
-    /// Two methods, two seeds, a reference of two parts, all tiny. `changes` is JSON that is merged
-    /// into it (RFC 7386). Writes @study.json.
+    /// Writes @study.json: a tiny study with two methods, two seeds and a reference of two parts.
+    /// `changes`: JSON that is merged into it (RFC 7386).
     void writeStudy(const std::string& changes = "{}") const {
         nlohmann::json study = nlohmann::json::parse(R"({
             "title": "A study <of> tests", "about": ["pt is <what> lvcbpt is not.", "Twice."],

@@ -1,4 +1,4 @@
-// Meshes as the triangles that voxelization takes.
+// Converts meshes to the triangles of the voxelization.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace lacuna::test {
 
-/// All triangles of `mesh`, moved by `transform`.
+/// All triangles of `mesh`, transformed.
 inline std::vector<Triangle> trianglesOf(const Mesh& mesh, const Affine& transform = {}) {
     std::vector<Triangle> all;
     for (const auto& t : mesh.triangles) {
