@@ -82,8 +82,11 @@ int compareTool(int argc, char** argv) {
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     requireOutputs(options);
 
-    const Image image = readImage(options.image);
-    const ErrorReference reference(readImage(options.reference), options.reference);
+    const ImageFile imageFile = openImage(options.image);
+    const ImageFile referenceFile = openImage(options.reference);
+    requireSameSize(options.image, imageFile.size, options.reference, referenceFile.size);
+    const Image image = imageFile.decode();
+    const ErrorReference reference(referenceFile.decode(), options.reference);
     const ErrorMeasures m = reference.compare(image, options.image);
     if (options.common.verbose && !options.common.quiet) {
         std::fprintf(stderr, "%d x %d pixels, e = %.9g\n", image.width, image.height,

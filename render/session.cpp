@@ -173,16 +173,18 @@ void Session::describeStage() const {
 
 void Session::loadReference() {
     if (!options_.reference.empty()) {
-        Image image = readImage(options_.reference);
+        const ImageFile file = openImage(options_.reference);
         const Camera::Film film = stage_.camera->film();
-        if (image.width == film.width && image.height == film.height) {
-            image = cropped(image, stage_.settings.crop);
-        } else if (image.width != film_.width() || image.height != film_.height()) {
+        const bool isWhole = file.size == ImageSize{film.width, film.height};
+        if (!isWhole && file.size != ImageSize{film_.width(), film_.height()}) {
             throw InputError(options_.reference + ": expected " + std::to_string(film_.width()) +
                              " x " + std::to_string(film_.height()) + " pixels, found " +
-                             std::to_string(image.width) + " x " + std::to_string(image.height) +
+                             std::to_string(file.size.width) + " x " +
+                             std::to_string(file.size.height) +
                              "; render at that size (--width, --height)");
         }
+        Image image = file.decode();
+        if (isWhole) image = cropped(image, stage_.settings.crop);
         reference_.emplace(std::move(image), options_.reference);
     }
     if (!options_.log.empty()) log_.emplace(options_.log, film_.iterations());

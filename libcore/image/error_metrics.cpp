@@ -53,6 +53,15 @@ double relative(double i, double r, double e) {
 
 }  // namespace
 
+void requireSameSize(const std::string& name, ImageSize size, const std::string& referenceName,
+                     ImageSize referenceSize) {
+    if (size == referenceSize) return;
+    throw InputError(name + ": expected " + std::to_string(referenceSize.width) + " x " +
+                     std::to_string(referenceSize.height) + " pixels as in " + referenceName +
+                     ", found " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                     "; render both at one size");
+}
+
 ErrorReference::ErrorReference(Image reference, std::string name)
     : reference_(std::move(reference)), name_(std::move(name)) {
     if (reference_.empty()) throw InputError(name_ + ": expected a reference, found no pixels");
@@ -81,12 +90,7 @@ ErrorReference::ErrorReference(Image reference, std::string name)
 }
 
 void ErrorReference::requireComparable(const Image& image, const std::string& name) const {
-    if (image.width != reference_.width || image.height != reference_.height) {
-        throw InputError(name + ": expected " + std::to_string(reference_.width) + " x " +
-                         std::to_string(reference_.height) + " pixels as in " + name_ + ", found " +
-                         std::to_string(image.width) + " x " + std::to_string(image.height) +
-                         "; render both at one size");
-    }
+    requireSameSize(name, image.size(), name_, reference_.size());
     requireFinite(image, name);
 }
 

@@ -20,6 +20,10 @@ struct ErrorMeasures {
     std::size_t pixels = 0;
 };
 
+/// Throws InputError, which names both pictures, unless they have the same size.
+void requireSameSize(const std::string& name, ImageSize size, const std::string& referenceName,
+                     ImageSize referenceSize);
+
 /// A validated reference, with the values that every comparison against it needs.
 class ErrorReference {
   public:

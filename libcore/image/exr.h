@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libcore/image/image.h"
+#include "libcore/image/image_file.h"
 
 namespace lacuna {
 
@@ -30,6 +31,8 @@ void writeExr(const std::string& path, const LayeredImage& image, const ExrStyle
 
 /// The channels R, G, B of the first part that has them, over its data window; half or float, scan lines or tiles.
 /// Throws InputError if the file cannot be read, is damaged or too large, or has no such channels.
+ImageFile openExr(const std::string& path);
+/// The same, decoded.
 Image readExr(const std::string& path);
 
 /// All channels (half or float) of all parts, which must have one size, and the attributes of type

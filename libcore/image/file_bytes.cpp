@@ -55,6 +55,15 @@ void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t h
     }
 }
 
+void requireModestSize(const std::string& path, std::uint64_t pixelBytes, std::uint64_t fileBytes) {
+    const std::uint64_t most = kUnpackedFree + kUnpackedPerByte * fileBytes;
+    if (pixelBytes <= most) return;
+    throw InputError(path + ": expected pixels of at most " + std::to_string(most >> 20) +
+                     " MB in a file of " + std::to_string(fileBytes) + " bytes, found " +
+                     std::to_string(pixelBytes >> 20) +
+                     " MB; write the file again, or scale the picture down");
+}
+
 std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t pixels) {
     constexpr std::size_t kDepth = 24, kColourType = 25;
     constexpr std::uint64_t kSamples[] = {1, 1, 3, 1, 2, 1, 4};

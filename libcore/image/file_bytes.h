@@ -19,6 +19,10 @@ std::vector<std::uint8_t> readFileBytes(const std::string& path);
 /// Throws InputError if a picture of the size that a header claims is too large to allocate.
 void requireSaneSize(const std::string& path, std::int64_t width, std::int64_t height);
 
+/// Throws InputError if `pixelBytes`, the size of a picture in memory, is more than a file of `fileBytes` bytes may
+/// unpack to.
+void requireModestSize(const std::string& path, std::uint64_t pixelBytes, std::uint64_t fileBytes);
+
 /// The fewest bytes that a PNG of this number of pixels can have: deflate expands a byte to 1032 at most. `file`: at
 /// least its header. Needed because decoders allocate what the header claims.
 std::uint64_t fewestBytesOfPng(std::span<const std::uint8_t> file, std::uint64_t pixels);

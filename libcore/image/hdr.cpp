@@ -18,8 +18,8 @@ namespace {
 
 class Scanner {
   public:
-    Scanner(const std::string& path, const std::vector<std::uint8_t>& bytes)
-        : path_(path), bytes_(bytes) {}
+    Scanner(const std::string& path, const std::vector<std::uint8_t>& bytes, std::size_t at = 0)
+        : path_(path), bytes_(bytes), at_(at) {}
 
     std::uint8_t byte() {
         if (at_ >= bytes_.size()) fail(path_, "more pixels");
@@ -33,12 +33,12 @@ class Scanner {
         at_ = end + 1;
         return out;
     }
-    bool atEnd() const { return at_ >= bytes_.size(); }
+    std::size_t at() const { return at_; }
 
   private:
     const std::string& path_;
     const std::vector<std::uint8_t>& bytes_;
-    std::size_t at_ = 0;
+    std::size_t at_;
 };
 
 struct Rgbe {
@@ -89,7 +89,7 @@ void readRow(const std::string& path, Scanner& in, std::vector<Rgbe>& row) {
 }
 
 /// Parses "-Y height +X width", the only orientation in use.
-void parseSize(const std::string& path, std::string_view line, int& width, int& height) {
+ImageSize parseSize(const std::string& path, std::string_view line) {
     const auto number = [&](std::string_view prefix) {
         if (line.substr(0, prefix.size()) != prefix) fail(path, "a size '-Y height +X width'");
         line.remove_prefix(prefix.size());
@@ -99,16 +99,13 @@ void parseSize(const std::string& path, std::string_view line, int& width, int& 
         line.remove_prefix(std::size_t(end - line.data()));
         return out;
     };
-    height = number("-Y ");
-    width = number(" +X ");
+    const int height = number("-Y "), width = number(" +X ");
     requireSaneSize(path, width, height);
+    return {width, height};
 }
 
-}  // namespace
-
-Image readHdr(const std::string& path) {
-    const std::vector<std::uint8_t> bytes = readFileBytes(path);
-    Scanner in(path, bytes);
+/// Reads all lines before the first row; returns the size.
+ImageSize readHeader(const std::string& path, Scanner& in) {
     const std::string_view magic = in.line();
     if (magic.substr(0, 10) != "#?RADIANCE" && magic.substr(0, 6) != "#?RGBE") {
         fail(path, "'#?RADIANCE'");
@@ -118,20 +115,32 @@ Image readHdr(const std::string& path) {
         isRgbe = isRgbe || line.substr(0, 22) == "FORMAT=32-bit_rle_rgbe";
     }
     if (!isRgbe) fail(path, "FORMAT=32-bit_rle_rgbe");
-    int width = 0, height = 0;
-    parseSize(path, in.line(), width, height);
-    // A run takes two bytes and has at most 127 pixels, for each of four components.
-    if (bytes.size() < std::size_t(width) * std::size_t(height) * 8 / 127) {
-        fail(path, "more pixels");
-    }
+    return parseSize(path, in.line());
+}
 
-    Image image(width, height);
-    std::vector<Rgbe> row(static_cast<std::size_t>(width));
-    for (int y = 0; y < height; ++y) {
+Image readRows(const std::string& path, Scanner in, ImageSize size) {
+    Image image(size.width, size.height);
+    std::vector<Rgbe> row(static_cast<std::size_t>(size.width));
+    for (int y = 0; y < size.height; ++y) {
         readRow(path, in, row);
-        for (int x = 0; x < width; ++x) image.at(x, y) = row[std::size_t(x)].colour();
+        for (int x = 0; x < size.width; ++x) image.at(x, y) = row[std::size_t(x)].colour();
     }
     return image;
+}
+
+}  // namespace
+
+ImageFile openHdr(const std::string& path) {
+    std::vector<std::uint8_t> bytes = readFileBytes(path);
+    Scanner in(path, bytes);
+    const ImageSize size = readHeader(path, in);
+    // A run takes two bytes and has at most 127 pixels, for each of four components.
+    if (bytes.size() < std::size_t(size.width) * std::size_t(size.height) * 8 / 127) {
+        fail(path, "more pixels");
+    }
+    return {size, [=, at = in.at(), bytes = std::move(bytes)] {
+                return readRows(path, Scanner(path, bytes, at), size);
+            }};
 }
 
 }  // namespace lacuna

@@ -16,6 +16,14 @@ namespace lacuna {
 inline constexpr int kMaxImageSide = 65536;
 inline constexpr std::size_t kMaxImagePixels = std::size_t(1) << 28;
 
+/// In pixels.
+struct ImageSize {
+    int width = 0;
+    int height = 0;
+
+    friend bool operator==(ImageSize, ImageSize) = default;
+};
+
 /// An RGB picture: `pixels` has width * height entries, pixel (x, y) at [y * width + x].
 struct Image {
     int width = 0;
@@ -28,6 +36,7 @@ struct Image {
     Rgb& at(int x, int y) { return pixels[index(x, y)]; }
     const Rgb& at(int x, int y) const { return pixels[index(x, y)]; }
     bool empty() const { return pixels.empty(); }
+    ImageSize size() const { return {width, height}; }
 
   private:
     std::size_t index(int x, int y) const { return std::size_t(y) * width + x; }

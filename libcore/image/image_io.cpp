@@ -14,14 +14,18 @@ std::string endingOf(const std::string& path) {
     return ending;
 }
 
-Image readImage(const std::string& path) {
+ImageFile openImage(const std::string& path) {
     const std::string ending = endingOf(path);
-    if (ending == ".exr") return readExr(path);
-    if (ending == ".hdr") return readHdr(path);
-    if (ending == ".pfm") return readPfm(path);
-    if (ending == ".png") return readPng(path);
+    if (ending == ".exr") return openExr(path);
+    if (ending == ".hdr") return openHdr(path);
+    if (ending == ".pfm") return openPfm(path);
+    if (ending == ".png") return openPng(path);
     throw UsageError(path + ": expected an image .exr, .hdr, .pfm or .png, found the ending '" +
                      ending + "'; convert the image");
+}
+
+Image readImage(const std::string& path) {
+    return openImage(path).decode();
 }
 
 void writeImage(const std::string& path, const LayeredImage& image, const PngStyle& png,

@@ -7,13 +7,16 @@
 
 #include "libcore/image/exr.h"
 #include "libcore/image/image.h"
+#include "libcore/image/image_file.h"
 #include "libcore/image/tone.h"
 
 namespace lacuna {
 
-/// Reads .exr (R, G, B), .hdr (Radiance RGBE), .pfm (colour or grey) or .png (8 or 16 bit sRGB,
+/// Opens .exr (R, G, B), .hdr (Radiance RGBE), .pfm (colour or grey) or .png (8 or 16 bit sRGB,
 /// converted to linear; alpha is dropped). Throws UsageError for another ending, InputError if the
-/// file cannot be read.
+/// file cannot be read or claims more pixels than a file of its size may unpack to.
+ImageFile openImage(const std::string& path);
+/// The same, decoded.
 Image readImage(const std::string& path);
 
 /// Writes .exr (every channel and attribute), .pfm (R, G, B) or .png (R, G, B as sRGB, and A if the image has it; NaN
@@ -30,9 +33,9 @@ void requireWritable(const std::string& path);
 std::string endingOf(const std::string& path);
 
 /// Readers and writers of single formats; errors as above.
-Image readHdr(const std::string& path);
-Image readPfm(const std::string& path);
-Image readPng(const std::string& path);
+ImageFile openHdr(const std::string& path);
+ImageFile openPfm(const std::string& path);
+ImageFile openPng(const std::string& path);
 /// Whether writePng or writePngBytes wrote the file: they add a text chunk that says so. False for
 /// anything else, also for a file that cannot be read.
 bool isOurPng(const std::string& path);

@@ -18,8 +18,7 @@ static_assert(std::endian::native == std::endian::little && sizeof(Rgb) == 3 * s
 
 struct PfmHeader {
     int channels = 3;
-    int width = 0;
-    int height = 0;
+    ImageSize image;
     bool bigEndian = false;
     std::size_t size = 0;  // bytes up to the first float
 };
@@ -56,13 +55,13 @@ PfmHeader parseHeader(const std::string& path, std::string_view text) {
     const std::string_view magic = nextWord(path, text, at);
     if (magic != "PF" && magic != "Pf") failHeader(path);
     header.channels = magic == "PF" ? 3 : 1;
-    header.width = number<int>(path, nextWord(path, text, at));
-    header.height = number<int>(path, nextWord(path, text, at));
+    header.image.width = number<int>(path, nextWord(path, text, at));
+    header.image.height = number<int>(path, nextWord(path, text, at));
     const float scale = number<float>(path, nextWord(path, text, at));
     if (!std::isfinite(scale) || scale == 0.0f) failHeader(path);
     header.bigEndian = scale > 0.0f;
     header.size = at;
-    requireSaneSize(path, header.width, header.height);
+    requireSaneSize(path, header.image.width, header.image.height);
     return header;
 }
 
@@ -72,22 +71,11 @@ float loadFloat(const std::uint8_t* from, bool bigEndian) {
     return std::bit_cast<float>(bigEndian ? __builtin_bswap32(bits) : bits);
 }
 
-}  // namespace
-
-Image readPfm(const std::string& path) {
-    const std::vector<std::uint8_t> bytes = readFileBytes(path);
-    const PfmHeader header =
-        parseHeader(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    const std::size_t floats = std::size_t(header.width) * header.height * header.channels;
-    if (bytes.size() - header.size != floats * 4) {
-        throw InputError(path + ": expected " + std::to_string(floats * 4) +
-                         " bytes of pixels, found " + std::to_string(bytes.size() - header.size) +
-                         "; the file is damaged, write it again");
-    }
-    Image image(header.width, header.height);
-    const std::uint8_t* from = bytes.data() + header.size;
-    for (int y = header.height - 1; y >= 0; --y) {
-        for (int x = 0; x < header.width; ++x) {
+/// `from`: the first float.
+Image decodePfm(const PfmHeader& header, const std::uint8_t* from) {
+    Image image(header.image.width, header.image.height);
+    for (int y = image.height - 1; y >= 0; --y) {
+        for (int x = 0; x < image.width; ++x) {
             float v[3];
             for (int c = 0; c < header.channels; ++c, from += 4) {
                 v[c] = loadFloat(from, header.bigEndian);
@@ -96,6 +84,24 @@ Image readPfm(const std::string& path) {
         }
     }
     return image;
+}
+
+}  // namespace
+
+ImageFile openPfm(const std::string& path) {
+    std::vector<std::uint8_t> bytes = readFileBytes(path);
+    const PfmHeader header =
+        parseHeader(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const std::size_t floats =
+        std::size_t(header.image.width) * header.image.height * header.channels;
+    if (bytes.size() - header.size != floats * 4) {
+        throw InputError(path + ": expected " + std::to_string(floats * 4) +
+                         " bytes of pixels, found " + std::to_string(bytes.size() - header.size) +
+                         "; the file is damaged, write it again");
+    }
+    return {header.image, [header, bytes = std::move(bytes)] {
+                return decodePfm(header, bytes.data() + header.size);
+            }};
 }
 
 void writePfm(const std::string& path, const Image& image) {

@@ -41,10 +41,8 @@ std::string reason() {
     return said && *said ? printable(said) : "a damaged one";
 }
 
-}  // namespace
-
-Image readPng(const std::string& path) {
-    const std::vector<std::uint8_t> bytes = readFileBytes(path);
+/// The size in a PNG's header. Throws InputError unless stb_image may decode `bytes`.
+ImageSize checkedSize(const std::string& path, const std::vector<std::uint8_t>& bytes) {
     // stb_image detects the format by content and would try its weaker readers on other files.
     constexpr std::array<std::uint8_t, 8> magic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     if (bytes.size() < 8 || !std::equal(magic.begin(), magic.end(), bytes.begin())) {
@@ -52,31 +50,42 @@ Image readPng(const std::string& path) {
     }
     if (bytes.size() > std::size_t(std::numeric_limits<int>::max())) fail(path, "more than 2 GB");
     if (!pngChunksFit(bytes)) fail(path, "a part that ends beyond the file");
-    const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
-    if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels)) {
+    if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels)) {
         fail(path, reason());
     }
     requireSaneSize(path, width, height);
-    const std::uint64_t fewest =
-        fewestBytesOfPng(bytes, std::uint64_t(width) * std::uint64_t(height));
+    const std::uint64_t pixels = std::uint64_t(width) * std::uint64_t(height);
+    const std::uint64_t fewest = fewestBytesOfPng(bytes, pixels);
     if (bytes.size() < fewest) {
         fail(path, std::to_string(bytes.size()) + " bytes, where so large a picture has " +
                        std::to_string(fewest) + " at least");
     }
+    requireModestSize(path, pixels * sizeof(Rgb), bytes.size());
+    return {width, height};
+}
 
-    Image image(width, height);
-    const auto read = [&](auto* loaded) {
+Image decodePng(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+    const int size = int(bytes.size());
+    int width = 0, height = 0, channels = 0;
+    const auto image = [&](auto* loaded) {
         const std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, StbFree> data(loaded);
         if (!data) fail(path, reason());
-        decode(data.get(), image);
+        Image decoded(width, height);
+        decode(data.get(), decoded);
+        return decoded;
     };
-    if (stbi_is_16_bit_from_memory(bytes.data(), size)) {
-        read(stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, 3));
-    } else {
-        read(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3));
-    }
-    return image;
+    return stbi_is_16_bit_from_memory(bytes.data(), size)
+               ? image(stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, 3))
+               : image(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3));
+}
+
+}  // namespace
+
+ImageFile openPng(const std::string& path) {
+    std::vector<std::uint8_t> bytes = readFileBytes(path);
+    const ImageSize size = checkedSize(path, bytes);
+    return {size, [path, bytes = std::move(bytes)] { return decodePng(path, bytes); }};
 }
 
 }  // namespace lacuna

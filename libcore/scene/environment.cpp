@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/base/sampling.h"
@@ -16,11 +17,10 @@ namespace {
 constexpr double kRounding = 1e-5;
 }  // namespace
 
-Environment::Environment(const Image& image, double scale, double rotationDegrees,
-                         const std::string& file)
+Environment::Environment(Image image, double scale, double rotationDegrees, const std::string& file)
     : width_(image.width),
       height_(image.height),
-      image_(image.pixels.begin(), image.pixels.end()),
+      image_(std::move(image.pixels)),
       turn_(float(rotationDegrees / 360.0 - std::floor(rotationDegrees / 360.0))) {
     if (width_ < 1 || height_ < 1) {
         throw InputError(file + ": expected an environment map, found an empty image");

@@ -18,7 +18,7 @@ class Environment {
   public:
     /// `rotationDegrees` turns the map about +Y (positive: from -Z towards +X). Throws InputError,
     /// which names `file`, for an empty image or negative or non-finite texels.
-    Environment(const Image& image, double scale, double rotationDegrees, const std::string& file);
+    Environment(Image image, double scale, double rotationDegrees, const std::string& file);
 
     Rgb radiance(Vec3 direction) const {
         return even_ ? image_[0] : radianceAt(placeOf(direction));

@@ -68,9 +68,10 @@ Scene::Scene(SceneDescription description, const ThreadPool& pool)
         requireNear(description_, "a lamp", length(light.position - baked_.centre));
     }
     if (const auto& e = description_.environment) {
-        const Image map = e->colour ? Image(1, 1, *e->colour) : readImage(e->file);
-        environment_ = std::make_unique<Environment>(
-            map, e->scale, e->rotationDegrees, e->colour ? "the environment's colour" : e->file);
+        Image map = e->colour ? Image(1, 1, *e->colour) : readImage(e->file);
+        environment_ =
+            std::make_unique<Environment>(std::move(map), e->scale, e->rotationDegrees,
+                                          e->colour ? "the environment's colour" : e->file);
     }
     lights_ = std::make_unique<Lights>(emissiveTriangles(description_, baked_), description_.lights,
                                        baked_.centre, environment_.get(), baked_.radius);

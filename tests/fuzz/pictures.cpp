@@ -16,17 +16,17 @@ bool acceptsExr(Bytes bytes) {
 }
 
 bool acceptsHdr(Bytes bytes) {
-    return attempt([&] { readHdr(fileOf("a.hdr", bytes)); });
+    return attempt([&] { readImage(fileOf("a.hdr", bytes)); });
 }
 
 bool acceptsPfm(Bytes bytes) {
-    return attempt([&] { readPfm(fileOf("a.pfm", bytes)); });
+    return attempt([&] { readImage(fileOf("a.pfm", bytes)); });
 }
 
 bool acceptsPng(Bytes bytes) {
     const std::string path = fileOf("a.png", bytes);
     isOurPng(path);
-    return attempt([&] { readPng(path); });
+    return attempt([&] { readImage(path); });
 }
 
 bool acceptsPart(Bytes bytes) {

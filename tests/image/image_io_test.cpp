@@ -247,6 +247,61 @@ TEST_F(ImageIo, HeadersThatClaimMoreThanThereIs) {
               std::string::npos);
 }
 
+/// A PNG of one bit per pixel, all of them black.
+test::Bytes blackBits(std::uint32_t side) {
+    const auto number = [](std::uint32_t value) {
+        std::string text;
+        for (int shift = 24; shift >= 0; shift -= 8) text += char(value >> shift);
+        return text;
+    };
+    const auto chunk = [&](const std::string& named) {
+        const auto* from = reinterpret_cast<const Bytef*>(named.data());
+        return number(std::uint32_t(named.size() - 4)) + named +
+               number(std::uint32_t(crc32(0, from, uInt(named.size()))));
+    };
+    const std::vector<Bytef> rows(std::size_t(side) * (1 + (side + 7) / 8));
+    uLongf size = compressBound(rows.size());
+    std::string packed(size, '\0');
+    compress2(reinterpret_cast<Bytef*>(packed.data()), &size, rows.data(), rows.size(), 9);
+    packed.resize(size);
+    const std::string file =
+        "\x89PNG\r\n\x1a\n" +
+        chunk("IHDR" + number(side) + number(side) + std::string("\1\0\0\0\0", 5)) +
+        chunk("IDAT" + packed) + chunk("IEND");
+    return {file.begin(), file.end()};
+}
+
+// Twelve bytes of memory for each bit, of which a byte of the file has eight thousand.
+TEST_F(ImageIo, PngThatUnpacksToMoreThanItMay) {
+    test::spill(path("small.png"), blackBits(100));
+    EXPECT_EQ(readImage(path("small.png")).pixels, std::vector<Rgb>(10000));
+    test::spill(path("large.png"), blackBits(16384));
+    EXPECT_NE(messageOf<InputError>([&] { openImage(path("large.png")); }).find("found 3072 MB"),
+              std::string::npos);
+}
+
+// Before any of them is decoded: the rows of both files are damaged.
+TEST_F(ImageIo, SizesAreReadFromHeaders) {
+    const Image image = test::randomImage(40, 11, 2);
+    writeImage(path("a.exr"), test::layered(image));
+    writeImage(path("a.pfm"), test::layered(image));
+    writeImage(path("a.png"), test::layered(image));
+    writeHdr("a.hdr", image);
+    for (const char* name : {"a.exr", "a.pfm", "a.png", "a.hdr"}) {
+        const ImageFile file = openImage(path(name));
+        EXPECT_EQ(file.size, image.size()) << name;
+        EXPECT_EQ(file.decode().size(), image.size()) << name;
+    }
+    for (const char* name : {"a.png", "a.hdr"}) {
+        test::Bytes bytes = test::slurp(path(name));
+        std::fill(bytes.end() - std::ptrdiff_t(bytes.size() / 2), bytes.end(), '\0');
+        test::spill(path(name), bytes);
+        const ImageFile file = openImage(path(name));
+        EXPECT_EQ(file.size, image.size()) << name;
+        EXPECT_THROW(file.decode(), InputError) << name;
+    }
+}
+
 TEST_F(ImageIo, EndingsDecide) {
     const Image image = test::randomImage(3, 2, 2);
     writeImage(path("a.EXR"), test::layered(image));
