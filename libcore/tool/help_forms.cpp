@@ -46,8 +46,7 @@ std::vector<std::string> namesOf(const CLI::Option& option) {
 
 std::string typeOf(const CLI::Option& option) {
     const std::string type = option.get_type_name();
-    if (option.get_positional() && type == "TEXT") return option.get_name();
-    return type.starts_with("N:") ? "N" : type;  // validators add their own
+    return option.get_positional() && type == "TEXT" ? option.get_name() : type;
 }
 
 ValueKind valueKind(const CLI::Option& option, const ValueWords& words) {

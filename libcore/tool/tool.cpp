@@ -11,6 +11,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -44,8 +45,7 @@ bool isDecimal(const std::string& text) {
 /// Rejects values that CLI11 accepts silently: an empty text, 0640 (as octal), and integers that
 /// are too large (as the largest one).
 void checkValues(const CLI::Option& option) {
-    const std::string type = option.get_type_name();
-    const bool isInteger = type == "N" || type.starts_with("N:");  // validators append text
+    const bool isInteger = option.get_type_name() == "N";
     for (const std::string& value : option.results()) {
         if (value.empty()) {
             throw UsageError(option.get_name() +
@@ -58,6 +58,20 @@ void checkValues(const CLI::Option& option) {
                              "'");
         }
     }
+}
+
+/// A check whose message names the bounds: that of CLI11 prints the largest double in full. It refuses signs, which
+/// CLI11 lets wrap around in an unsigned number.
+auto integerWithin(std::uint64_t low, std::uint64_t high) {
+    return [=](const std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [at, error] = std::from_chars(text.data(), end, value);
+        const bool isWithin = error == std::errc{} && at == end && low <= value && value <= high;
+        return isWithin ? std::string()
+                        : "expected an integer from " + std::to_string(low) + " to " +
+                              std::to_string(high) + ", found '" + text + "'";
+    };
 }
 
 /// Whether the exception means that the system could not start a thread. That of oneTBB has no type
@@ -99,10 +113,10 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.add_option("--threads", options.threads,
                    "Number of threads (default: all; at most 64, or 4 for each processor)")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(integerWithin(1, 4096));
     app.add_option("--seed", options.seed, "Seed of all random numbers (default: 1)")
         ->type_name("N")
-        ->check(CLI::NonNegativeNumber);  // CLI11 would wrap -1
+        ->check(integerWithin(0, std::numeric_limits<std::uint64_t>::max()));
     app.add_option("--json", options.json, "Write everything measured to this file")
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "Print no progress and no remarks on stderr");

@@ -2,6 +2,8 @@
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
 
 #include "libcore/methods/registry.h"
 #include "tests/fixtures/render_tool.h"
@@ -113,27 +115,41 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure(start + "--json @out.exr", 2, "file of its own");
 }
 
+/// The names of all options with a value: in the lines of --help a type follows them.
+std::vector<std::string> optionsWithValues(const std::string& help) {
+    std::vector<std::string> names;
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t name = line.find("--"), space = line.find(' ', 2);
+        if (!line.starts_with("  -") || space + 1 >= line.size() || line[space + 1] == ' ')
+            continue;
+        names.push_back(line.substr(name, line.find_first_of(", ", name) - name));
+    }
+    return names;
+}
+
 /// A variable of the shell that is not set must not leave an option out.
 TEST_F(RenderUsage, EmptyTextsExitWith2) {
-    const std::string start = "@none.glb -o @out.exr --method pt ";
-    for (const char* option : {"--time",           "--crop",
-                               "--replay",         "--env",
-                               "--reference",      "--log",
-                               "--camera",         "--json",
-                               "--cache",          "--set",
-                               "--width",          "--height",
-                               "--iterations",     "--max-depth",
-                               "--rr-depth",       "--aperture",
-                               "--focus",          "--exposure",
-                               "--env-rotate",     "--env-scale",
-                               "--units",          "--tolerance",
-                               "--seed",           "--threads",
-                               "--help-method",    "--display-server",
-                               "--display-layers", "--write-every",
-                               "--checkpoint",     "--checkpoint-every",
-                               "--blocks",         "--block-iterations"}) {
-        expectFailure(start + option + " \"\"", 2, option);
+    const std::pair<const char*, const char*> tools[] = {
+        {LACUNA_RENDER, "@none.glb "},      {LACUNA_COMPARE, "@a.exr @b.exr "},
+        {LACUNA_MERGE, "@a.exr "},          {LACUNA_RELIGHT, "@a.exr "},
+        {LACUNA_SKELETONIZE, "@none.glb "}, {LACUNA_TRAIN, "@none.glb "}};
+    std::size_t number = 0;
+    for (const auto& [tool, start] : tools) {
+        for (const std::string& option : optionsWithValues(run("--help", tool).out)) {
+            const std::string arguments = start + option + " \"\"";
+            const Outcome o = run(arguments, tool);
+            EXPECT_EQ(o.exitCode, 2) << arguments;
+            for (const std::string& part : {option + ": expected ", std::string(", found ")}) {
+                EXPECT_NE(o.err.find(part), std::string::npos) << arguments << "\n" << o.err;
+            }
+            EXPECT_LT(o.err.size(), 160u) << arguments << "\n" << o.err;
+            EXPECT_EQ(o.err.find('\n') + 1, o.err.size()) << arguments << "\n" << o.err;
+            ++number;
+        }
     }
+    EXPECT_GT(number, 100u);
+    const std::string start = "@none.glb -o @out.exr --method pt ";
     expectFailure(start + "--time=", 2, "--time");
     expectFailure("\"\" -o @out.exr --method pt", 2, "SCENE");
 }
