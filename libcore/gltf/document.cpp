@@ -75,11 +75,15 @@ std::string firstLine(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// Fills document.model. Leaves in document.json only what is read from it later.
+/// Fills document.nodes and document.model. Leaves in document.json only what is read from it later.
 void parseModel(Document& document) {
     constexpr std::array kKept = {"buffers", "images", "animations", "skins"};
-    constexpr std::array kDone = {"accessors", "bufferViews", "meshes", "nodes"};
+    constexpr std::array kDone = {"accessors", "bufferViews", "meshes"};
     json& root = document.json;
+    if (const auto nodes = root.find("nodes"); nodes != root.end()) {
+        document.nodes = readNodes(std::move(*nodes));
+        root.erase(nodes);
+    }
     json kept = json::object();
     for (const char* key : kKept) {
         if (const auto member = root.find(key); member != root.end()) {
@@ -88,13 +92,6 @@ void parseModel(Document& document) {
         }
     }
     const std::string text = root.dump();
-    if (const auto nodes = root.find("nodes"); nodes != root.end()) {
-        for (std::size_t i = 0; i < nodes->size(); ++i) {
-            if (const auto extras = (*nodes)[i].find("extras"); extras != (*nodes)[i].end()) {
-                document.nodeExtras[i] = std::move(*extras);
-            }
-        }
-    }
     for (const char* key : kDone) root.erase(key);
     root.update(kept);
     if (text.size() > Limits::kFileBytes) {

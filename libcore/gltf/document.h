@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "libcore/gltf/files.h"
 #include "libcore/gltf/limits.h"
+#include "libcore/gltf/node_list.h"
 #include "libcore/gltf/report.h"
 #include "libcore/image/file_bytes.h"
 
@@ -34,10 +34,10 @@ class Allowance {
 /// The result of loadDocument. Every index in `model` and `json` that the rules of guard.h name is
 /// in range, and every buffer view lies within its buffer.
 ///
-/// tinygltf gets the JSON without `buffers`, `images`, `animations` and `skins`. All its known faults (unchecked views
-/// handed to the image decoder, `..` URIs that are read, two copies of the payload) are in code that then has nothing
-/// to do. `json` keeps the content of these keys, together with `materials`, `textures` and `scenes`, whose extensions
-/// and extras are read from it.
+/// tinygltf gets the JSON without `buffers`, `images`, `animations`, `skins` and `nodes`. All its known faults
+/// (unchecked views handed to the image decoder, `..` URIs that are read, two copies of the payload) are in code that
+/// then has nothing to do. `json` keeps the content of these keys except `nodes`, together with `materials`, `textures`
+/// and `scenes`, whose extensions and extras are read from it.
 ///
 /// Compressed meshes are unpacked before tinygltf sees them. The decoded buffers, views and accessors follow the file's
 /// own, and nothing refers to a compressed one.
@@ -47,9 +47,9 @@ struct Document {
     std::vector<Bytes> external;
     std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
     nlohmann::json json;
-    std::map<std::size_t, nlohmann::json> nodeExtras;  ///< by node; only nodes with extras
-    tinygltf::Model model;
-    ContentHash hash;  ///< of everything that was read, in order
+    std::vector<Node> nodes;
+    tinygltf::Model model;  ///< without nodes
+    ContentHash hash;       ///< of everything that was read, in order
     std::uint64_t bytesRead = 0;
     Allowance allowance;
     std::size_t scene = 0;  ///< the default scene; model.scenes may be empty

@@ -34,15 +34,13 @@ void readCone(const Document& document, const std::string& place, const tinygltf
 }  // namespace
 
 const tinygltf::Light* lightOf(const Document& document, std::size_t node) {
-    const auto& extensions = document.model.nodes[node].extensions;
-    const auto extension = extensions.find("KHR_lights_punctual");
-    if (extension == extensions.end() || !extension->second.Has("light")) return nullptr;
-    return &document.model.lights[std::size_t(extension->second.Get("light").GetNumberAsInt())];
+    const std::int32_t light = document.nodes[node].light;
+    return light == Node::kNone ? nullptr : &document.model.lights[std::size_t(light)];
 }
 
 void addCamera(const Document& document, std::size_t node, const Affine& toWorld,
                SceneDescription& scene, Warnings& warnings) {
-    const tinygltf::Node& source = document.model.nodes[node];
+    const Node& source = document.nodes[node];
     if (source.camera < 0) return;
     const tinygltf::Camera& camera = document.model.cameras[std::size_t(source.camera)];
     const std::string place = "cameras[" + std::to_string(source.camera) + "]";
@@ -110,7 +108,7 @@ void addLight(const Document& document, std::size_t node, const Affine& toWorld,
         }
         light.direction = normalize(axis);
     }
-    const std::string& nodeName = document.model.nodes[node].name;
+    const std::string& nodeName = document.nodes[node].name;
     light.group = !group.empty() ? group : !nodeName.empty() ? nodeName : source->name;
     for (const std::string* name : {&nodeName, &source->name}) {
         if (!name->empty()) light.names.push_back(*name);

@@ -180,10 +180,10 @@ std::string lightGroupOf(const Document& document, const json& lacuna, const std
 }
 
 std::string nodeGroup(const Document& document, std::size_t node) {
-    const auto extras = document.nodeExtras.find(node);
-    if (extras == document.nodeExtras.end()) return {};
+    const json& extras = document.nodes[node].extras;
+    if (extras.is_null()) return {};
     const std::string place = "nodes[" + std::to_string(node) + "]";
-    return lightGroupOf(document, lacunaExtras(document, extras->second, place), place);
+    return lightGroupOf(document, lacunaExtras(document, extras, place), place);
 }
 
 }  // namespace lacuna::gltf

@@ -56,20 +56,23 @@ void addBent(SkinnedMesh bent, Instance instance, SceneDescription& scene) {
 void addInstances(Document& document, const Placement& placement, const MeshTable& table,
                   const SkinTable& skins, const std::string& groupName, SceneDescription& scene,
                   Warnings& warnings) {
-    const int mesh = document.model.nodes[placement.node].mesh;
+    const Node& node = document.nodes[placement.node];
+    const int mesh = node.mesh;
     if (mesh < 0) return;
     const std::string place = "nodes[" + std::to_string(placement.node) + "]";
-    const bool hasSkin = document.model.nodes[placement.node].skin >= 0;
-    warnings.add("skins are rendered at rest, as their joints' nodes stand", hasSkin, place);
+    const bool hasSkin = node.skin >= 0;
+    if (hasSkin) {
+        warnings.add("skins are rendered at rest, as their joints' nodes stand", 1, place);
+    }
     std::uint32_t group = Instance::kNoGroup;
     if (!groupName.empty()) {
         group = std::uint32_t(scene.nodeGroups.size());
         scene.nodeGroups.push_back(groupName);
     }
     std::uint32_t nodeName = Instance::kNoName;
-    if (const std::string& name = document.model.nodes[placement.node].name; !name.empty()) {
+    if (!node.name.empty()) {
         nodeName = std::uint32_t(scene.nodeNames.size());
-        scene.nodeNames.push_back(name);
+        scene.nodeNames.push_back(node.name);
     }
     for (const Affine& copy : meshCopies(document, placement.node)) {
         const Affine toWorld = placement.toWorld * copy;
@@ -159,7 +162,7 @@ void load(const std::string& path, const std::function<Bytes()>& bytes, SceneDes
 
     std::vector<bool> used(document.model.meshes.size());
     for (const Placement& placement : placements) {
-        const int mesh = document.model.nodes[placement.node].mesh;
+        const int mesh = document.nodes[placement.node].mesh;
         if (mesh >= 0 && placement.visible) used[std::size_t(mesh)] = true;
     }
     MeshTable table = readMeshes(document, used, warnings);

@@ -138,23 +138,39 @@ void decodeWebp(const Document& document, Picture& picture) {
     picture.owned = {};
 }
 
+/// Converts texels of 1 to 4 channels (grey, grey and alpha, RGB, RGBA) to RGBA.
+std::vector<std::uint8_t> rgbaOf(const stbi_uc* from, std::size_t texels, int channels) {
+    if (channels == STBI_rgb_alpha) return {from, from + 4 * texels};
+    const int green = channels == STBI_rgb ? 1 : 0, blue = 2 * green;
+    const bool hasAlpha = channels == STBI_grey_alpha;
+    std::vector<std::uint8_t> rgba(4 * texels);
+    for (std::size_t i = 0; i < rgba.size(); i += 4, from += channels) {
+        rgba[i] = from[0];
+        rgba[i + 1] = from[green];
+        rgba[i + 2] = from[blue];
+        rgba[i + 3] = hasAlpha ? from[1] : std::uint8_t(255);
+    }
+    return rgba;
+}
+
 void decodePicture(const Document& document, Picture& picture) {
     if (isWebp(picture.coded)) return decodeWebp(document, picture);
     struct Free {
         void operator()(stbi_uc* texels) const { stbi_image_free(texels); }
     };
     int width = 0, height = 0, channels = 0;
-    const std::unique_ptr<stbi_uc, Free> texels(
-        stbi_load_from_memory(picture.coded.data(), int(picture.coded.size()), &width, &height,
-                              &channels, STBI_rgb_alpha));
+    // stb_image would convert a PNG to four channels in a buffer of its own, which then would be copied.
+    const int wanted = startsWith(picture.coded, kPng) ? STBI_default : STBI_rgb_alpha;
+    const std::unique_ptr<stbi_uc, Free> texels(stbi_load_from_memory(
+        picture.coded.data(), int(picture.coded.size()), &width, &height, &channels, wanted));
     if (!texels || width != picture.width || height != picture.height) {
         const char* reason = texels ? nullptr : stbi_failure_reason();  // may be null
         refuse(document.file, picture.place, kKinds,
                reason && *reason ? std::string("a damaged one (") + reason + ")" : "a damaged one",
                "save the image again");
     }
-    const std::size_t size = std::size_t(width) * std::size_t(height) * 4;
-    picture.rgba.assign(texels.get(), texels.get() + size);
+    picture.rgba = rgbaOf(texels.get(), std::size_t(picture.texels()),
+                          wanted == STBI_default ? channels : wanted);
     picture.owned = {};
 }
 

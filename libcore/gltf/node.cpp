@@ -30,39 +30,34 @@ Affine fromMatrix(const Document& document, std::size_t node, const std::vector<
              Vec3d{m[12], m[13], m[14]}}};
 }
 
-Affine fromTrs(const Document& document, std::size_t index, const tinygltf::Node& node) {
+Affine fromTrs(const Document& document, std::size_t index, const Node& node) {
+    auto [x, y, z, w] = node.rotation;
+    const double l = std::sqrt(x * x + y * y + z * z + w * w);
+    if (!(l > 0.0) || !std::isfinite(l)) {
+        refuse(document.file, placeOfNode(index) + ".rotation", "a unit quaternion",
+               "one of length " + numberText(l));
+    }
+    x /= l, y /= l, z /= l, w /= l;
     Affine a;
-    if (!node.rotation.empty()) {
-        double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2],
-               w = node.rotation[3];
-        const double l = std::sqrt(x * x + y * y + z * z + w * w);
-        if (!(l > 0.0) || !std::isfinite(l)) {
-            refuse(document.file, placeOfNode(index) + ".rotation", "a unit quaternion",
-                   "one of length " + numberText(l));
-        }
-        x /= l, y /= l, z /= l, w /= l;
-        a.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
-        a.m[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
-        a.m[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
-    }
-    if (!node.scale.empty()) {
-        for (std::size_t i = 0; i < 3; ++i) a.m[i] *= node.scale[i];
-    }
-    if (!node.translation.empty()) {
-        a.m[3] = {node.translation[0], node.translation[1], node.translation[2]};
-    }
+    a.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+    a.m[1] = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+    a.m[2] = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+    a.m[0] *= node.scale.x;
+    a.m[1] *= node.scale.y;
+    a.m[2] *= node.scale.z;
+    a.m[3] = node.translation;
     return a;
 }
 
 Affine localTransform(const Document& document, std::size_t index) {
-    const tinygltf::Node& node = document.model.nodes[index];
+    const Node& node = document.nodes[index];
     return node.matrix.empty() ? fromTrs(document, index, node)
                                : fromMatrix(document, index, node.matrix);
 }
 
 /// Flags of the nodes that are children. Refuses two parents and cycles, in any scene of the file.
 std::vector<bool> checkForest(const Document& document) {
-    const auto& nodes = document.model.nodes;
+    const std::vector<Node>& nodes = document.nodes;
     std::vector<bool> isChild(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         for (const int child : nodes[i].children) {
@@ -119,11 +114,9 @@ std::vector<std::size_t> sceneRoots(const Document& document, std::vector<bool> 
 
 /// One attribute of EXT_mesh_gpu_instancing, as `components` floats per copy; empty if it is
 /// absent. `count`: the number of copies, 0 while it is unknown.
-std::vector<float> readCopies(const Document& document, const tinygltf::Value& attributes,
-                              const char* name, int components, const std::string& place,
-                              std::size_t& count) {
-    if (!attributes.Has(name)) return {};
-    const int accessor = attributes.Get(name).GetNumberAsInt();
+std::vector<float> readCopies(const Document& document, std::int32_t accessor, const char* name,
+                              int components, const std::string& place, std::size_t& count) {
+    if (accessor == Node::kNone) return {};
     // Copies at one place are useless, and without bytes in the file nothing would bound their
     // number.
     if (document.model.accessors[std::size_t(accessor)].bufferView < 0) {
@@ -139,41 +132,33 @@ std::vector<float> readCopies(const Document& document, const tinygltf::Value& a
     return readFloats(view);
 }
 
-/// Whether the node itself is visible, whatever its ancestors are.
-bool isVisible(const Document& document, std::size_t node) {
-    const auto& extensions = document.model.nodes[node].extensions;
-    const auto visibility = extensions.find("KHR_node_visibility");
-    return visibility == extensions.end() || !visibility->second.Has("visible") ||
-           visibility->second.Get("visible").Get<bool>();
+Vec3d vectorAt(const std::vector<float>& from, std::size_t i) {
+    return {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
 }
 
 }  // namespace
 
 std::vector<Affine> meshCopies(const Document& document, std::size_t node) {
-    const auto& extensions = document.model.nodes[node].extensions;
-    const auto extension = extensions.find("EXT_mesh_gpu_instancing");
-    if (extension == extensions.end() || !extension->second.Has("attributes")) return {Affine{}};
-    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    const Node& source = document.nodes[node];
+    if (std::max({source.translations, source.rotations, source.scales}) == Node::kNone) {
+        return {Affine{}};
+    }
     const std::string place = placeOfNode(node) + ".extensions.EXT_mesh_gpu_instancing";
-
     std::size_t count = 0;
-    const auto read = [&](const char* name, int components) {
-        return readCopies(document, attributes, name, components, place, count);
+    const auto read = [&](std::int32_t accessor, const char* name, int components) {
+        return readCopies(document, accessor, name, components, place, count);
     };
-    const std::vector<float> moves = read("TRANSLATION", 3), turns = read("ROTATION", 4),
-                             scales = read("SCALE", 3);
+    const std::vector<float> moves = read(source.translations, "TRANSLATION", 3),
+                             turns = read(source.rotations, "ROTATION", 4),
+                             scales = read(source.scales, "SCALE", 3);
     if (count == 0) return {Affine{}};
     std::vector<Affine> copies;
     copies.reserve(count);
-    tinygltf::Node copy;
+    Node copy;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto take = [i](const std::vector<float>& from, std::size_t n,
-                              std::vector<double>& to) {
-            if (!from.empty()) to.assign(&from[i * n], &from[i * n] + n);
-        };
-        take(moves, 3, copy.translation);
-        take(turns, 4, copy.rotation);
-        take(scales, 3, copy.scale);
+        if (!moves.empty()) copy.translation = vectorAt(moves, i);
+        if (!turns.empty()) std::copy_n(&turns[4 * i], 4, copy.rotation.begin());
+        if (!scales.empty()) copy.scale = vectorAt(scales, i);
         copies.push_back(fromTrs(document, node, copy));
         if (!isFinite(copies.back())) {
             refuse(document.file, place, "finite transforms",
@@ -184,7 +169,7 @@ std::vector<Affine> meshCopies(const Document& document, std::size_t node) {
 }
 
 std::vector<Placement> flattenScene(const Document& document, Warnings& warnings) {
-    const auto& nodes = document.model.nodes;
+    const std::vector<Node>& nodes = document.nodes;
     std::vector<std::size_t> roots = sceneRoots(document, checkForest(document), warnings);
 
     // An explicit stack instead of recursion: chains of nodes may be as long as the file.
@@ -194,13 +179,13 @@ std::vector<Placement> flattenScene(const Document& document, Warnings& warnings
     while (!open.empty()) {
         Placement at = open.back();
         open.pop_back();
-        at.visible = at.visible && isVisible(document, at.node);
+        at.visible = at.visible && nodes[at.node].visible;
         at.toWorld = at.toWorld * localTransform(document, at.node);
         if (!isFinite(at.toWorld) || !std::isfinite(at.toWorld.determinant())) {
             refuse(document.file, placeOfNode(at.node), "a finite transform", "one that overflows",
                    "check the scales in the hierarchy");
         }
-        const std::vector<int>& children = nodes[at.node].children;
+        const std::vector<std::int32_t>& children = nodes[at.node].children;
         for (auto child = children.rbegin(); child != children.rend(); ++child) {
             open.push_back({std::size_t(*child), at.toWorld, at.visible});
         }

@@ -42,7 +42,7 @@ Affine blend(const std::vector<Affine>& transforms, const std::array<float, 4>& 
 }  // namespace
 
 SkinTable::SkinTable(const Document& document, const std::vector<Placement>& placements)
-    : placements_(placements), placementOf_(document.model.nodes.size(), kNowhere) {
+    : placements_(placements), placementOf_(document.nodes.size(), kNowhere) {
     for (std::size_t i = 0; i < placements.size(); ++i) placementOf_[placements[i].node] = i;
 }
 
@@ -95,7 +95,7 @@ SkinnedMesh SkinTable::bend(Document& document, std::size_t node, const Mesh& me
         refuseUnpacking(document, place);
     }
     const std::vector<Affine> transforms =
-        jointTransforms(document, std::size_t(document.model.nodes[node].skin));
+        jointTransforms(document, std::size_t(document.nodes[node].skin));
     for (std::size_t i = 0; i < influences.joints.size(); ++i) {
         for (std::size_t k = 0; k < 4; ++k) {
             const float joint = influences.joints[i][k];

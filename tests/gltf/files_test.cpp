@@ -44,6 +44,75 @@ TEST(Files, GltfWithDataUris) {
     }
 }
 
+// Two texels each, written by zlib and the PNG specification alone.
+TEST(Files, PngOfEveryKind) {
+    const struct {
+        const char *kind, *base64;
+        ByteVector texels;
+    } kPictures[] = {
+        {"grey, 1 bit",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABAQAAAADcWUInAAAACklEQVR42mNwAAAAQgBBhL+OYgAA"
+         "AABJRU5ErkJggg==",
+         {0, 0, 0, 255, 255, 255, 255, 255}},
+        {"grey, 4 bits",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABBAAAAAAUuc1XAAAACklEQVR42mOwAQAAPgA9h6ZubwAA"
+         "AABJRU5ErkJggg==",
+         {51, 51, 51, 255, 204, 204, 204, 255}},
+        {"grey",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR42mNgPwEAANkA0EQCVdsA"
+         "AAAASUVORK5CYII=",
+         {7, 7, 7, 255, 200, 200, 200, 255}},
+        {"grey, 16 bits",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAAAAACB2fwVAAAADUlEQVR42mNgZzzBBAABtgDTcXTS"
+         "CAAAAABJRU5ErkJggg==",
+         {7, 7, 7, 255, 200, 200, 200, 255}},
+        {"grey, one of which is clear",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAAnRSTlMAB+j3WJsAAAALSURBVHja"
+         "Y2A/AQAA2QDQRAJV2wAAAABJRU5ErkJggg==",
+         {7, 7, 7, 0, 200, 200, 200, 255}},
+        {"grey and alpha",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAQAAABeK7cBAAAADUlEQVR42mNgTzlhBAADDwFmhYBU"
+         "7wAAAABJRU5ErkJggg==",
+         {7, 7, 7, 100, 200, 200, 200, 50}},
+        {"palette",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAMAAADD/I+4AAAABlBMVEUKFB4oMjzVG7TpAAAAC0lE"
+         "QVR42mNgZAAAAAUAAkLCRJ8AAAAASUVORK5CYII=",
+         {40, 50, 60, 255, 10, 20, 30, 255}},
+        {"palette with alpha",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAMAAADD/I+4AAAABlBMVEUKFB4oMjzVG7TpAAAAAXRS"
+         "TlNNSIvlSwAAAAtJREFUeNpjYGQAAAAFAAJCwkSfAAAAAElFTkSuQmCC",
+         {40, 50, 60, 255, 10, 20, 30, 77}},
+        {"RGB",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mNgZGJmYWUDAAA/ABaY"
+         "wWgTAAAAAElFTkSuQmCC",
+         {1, 2, 3, 255, 4, 5, 6, 255}},
+        {"RGB, one of which is clear",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAABnRSTlMAAQACAAPJS6v1AAAAD0lE"
+         "QVR42mNgZGJmYWUDAAA/ABaYwWgTAAAAAElFTkSuQmCC",
+         {1, 2, 3, 0, 4, 5, 6, 255}},
+        {"RGB, 16 bits",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mNgYGRiZmFlY+fg5OIG"
+         "AAErAEOd+M8cAAAAAElFTkSuQmCC",
+         {0, 2, 4, 255, 6, 8, 10, 255}},
+        {"RGBA",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR42mNgZGJmYWVj5wAAAIEA"
+         "JeWaT4EAAAAASUVORK5CYII=",
+         {1, 2, 3, 4, 5, 6, 7, 8}},
+        {"RGBA, 16 bits",
+         "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAYAAACksqPJAAAAGUlEQVR42mNgYGRiZmFlY+fg5OLm"
+         "4eXjBwACuQB5Wm3WCQAAAABJRU5ErkJggg==",
+         {0, 2, 4, 6, 8, 10, 12, 14}},
+    };
+    const TempDir dir;
+    for (const auto& picture : kPictures) {
+        SCOPED_TRACE(picture.kind);
+        const TriangleBuilder b =
+            withImageAt(std::string("data:image/png;base64,") + picture.base64);
+        const SceneDescription scene = loadGltf(dir.write("scene.glb", b.glb()));
+        EXPECT_EQ(scene.textures[0].rgba, picture.texels);
+    }
+}
+
 TEST(Files, Base64OfEveryLengthAndByte) {
     const TempDir dir;
     for (std::size_t extra = 0; extra < 4; ++extra) {

@@ -449,7 +449,7 @@ FAULTS = [
 
     Fault("visible-below-hidden-nodes", "a node that is visible is rendered below one that is hidden",
           "libcore/gltf/node.cpp",
-          "at.visible = at.visible && isVisible", "at.visible = isVisible",
+          "at.visible = at.visible && nodes[at.node].visible", "at.visible = nodes[at.node].visible",
           {"gltf": "Node.*"}),
 
     # --layer
