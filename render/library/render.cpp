@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "lacuna/scene_builder.h"
@@ -43,7 +44,9 @@ std::string userCacheDirectory() {
     };
     if (const auto cache = of("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "lacuna";
     if (const auto home = of("HOME"); home.is_absolute()) return home / ".cache" / "lacuna";
-    return std::filesystem::temp_directory_path() / "lacuna";
+    std::error_code none;  // $TMPDIR may name no folder; most methods need no caches
+    const auto temporary = std::filesystem::temp_directory_path(none);
+    return (none ? "/tmp" : temporary) / "lacuna";
 }
 
 class Listener final : public Progress {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -244,6 +245,29 @@ TEST_F(Library, scenesFromMemoryHaveCaches) {
     EXPECT_TRUE(std::filesystem::exists(path("lacuna")));
     render.option("prepare", false);
     EXPECT_EQ(pixels(render.run()), pixels(first));
+}
+
+/// An environment variable that has this value for a while.
+class Variable {
+  public:
+    Variable(const char* name, const char* value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        ::setenv(name, value, 1);
+    }
+    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> before_;
+};
+
+TEST_F(Library, scenesFromMemoryNeedNoFolderWithoutCaches) {
+    const Picture before = small(Render(rich())).option("method", "bpt").run();
+    const Variable cache("XDG_CACHE_HOME", ""), home("HOME", "");
+    const Variable temporary("TMPDIR", path("nowhere").c_str());
+    EXPECT_EQ(pixels(small(Render(rich())).option("method", "bpt").run()), pixels(before));
 }
 
 TEST_F(Library, builderRefusesWhatDoesNotFit) {

@@ -40,7 +40,7 @@ class Render {
     /// directory.
     explicit Render(std::string sceneFile);
     /// Renders the builder's current scene. Caches lie in the user's cache folder ($XDG_CACHE_HOME,
-    /// else ~/.cache), unless the option `cache` names another directory.
+    /// else ~/.cache, else the temporary folder), unless the option `cache` names another directory.
     explicit Render(const SceneBuilder& scene);
     ~Render();
     Render(Render&&) noexcept;
