@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libcore/gltf/in_parallel.h"
+#include "libcore/gltf/jpeg.h"
 #include "libcore/gltf/limits.h"
 #include "libcore/image/file_bytes.h"
 
@@ -59,6 +60,10 @@ bool startsWith(std::span<const std::uint8_t> bytes, std::span<const std::uint8_
            std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
+bool isJpeg(std::span<const std::uint8_t> bytes) {
+    return startsWith(bytes, kJpeg);
+}
+
 bool isWebp(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t kForm = 8;  // after RIFF and a length
     constexpr std::uint8_t kRiff[] = {'R', 'I', 'F', 'F'}, kWebp[] = {'W', 'E', 'B', 'P'};
@@ -83,11 +88,25 @@ bool readHeader(Picture& picture) {
         picture.height = features.height;
         return !features.has_animation;
     }
+    if (coded.size() > std::size_t(std::numeric_limits<int>::max())) return false;
+    if (isJpeg(coded)) return readJpegSize(coded, picture.width, picture.height);
     int channels = 0;
-    return coded.size() <= std::size_t(std::numeric_limits<int>::max()) &&
-           (!startsWith(coded, kPng) || pngChunksFit(coded)) &&
-           stbi_info_from_memory(coded.data(), int(coded.size()), &picture.width, &picture.height,
-                                 &channels);
+    return pngChunksFit(coded) && stbi_info_from_memory(coded.data(), int(coded.size()),
+                                                        &picture.width, &picture.height, &channels);
+}
+
+/// Refuses what the decoder would believe, or work at for minutes.
+void checkJpeg(const Document& document, const Picture& picture) {
+    const JpegSegments segments = segmentsOfJpeg(picture.coded);
+    if (!segments.tablesFit) {
+        refuse(document.file, picture.place, "Huffman tables of at most 256 codes", "a longer one",
+               "save the image again");
+    }
+    if (segments.scans > Limits::kJpegScans) {
+        refuse(document.file, picture.place,
+               "at most " + std::to_string(Limits::kJpegScans) + " scans",
+               std::to_string(segments.scans), "save the image again");
+    }
 }
 
 /// Takes memory from the allowance: a picture of one colour has a few bytes, whatever its size.
@@ -101,9 +120,10 @@ void takeMemory(Document& document, const Picture& picture, std::uint64_t bytes)
 /// accepted.
 void readSize(Document& document, Picture& picture) {
     const auto coded = picture.coded;
-    if (!startsWith(coded, kPng) && !startsWith(coded, kJpeg) && !isWebp(coded)) {
+    if (!startsWith(coded, kPng) && !isJpeg(coded) && !isWebp(coded)) {
         refuse(document.file, picture.place, kKinds, "something else", "convert the image");
     }
+    if (isJpeg(coded)) checkJpeg(document, picture);
     if (!readHeader(picture)) {
         refuse(document.file, picture.place, kKinds,
                isWebp(coded) ? "a damaged header or an animated image" : "a damaged header",
@@ -139,12 +159,14 @@ void decodeWebp(const Document& document, Picture& picture) {
 }
 
 /// Converts texels of 1 to 4 channels (grey, grey and alpha, RGB, RGBA) to RGBA.
-std::vector<std::uint8_t> rgbaOf(const stbi_uc* from, std::size_t texels, int channels) {
-    if (channels == STBI_rgb_alpha) return {from, from + 4 * texels};
-    const int green = channels == STBI_rgb ? 1 : 0, blue = 2 * green;
-    const bool hasAlpha = channels == STBI_grey_alpha;
-    std::vector<std::uint8_t> rgba(4 * texels);
-    for (std::size_t i = 0; i < rgba.size(); i += 4, from += channels) {
+std::vector<std::uint8_t> rgbaOf(const DecodedImage& image) {
+    const std::uint8_t* from = image.texels.get();
+    const std::size_t size = std::size_t(image.width) * std::size_t(image.height) * 4;
+    if (image.channels == STBI_rgb_alpha) return {from, from + size};
+    const int green = image.channels == STBI_rgb ? 1 : 0, blue = 2 * green;
+    const bool hasAlpha = image.channels == STBI_grey_alpha;
+    std::vector<std::uint8_t> rgba(size);
+    for (std::size_t i = 0; i < size; i += 4, from += image.channels) {
         rgba[i] = from[0];
         rgba[i + 1] = from[green];
         rgba[i + 2] = from[blue];
@@ -153,24 +175,27 @@ std::vector<std::uint8_t> rgbaOf(const stbi_uc* from, std::size_t texels, int ch
     return rgba;
 }
 
+/// Keeps the channels that the file has: stb_image would convert them in a buffer of its own, which
+/// then would be copied.
+DecodedImage decodePng(std::span<const std::uint8_t> coded) {
+    DecodedImage image;
+    image.texels.reset(stbi_load_from_memory(coded.data(), int(coded.size()), &image.width,
+                                             &image.height, &image.channels, STBI_default));
+    if (!image.texels) image.damage = stbi_failure_reason();
+    return image;
+}
+
 void decodePicture(const Document& document, Picture& picture) {
     if (isWebp(picture.coded)) return decodeWebp(document, picture);
-    struct Free {
-        void operator()(stbi_uc* texels) const { stbi_image_free(texels); }
-    };
-    int width = 0, height = 0, channels = 0;
-    // stb_image would convert a PNG to four channels in a buffer of its own, which then would be copied.
-    const int wanted = startsWith(picture.coded, kPng) ? STBI_default : STBI_rgb_alpha;
-    const std::unique_ptr<stbi_uc, Free> texels(stbi_load_from_memory(
-        picture.coded.data(), int(picture.coded.size()), &width, &height, &channels, wanted));
-    if (!texels || width != picture.width || height != picture.height) {
-        const char* reason = texels ? nullptr : stbi_failure_reason();  // may be null
+    const DecodedImage image =
+        isJpeg(picture.coded) ? decodeJpeg(picture.coded) : decodePng(picture.coded);
+    if (!image.texels || image.width != picture.width || image.height != picture.height) {
         refuse(document.file, picture.place, kKinds,
-               reason && *reason ? std::string("a damaged one (") + reason + ")" : "a damaged one",
+               image.damage && *image.damage ? std::string("a damaged one (") + image.damage + ")"
+                                             : "a damaged one",
                "save the image again");
     }
-    picture.rgba = rgbaOf(texels.get(), std::size_t(picture.texels()),
-                          wanted == STBI_default ? channels : wanted);
+    picture.rgba = rgbaOf(image);
     picture.owned = {};
 }
 

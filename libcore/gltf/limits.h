@@ -20,6 +20,7 @@ struct Limits {
     static constexpr int kImageSide = 1 << 16;
     static constexpr std::uint64_t kImageTexels = 1ull << 28;
     static constexpr std::uint64_t kTotalTexels = 1ull << 30;
+    static constexpr std::size_t kJpegScans = 64;        ///< encoders make about 10
     static constexpr std::size_t kDracoAttributes = 16;  ///< of one stream
 };
 

@@ -11,6 +11,14 @@ bool accepts(const GltfBuilder& builder) {
     return loadsOrIsRefused(folder, builder.glb());
 }
 
+bool acceptsTexture(Bytes bytes) {
+    TriangleBuilder b;
+    const int texture = b.texture({bytes.begin(), bytes.end()});
+    b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+    b.primitive()["material"] = 0;
+    return accepts(b);
+}
+
 }  // namespace
 
 bool acceptsDraco(Bytes bytes) {
@@ -43,11 +51,11 @@ bool acceptsMeshopt(Bytes bytes) {
 }
 
 bool acceptsWebp(Bytes bytes) {
-    TriangleBuilder b;
-    const int texture = b.texture({bytes.begin(), bytes.end()});
-    b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
-    b.primitive()["material"] = 0;
-    return accepts(b);
+    return acceptsTexture(bytes);
+}
+
+bool acceptsJpeg(Bytes bytes) {
+    return acceptsTexture(bytes);
 }
 
 }  // namespace lacuna::test

@@ -19,6 +19,7 @@ std::span<const Parser> parsers() {
         {"draco", acceptsDraco},
         {"meshopt", acceptsMeshopt},
         {"webp", acceptsWebp},
+        {"jpeg", acceptsJpeg},
         {"study", acceptsStudy},
         {"curve", acceptsCurve},
         {"arguments", acceptsArguments},

@@ -30,6 +30,7 @@ bool acceptsDraco(Bytes bytes);  ///< a mesh's stream
 bool acceptsMeshopt(
     Bytes bytes);  ///< mode and filter, half the stride, a third of the count; then the stream
 bool acceptsWebp(Bytes bytes);       ///< a texture
+bool acceptsJpeg(Bytes bytes);       ///< a texture
 bool acceptsExr(Bytes bytes);        ///< a reference, and a part or checkpoint
 bool acceptsHdr(Bytes bytes);        ///< an environment
 bool acceptsPfm(Bytes bytes);        ///< a reference

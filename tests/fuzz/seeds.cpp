@@ -1,5 +1,7 @@
 #include "tests/fuzz/seeds.h"
 
+#include <stb/stb_image_write.h>
+
 #include "libcore/cache/emission_file.h"
 #include "libcore/cache/guarded_file.h"
 #include "libcore/cache/walk_file.h"
@@ -84,6 +86,23 @@ void packed(const fs::path& folder) {
     meshopt("triangles", grid.indices(), 1, 2, 24);
     declareFallback(grid);
     write(folder / "scene" / "meshopt.glb", textOf(grid.glb()));
+}
+
+/// Baseline JPEGs; corpus/jpeg/ has those of other kinds. Up to a quality of 90 colours have half the resolution.
+void jpegs(const fs::path& folder) {
+    ByteVector texels;
+    for (int i = 0; i < 3 * 17 * 9; ++i) texels.push_back(std::uint8_t(i * i / 7));
+    const auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), std::size_t(size));
+    };
+    const auto jpeg = [&](const char* name, int channels, int quality) {
+        std::string bytes;
+        stbi_write_jpg_to_func(append, &bytes, 17, 9, channels, texels.data(), quality);
+        write(folder / name, bytes);
+    };
+    jpeg("half.jpg", 3, 80);
+    jpeg("whole.jpg", 3, 95);
+    jpeg("grey.jpg", 1, 80);
 }
 
 LayeredImage smallPicture() {
@@ -201,6 +220,7 @@ void texts(const fs::path& folder) {
 void writeSeeds(const fs::path& folder) {
     scenes(folder / "scene");
     packed(folder);
+    jpegs(folder / "jpeg");
     pictures(folder);
     caches(folder);
     texts(folder);

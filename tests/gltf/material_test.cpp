@@ -620,6 +620,54 @@ TEST(Texture, SizesAreCappedBeforeAnythingIsAllocated) {
                   {"images[0]", "unpacks to at most 4096 times", "scale the image"});
 }
 
+/// A grey JPEG of 8 x 8 texels that is scanned so often. Each code is one bit and says zero.
+ByteVector greyJpeg(int scans) {
+    ByteVector bytes{0xFF, 0xD8, 0xFF, 0xDB, 0, 67, 0};
+    bytes.insert(bytes.end(), 64, 8);
+    bytes.insert(bytes.end(), {0xFF, 0xC0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0});
+    bytes.insert(bytes.end(), {0xFF, 0xC4, 0, 38});
+    for (const std::uint8_t table : {0x00, 0x10}) {
+        bytes.insert(bytes.end(), {table, 1});
+        bytes.insert(bytes.end(), 16, 0);
+    }
+    for (int i = 0; i < scans; ++i) {
+        bytes.insert(bytes.end(), {0xFF, 0xDA, 0, 8, 1, 1, 0, 0, 63, 0});
+    }
+    bytes.insert(bytes.end(), {0xFF, 0xD9});
+    return bytes;
+}
+
+// Each goes over all texels: half a megabyte of empty ones took minutes.
+TEST(Texture, JpegsHaveFewScans) {
+    ByteVector grey;
+    for (int i = 0; i < 64; ++i) grey.insert(grey.end(), {128, 128, 128, 255});
+    EXPECT_EQ(withImage(greyJpeg(64)).load().textures[0].rgba, grey);
+    expectRefused(withImage(greyJpeg(65)), {"images[0]", "at most 64 scans", "65"});
+    // A comment may hold anything.
+    ByteVector commented{0xFF, 0xD8, 0xFF, 0xFE, 0, 202};
+    for (int i = 0; i < 100; ++i) commented.insert(commented.end(), {0xFF, 0xDA});
+    const ByteVector plain = greyJpeg(1);
+    commented.insert(commented.end(), plain.begin() + 2, plain.end());
+    EXPECT_EQ(withImage(commented).load().textures[0].rgba, grey);
+}
+
+// The decoder has room for 256 codes, and did not ask; tables that are not there are all zeros to it.
+TEST(Texture, HuffmanTablesAreChecked) {
+    const ByteVector plain = greyJpeg(1);
+    const std::ptrdiff_t tables = 2 + 69 + 13;
+    ByteVector longTable{0xFF, 0xC4, 255, 255, 0x10};
+    longTable.insert(longTable.end(), 14, 0);
+    longTable.insert(longTable.end(), {2, 255});
+    ByteVector changed = plain;
+    changed.insert(changed.begin() + tables, longTable.begin(), longTable.end());
+    expectRefused(withImage(changed), {"images[0]", "at most 256 codes"});
+    const ByteVector cut(changed.begin(), changed.begin() + tables + 21);
+    expectRefused(withImage(cut), {"images[0]", "at most 256 codes"});
+    ByteVector without = plain;
+    without.erase(without.begin() + tables, without.begin() + tables + 40);
+    EXPECT_EQ(withImage(without).load().textures[0].rgba, withImage(plain).load().textures[0].rgba);
+}
+
 TEST(Texture, SamplersAndSourcesAreChecked) {
     expectRefused(withImage(redBlue(), {{"wrapS", 10498}}), {"samplers[0].wrapS", "10498"});
     expectRefused(withImage(redBlue(), {{"wrapT", "x"}}), {"samplers[0].wrapT"});
