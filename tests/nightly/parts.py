@@ -125,6 +125,7 @@ def fuzz_parser(name, program, options):
     output, code = run(
         [program, options.out / "fuzz" / name, *([known] if known.exists() else []),
          f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20",
+         "-len_control=100",  # libFuzzer's own, which it leaves out where there is a mutator
          "-rss_limit_mb=4096", f"-artifact_prefix={options.out}/findings/{name}-",
          *([f"-dict={dictionary}"] if dictionary.exists() else [])],
         log, env={**os.environ, **MEMORY, "LACUNA_FUZZ_PARSER": name})
