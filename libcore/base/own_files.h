@@ -9,7 +9,7 @@ namespace lacuna {
 /// A file and its name in messages: "--json", "the scene".
 struct NamedFile {
     std::string name;
-    std::string path;  ///< empty: not asked for
+    std::string path;  ///< empty: not requested
 };
 
 /// Throws UsageError where a result and an input, or two results, are one file, by whatever paths

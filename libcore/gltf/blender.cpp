@@ -76,7 +76,7 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Whether a material that does not emit says nothing about its reflection.
+/// Whether a material does not emit and has no parameters of reflection.
 bool isBare(const json& material) {
     const auto surface = material.find("pbrMetallicRoughness");
     const auto emission = material.find("emissiveFactor");

@@ -30,8 +30,8 @@ constexpr std::array<std::string_view, 17> kSupported = {
     "EXT_meshopt_compression",
     "EXT_texture_webp",
 };
-/// Known extensions that are not read, and what is therefore lost. The loss is empty where the picture loses nothing or
-/// another warning tells it.
+/// Known extensions that are not read, and what is therefore lost. `loss` is empty if the picture loses nothing or
+/// another warning reports it.
 struct Unread {
     std::string_view name, loss;
 };

@@ -5,7 +5,7 @@
 //
 // * Directions are unit and point AWAY from the surface. Roles are physical, never "incoming or
 //   outgoing of the walk": `toEye` leads towards the camera's end of the path, `toLight` towards
-//   the light's end. f is the same function of (toEye, toLight) whichever walk asks, so the
+//   the light's end. f is the same function of (toEye, toLight) whichever walk evaluates it, so the
 //   asymmetries (refraction's eta^2, shading normals) need no transport mode.
 // * f is taken against the PROJECTED SOLID ANGLE ABOUT THE GEOMETRIC NORMAL:
 //       f(toEye, toLight) = f_ns(toEye, toLight) |toLight . ns| / |toLight . ng|     [Veach97 5.3.2]

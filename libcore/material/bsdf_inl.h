@@ -44,11 +44,11 @@ inline float Bsdf::eyeShare(float eyeS, float eyeG) const {
     return std::clamp(5.0f - 8.0f * cosine * (eyeS / eyeG), 0.0f, 1.0f);
 }
 
-/// The probability that a light walk picks ng. It is 1 where ns sees no light, half of the eye's w
-/// where the mirror direction about ng leads to an eye that sees lobes about ng, and small but
-/// positive elsewhere. Elsewhere, the eyes that see such lobes fill a share of directions of about
-/// the square of the angle between the normals. If the walk picked ng as rarely as that, its
-/// throughput would contain the inverse.
+/// The probability that a light walk picks ng. It is 1 where ns sees no light. It is half of w for
+/// the eye in the mirror direction about ng, if that eye sees lobes about ng. Elsewhere it is small
+/// but positive: there, the eyes that see such lobes fill a share of directions of about the square
+/// of the angle between the normals. If the walk picked ng as rarely as that, its throughput would
+/// contain the inverse.
 inline float Bsdf::lightShare(float lightS, float lightG) const {
     if (!(lightS * lightG > 0.0f)) return 1.0f;
     const float tilt2 = lengthSquared(ns_ - ng_);

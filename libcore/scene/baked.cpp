@@ -187,8 +187,8 @@ void moveVertices(const MeshUse& use, Mesh& from, BakedMesh& to) {
     }
 }
 
-/// Tolerances, in radians, of vertex normals against their faces': rounding, and for panes what is
-/// invisible in a window.
+/// Tolerances, in radians, between vertex normals and those of their faces: for rounding, and for
+/// panes a deviation that is invisible in a window.
 constexpr float kFlatness = 1e-6f, kPaneFlatness = 1e-3f;
 
 /// Moves the triangles, reverses their winding if the transform mirrors, and drops degenerate ones.

@@ -33,7 +33,7 @@ void forEachCorner(Some some, const Body& body) {
     }
 }
 
-/// What one task of a step finds in its words.
+/// The pairs and waiting corners that one task of a step finds.
 struct Found {
     struct Pairs {
         Some some;
