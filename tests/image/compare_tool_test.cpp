@@ -143,8 +143,9 @@ TEST_F(CompareTool, InputsThatCannotBeUsed) {
     writeImage(path("small.exr"), test::layered(Image(16, 16, Rgb(1))));
     expectFailure("@a.exr @small.exr", 3, "expected 16 x 16");
     // Found in the headers: pixels that are damaged as well would be a longer wait for the same.
-    test::Bytes damaged = test::slurp(path("a.exr"));
-    std::fill(damaged.end() - 64, damaged.end(), '\x55');
+    writeImage(path("flat.exr"), test::layered(Image(32, 16, Rgb(1))));
+    test::Bytes damaged = test::slurp(path("flat.exr"));
+    std::fill(damaged.end() - 16, damaged.end(), '\x55');
     test::spill(path("damaged.exr"), damaged);
     expectFailure("@damaged.exr @small.exr", 3, "expected 16 x 16");
     expectFailure("@damaged.exr @b.exr", 3, "damaged.exr: ");

@@ -138,7 +138,7 @@ TEST_F(RenderBlack, LampsThatFaceAway) {
 
 TEST_F(RenderBlack, TooShortPaths) {
     expectCause(
-        "no light was found on paths of up to 1 edge, a test with 12 finds some: raise "
+        "no light was found on paths of up to 1 edge, a test with 12 found some: raise "
         "--max-depth",
         withPoint(), kAsItIs, "--method bpt --max-depth 1");
     EXPECT_EQ(warningOf(withPoint(), kAsItIs, "--method bpt --max-depth 2"), "");
