@@ -12,6 +12,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import costs
 import moments
 import refusals
 import surroundings
@@ -29,7 +30,8 @@ def main() -> int:
     try:
         attacks = [lambda: refusals.run(attack, quick=arguments.quick)]
         if not arguments.quick:
-            attacks += [lambda: moments.run(attack, moments=10, races=3), lambda: surroundings.run(attack)]
+            attacks += [lambda: moments.run(attack, moments=10, races=3), lambda: surroundings.run(attack),
+                        lambda: costs.run(attack)]
         for run in attacks:
             counts, found = run()
             for name, count in counts.items():
