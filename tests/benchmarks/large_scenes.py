@@ -12,10 +12,12 @@ from __future__ import annotations
 
 import json
 import math
+import random
 import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 from array import array
 from collections.abc import Iterable
 from pathlib import Path
@@ -41,6 +43,17 @@ def write_glb(path: Path, root: dict, parts: list[array]) -> None:
         file.write(struct.pack("<II", sum(sizes), 0x004E4942))
         for part in parts:
             part.tofile(file)
+
+
+def png(side: int, rows: Iterable[bytes]) -> bytes:
+    """`rows`: `side` of them, each of as many texels of R, G, B."""
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    packer = zlib.compressobj(9)
+    packed = b"".join([packer.compress(b"\0" + row) for row in rows]) + packer.flush()
+    header = struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
 
 
 def terrain(side: int) -> tuple[array, array, array]:
@@ -85,9 +98,22 @@ def many(count: int) -> list[dict]:
             for i in range(count)]
 
 
+def pictured(side: int, *, flat: bool = False) -> tuple[dict, list[array]]:
+    """Two triangles with a picture of side x side texels. `flat`: of one colour."""
+    root, parts = scene(1, [{"mesh": 0}])
+    root["meshes"][0]["primitives"][0]["material"] = 0
+    root |= {"materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}],
+             "images": [{"bufferView": len(parts)}]}
+    texels = bytes(3 * (side + 100)) if flat else random.Random(1).randbytes(3 * (side + 100))
+    picture = png(side, (texels[y % 100 * 3:][:3 * side] for y in range(side)))
+    return root, [*parts, array("B", picture + bytes(-len(picture) % 4))]
+
+
 SCENES = {
     "10 million triangles, one mesh": lambda: scene(2237, [{"mesh": 0}]),
     "100,000 instances of 200 triangles": lambda: scene(10, many(100_000)),
+    "a million instances of 2 triangles": lambda: scene(1, many(1_000_000)),
+    "a PNG of 16384 x 16384 texels": lambda: pictured(16384),
 }
 
 

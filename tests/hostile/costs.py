@@ -11,82 +11,61 @@ from __future__ import annotations
 
 import argparse
 import datetime
-import json
 import math
 import multiprocessing
 import os
 import random
 import shlex
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests/benchmarks")]
 
+import large_scenes  # noqa: E402
 import pages  # noqa: E402
 
 FREE, PER_BYTE = 1 << 30, 1 << 13  # bytes of memory that a file may take, and for each of its own
-HEAD = b'{"asset":{"version":"2.0"},'
 CYCLE = b'"nodes":[{"children":[0]}]}'  # found once all is parsed
 
 
-def glb(root: dict, binary: bytes) -> bytes:
-    text = json.dumps(root | {"asset": {"version": "2.0"}, "buffers": [{"byteLength": len(binary)}]}).encode()
-    text += b" " * (-len(text) % 4)
-    binary += bytes(-len(binary) % 4)
-    return (struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text +
-            struct.pack("<II", len(binary), 0x004E4942) + binary)
+def triangles(path: Path, number: int, side: int = 0) -> None:
+    """A mesh whose last index is wrong, which is found behind the picture of side x side texels."""
+    root, parts = large_scenes.pictured(side, flat=True) if side else large_scenes.scene(1, [{"mesh": 0}])
+    root["accessors"][2]["count"] = 3 * number
+    parts[2] = array("I", bytes(12 * number))
+    parts[2][-1] = 4
+    large_scenes.write_glb(path, root, parts)
 
 
-def flat_png(side: int) -> bytes:
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+def text_file(begin: bytes, repeated: bytes, end: bytes = b"") -> Callable[[Path, int], None]:
+    def write(path: Path, size: int) -> None:
+        path.write_bytes(b'{"asset":{"version":"2.0"},' + begin + repeated * (size // len(repeated)) + end)
 
-    header = struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(side * (3 * side + 1)), 9)) +
-            chunk(b"IEND", b""))
-
-
-def triangles(number: int, picture: bytes = b"") -> bytes:
-    """A mesh whose last index is wrong, which is found behind the pictures."""
-    indices = bytes(12 * number - 4) + b"\xff\xff\xff\0"
-    sizes = [36, len(indices), len(picture)]
-    root = {
-        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, **({"material": 0} if picture else {})}]}],
-        "bufferViews": [{"buffer": 0, "byteOffset": sum(sizes[:i]), "byteLength": size} for i, size in enumerate(sizes)],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-                      {"bufferView": 1, "componentType": 5125, "count": 3 * number, "type": "SCALAR"}],
-    }
-    if picture:
-        root |= {"images": [{"bufferView": 2}], "textures": [{"source": 0}],
-                 "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]}
-    return glb(root, bytes(36) + indices + picture)
+    return write
 
 
 @dataclass(frozen=True)
 class Kind:
     name: str
     largest: float  # megabytes; a larger file would take gigabytes, or be refused for its size
-    make: Callable[[int], bytes]  # a file of about that many bytes
+    write: Callable[[Path, int], None]  # a file of about that many bytes
 
 
 KINDS = [
-    Kind("no scene: random bytes", 100, lambda size: random.Random(1).randbytes(size)),
-    Kind("triangles, the last one wrong", 100, lambda size: triangles(size // 12)),
-    Kind("a PNG of one colour, a triangle wrong", 0.1, lambda size: triangles(1, flat_png(math.isqrt(size * 1000 // 3)))),
-    Kind("JSON of numbers, cut off", 100, lambda size: HEAD + b'"extras":[' + b"0," * (size // 2)),
-    Kind("JSON of empty objects, cut off", 100, lambda size: HEAD + b'"extras":[' + b"{}," * (size // 3)),
-    Kind("empty nodes, and two parents of one", 10,
-         lambda size: HEAD + b'"nodes":[' + b"{}," * (size // 3) + b'{"children":[0]},{"children":[0]}]}'),
-    Kind("empty meshes, nodes in a cycle", 10, lambda size: HEAD + b'"meshes":[' + b"{}," * (size // 3) + b"{}]," + CYCLE),
-    Kind("empty materials, nodes in a cycle", 1, lambda size: HEAD + b'"materials":[' + b"{}," * (size // 3) + b"{}]," + CYCLE),
+    Kind("no scene: random bytes", 100, lambda path, size: path.write_bytes(random.Random(1).randbytes(size))),
+    Kind("triangles, the last one wrong", 100, lambda path, size: triangles(path, size // 12)),
+    Kind("a PNG of one colour, a triangle wrong", 0.1, lambda path, size: triangles(path, 1, math.isqrt(size * 1000 // 3))),
+    Kind("JSON of numbers, cut off", 100, text_file(b'"extras":[', b"0,")),
+    Kind("JSON of empty objects, cut off", 100, text_file(b'"extras":[', b"{},")),
+    Kind("empty nodes, and two parents of one", 10, text_file(b'"nodes":[', b"{},", b'{"children":[0]},{"children":[0]}]}')),
+    Kind("empty meshes, nodes in a cycle", 10, text_file(b'"meshes":[', b"{},", b"{}]," + CYCLE)),
+    Kind("empty materials, nodes in a cycle", 1, text_file(b'"materials":[', b"{},", b"{}]," + CYCLE)),
 ]
 
 
@@ -110,7 +89,7 @@ def cost(tool: Path, kind: Kind, size: int) -> Cost:
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "scene.glb"
         # Not in this process: the memory of a program begins with that of the process which starts it.
-        maker = multiprocessing.Process(target=lambda: scene.write_bytes(kind.make(size)))
+        maker = multiprocessing.Process(target=kind.write, args=(scene, size))
         maker.start()
         maker.join()
         process = subprocess.Popen([tool, scene, "-o", Path(folder) / "picture.pfm", "--method", "pt", "--quiet"],
@@ -156,7 +135,7 @@ def main() -> int:
     parser.add_argument("--megabytes", type=float, nargs="+", default=[1, 10, 100])
     options = parser.parse_args()
     tool = options.build / "render/lacuna-render"
-    start, found = cost(tool, Kind("nothing", 0, lambda size: b"{"), 0), costs(tool, options.megabytes)
+    start, found = cost(tool, Kind("nothing", 0, lambda path, size: path.write_bytes(b"{")), 0), costs(tool, options.megabytes)
     command = shlex.join(["python3", "tests/hostile/costs.py", *sys.argv[1:]])
     options.page.write_text(text(start, found, command))
     wrong = [w for c in found for w in c.wrong]
