@@ -47,25 +47,27 @@ std::string methodHelp(const MethodRow& row) {
     std::string text = row.name + ": " + row.summary + "\nreference: " + row.reference +
                        " (REFERENCES.md)\ntechniques:";
     const Techniques& t = row.techniques;
-    if (t.hits) text += "\n  s = 0          eye paths that run into a light";
+    if (t.hits) text += "\n  s = 0           eye paths that run into a light";
     if (t.connects) text += "\n  s >= 1, t >= 2  eye vertices connected with light vertices";
-    if (t.splats) text += "\n  t = 1          light paths seen by the lens";
+    if (t.splats) text += "\n  t = 1           light paths seen by the lens";
     if (t.connects && t.chains) {
         text +=
-            "\n  chains         mirrors and smooth glass between a light without a size and an eye "
+            "\n  chains          mirrors and smooth glass between a light without a size and an "
+            "eye "
             "vertex, where nothing else joins the path";
     }
     if (t.hits && t.connects && t.refractions) {
         text +=
-            "\n  refractions    smooth or nearly smooth glass between a lamp or the sky and an eye "
+            "\n  refractions     smooth or nearly smooth glass between a lamp or the sky and an "
+            "eye "
             "vertex, and mirrors where nothing else joins the path";
     }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {
         text += merges == Merges::FirstFromEye
-                    ? "\n  merges         eye vertices up to the first that scatters widely, "
+                    ? "\n  merges          eye vertices up to the first that scatters widely, "
                       "merged with photons"
-                    : "\n  merges         eye vertices merged with photons around them";
+                    : "\n  merges          eye vertices merged with photons around them";
         text += "\nconsistent, not unbiased: merging blurs the picture, less with every iteration";
     }
     if (row.biased) text += "\nbiased: an experiment of a paper, not for pictures";
