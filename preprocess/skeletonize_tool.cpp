@@ -52,7 +52,7 @@ int skeletonizeTool(int argc, char** argv) {
     requireOwnFiles(results, sources);
     if (!graphPath.empty()) const AtomicFile probe(graphPath);
 
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     const InterruptGuard interrupt;
     TerminalProgress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });

@@ -136,7 +136,7 @@ int trainTool(int argc, char** argv) {
     const std::uint64_t pathsOfEmission = guidePaths(emission.paths, settings.paths);
     checkBuildOptions(options);
 
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     const InterruptGuard interrupt;
     TerminalProgress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });

@@ -30,7 +30,7 @@ int voxelizeTool(int argc, char** argv) {
     if (!settings.domain.empty()) parseDomain(settings.domain);
     checkBuildOptions(options);
 
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     const InterruptGuard interrupt;
     TerminalProgress progress(options.common.quiet, interrupt.requested(), kNothingWritten);
     Phases phases([&](const std::string& name) { progress.phase(name); });

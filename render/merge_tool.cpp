@@ -72,7 +72,7 @@ int mergeTool(int argc, char** argv) {
     if (const auto done = parseCommandLine(app, argc, argv)) return *done;
     requireOutputs(options);
 
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     Merged merged = mergeParts(options.parts, options.gaps, pool);
     for (const std::string& text : merged.warnings) {
         std::fprintf(stderr, "warning: %s\n", text.c_str());

@@ -81,7 +81,7 @@ std::optional<Rendered> renderPicture(RenderOptions& options, const Ranks& ranks
     });
     if (!checked) return std::nullopt;
 
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     std::optional<Stage> stage;
     std::optional<FirstLook> look;
     const bool loaded = ranks.agree([&] {

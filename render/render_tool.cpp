@@ -23,7 +23,7 @@ int printEffects(const RenderOptions& options) {
     const MethodRow* row = named ? &findMethod(options.method, "--method") : nullptr;
     if (row) resolve(*row, options.assignments, "--set ");
     if (!options.common.json.empty()) const AtomicFile probe(options.common.json);
-    const ThreadPool pool(options.common.threads, "--threads");
+    const ThreadPool pool = threadsOf(options.common);
     SceneDescription scene;
     pool.run([&] { scene = describeScene(options); });
     double radius = lensRadius(options, scene);

@@ -1,5 +1,6 @@
 """What the pages that scripts write to tests/results/ have in common."""
 
+import datetime
 import os
 import pathlib
 import platform
@@ -23,6 +24,17 @@ def processor(information="/proc/cpuinfo"):
 
 def machine():
     return f"{processor() or platform.machine()}, {os.cpu_count()} threads"
+
+
+def origin(command, load):
+    """Lines of a table: when and of which program, where, at which load before it began, and by which command."""
+    return table([["", ""], ["date", datetime.date.today()], ["commit", commit()], ["machine", machine()], ["load before", load],
+                  ["command", f"`{command}`"]])
+
+
+def load():
+    """Of the system now, in the mean of a minute."""
+    return pathlib.Path("/proc/loadavg").read_text().split()[0]
 
 
 def table(rows):

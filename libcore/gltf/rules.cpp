@@ -306,36 +306,35 @@ class Walk {
     Walk(const std::string& file, const json& root, const Rule& rule)
         : file_(file), rule_(rule), targetLength_(rule.target ? lengthOf(root, rule.target) : 0) {}
 
-    /// Checks every value below `node` that the rest of the rule's path leads to. If a container on
-    /// the way has the wrong type, the container's own rule reports it.
-    void visit(const json& node, std::string_view path, const Trail* trail) {
+    /// Checks every value below `node` that the rest of the rule's path leads to, and returns whether
+    /// there is one. If a container on the way has the wrong type, the container's own rule reports it.
+    bool visit(const json& node, std::string_view path, const Trail* trail) const {
         if (path.empty()) {
-            reached_ = true;
-            return check(node, *trail);
+            check(node, *trail);
+            return true;
         }
         const std::size_t slash = std::min(path.find('/'), path.size());
         const std::string_view name = path.substr(0, slash);
         const std::string_view rest = path.substr(std::min(slash + 1, path.size()));
+        bool found = false;
         if (name == "*" && node.is_array()) {
             for (std::size_t i = 0; i < node.size(); ++i) {
                 const Trail next{trail, {}, i};
-                visit(node[i], rest, &next);
+                found |= visit(node[i], rest, &next);
             }
         } else if (name == "*" && node.is_object()) {
             for (auto member = node.begin(); member != node.end(); ++member) {
                 const Trail next{trail, member.key(), 0};
-                visit(*member, rest, &next);
+                found |= visit(*member, rest, &next);
             }
         } else if (node.is_object()) {
             const auto member = node.find(name);
-            if (member == node.end()) return;
+            if (member == node.end()) return false;
             const Trail next{trail, name, 0};
-            visit(*member, rest, &next);
+            found = visit(*member, rest, &next);
         }
+        return found;
     }
-
-    /// Whether there was such a value.
-    bool reached() const { return reached_; }
 
   private:
     void check(const json& value, const Trail& trail) const {
@@ -392,7 +391,6 @@ class Walk {
     const std::string& file_;
     const Rule& rule_;
     std::size_t targetLength_;
-    bool reached_ = false;
 };
 
 }  // namespace
@@ -407,9 +405,7 @@ void checkRules(const std::string& file, const json& root) {
             return path.starts_with(other) && path.substr(other.size()).starts_with('/');
         };
         if (std::ranges::any_of(absent, isAbove)) continue;
-        Walk walk(file, root, rule);
-        walk.visit(root, path, nullptr);
-        if (!walk.reached()) absent.push_back(path);
+        if (!Walk(file, root, rule).visit(root, path, nullptr)) absent.push_back(path);
     }
 }
 

@@ -171,7 +171,7 @@ std::vector<std::string> forceEffects(std::span<const EffectSwitch> switches,
         } else {
             switchOff(s.name, targets);
             warnings.push_back(s.name + " is off though the scene calls for it (" + effect->reason +
-                               "): the picture is not right without it");
+                               "): the picture may lack what it does");
             effect->reason = "off by --effect, though " + effect->reason;
         }
         effect->simulated = s.on;

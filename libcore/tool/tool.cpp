@@ -13,6 +13,7 @@
 #include <iostream>
 #include <limits>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -31,15 +32,20 @@ int report(std::string message, int exitCode) {
     return exitCode;
 }
 
+/// All of `text` as a number of that type; empty if it is none, or too large for it.
+template <class Integer>
+std::optional<Integer> integerOf(const std::string& text) {
+    const char* end = text.data() + text.size();
+    Integer value = 0;
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc{} && at == end ? std::optional(value) : std::nullopt;
+}
+
 /// Whether all of `text` is a 64-bit integer in ordinary decimal notation.
 bool isDecimal(const std::string& text) {
-    const char *begin = text.data(), *end = begin + text.size();
     const std::size_t sign = text.starts_with('-') ? 1 : 0;
     if (text.size() > sign + 1 && text[sign] == '0') return false;
-    std::uint64_t natural = 0;
-    std::int64_t integer = 0;
-    const auto fits = [&](auto result) { return result.ec == std::errc{} && result.ptr == end; };
-    return fits(std::from_chars(begin, end, natural)) || fits(std::from_chars(begin, end, integer));
+    return integerOf<std::uint64_t>(text) || integerOf<std::int64_t>(text);
 }
 
 /// Rejects values that CLI11 accepts silently: an empty text, 0640 (as octal), and integers that
@@ -64,13 +70,11 @@ void checkValues(const CLI::Option& option) {
 /// CLI11 lets wrap around in an unsigned number.
 auto integerWithin(std::uint64_t low, std::uint64_t high) {
     return [=](const std::string& text) {
-        std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [at, error] = std::from_chars(text.data(), end, value);
-        const bool isWithin = error == std::errc{} && at == end && low <= value && value <= high;
-        return isWithin ? std::string()
-                        : "expected an integer from " + std::to_string(low) + " to " +
-                              std::to_string(high) + ", found '" + text + "'";
+        const auto value = integerOf<std::uint64_t>(text);
+        return value && low <= *value && *value <= high
+                   ? std::string()
+                   : "expected an integer from " + std::to_string(low) + " to " +
+                         std::to_string(high) + ", found '" + text + "'";
     };
 }
 
@@ -121,6 +125,10 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "Print no progress and no remarks on stderr");
     app.add_flag("-v,--verbose", options.verbose, "Print more on stderr");
+}
+
+ThreadPool threadsOf(const CommonOptions& options) {
+    return ThreadPool(options.threads, "--threads");
 }
 
 void makeCacheDirectory(const std::string& file) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "libcore/base/parallel.h"
 #include "libcore/tool/help_forms.h"
 
 namespace lacuna {
@@ -22,6 +23,9 @@ struct CommonOptions {
 
 /// --cache --threads --seed --json --quiet -v. `app` and `options` must outlive the parsing.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
+
+/// The threads that --threads asks for. Throws as ThreadPool does, with the option's name.
+ThreadPool threadsOf(const CommonOptions& options);
 
 /// Creates the directory of `file`, a cache. Throws RunError, which asks for another directory.
 void makeCacheDirectory(const std::string& file);

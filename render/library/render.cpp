@@ -44,9 +44,9 @@ std::string userCacheDirectory() {
     };
     if (const auto cache = of("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "lacuna";
     if (const auto home = of("HOME"); home.is_absolute()) return home / ".cache" / "lacuna";
-    std::error_code none;  // $TMPDIR may name no folder; most methods need no caches
-    const auto temporary = std::filesystem::temp_directory_path(none);
-    return (none ? "/tmp" : temporary) / "lacuna";
+    std::error_code missing;  // $TMPDIR may name no folder; most methods need no caches
+    const auto temporary = std::filesystem::temp_directory_path(missing);
+    return (missing ? "/tmp" : temporary) / "lacuna";
 }
 
 class Listener final : public Progress {

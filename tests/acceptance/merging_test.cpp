@@ -121,7 +121,7 @@ TEST(Merging, makesWhatNothingElseDoes) {
     shot.settings = {};
     EXPECT_LT(joined.mean(), 0.05 * photons.mean());
     expectSame(chained, photons, "specular chains", Judge::MeanOnly);
-    for (const char* row : {"lvcbpt", "risbpt", "tsrbpt", "spcbpt", "sharebpt"}) {
+    for (const std::string& row : rowsWithMerge()) {
         ++shot.seed;
         expectSame(render(*scene, mergingRow(row), shot), photons, row, Judge::MeanOnly);
     }
@@ -130,7 +130,7 @@ TEST(Merging, makesWhatNothingElseDoes) {
 /// Nothing is kept, asked or changed where no subpath has a delta event.
 TEST(Merging, onDemandIsNothingWithoutDeltas) {
     const auto scene = glossyBox().builder.build();
-    for (const char* name : {"lvcbpt", "risbpt", "tsrbpt", "spcbpt", "sharebpt"}) {
+    for (const std::string& name : rowsWithMerge()) {
         Shot shot = quickShot(3);
         const Picture plain = render(*scene, rowNamed(name), shot);
         const Picture merging = render(*scene, mergingRow(name), shot);

@@ -47,9 +47,6 @@ double threshold(double tests, std::uint64_t samples) {
     return allowedErrors(kFalseAlarm, tests, double(samples) - 1.0);
 }
 
-/// Rows that are tested as they are, and their weights with merging as well.
-constexpr const char* kOtherMerging[] = {"risbpt", "tsrbpt", "spcbpt", "sharebpt"};
-
 float channel(const Rgb& c, int i) {
     return i == 0 ? c.r : i == 1 ? c.g : c.b;
 }
@@ -309,16 +306,19 @@ std::vector<std::string> rowNamesWith(bool (Techniques::*technique)() const, Row
 std::vector<std::string> rowNamesOfWeights() {
     std::vector<std::string> names;
     for (const MethodRow& row : allRows()) names.push_back(row.name);
-    for (const char* name : kOtherMerging) names.push_back(name + kMergingSuffix);
+    for (const std::string& name : rowsWithMerge()) {
+        const std::string merging = name + kMergingSuffix;
+        if (std::ranges::find(names, merging) == names.end()) names.push_back(merging);
+    }
     return names;
 }
 
 MethodRow rowNamed(const std::string& name) {
-    for (const char* other : kOtherMerging) {
-        if (name == other + kMergingSuffix) return mergingRow(other);
-    }
     for (const MethodRow& row : allRows()) {
         if (row.name == name) return row;
+    }
+    for (const std::string& other : rowsWithMerge()) {
+        if (name == other + kMergingSuffix) return mergingRow(other);
     }
     throw std::invalid_argument(name);
 }

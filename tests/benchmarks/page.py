@@ -75,8 +75,7 @@ def pools(found: Measured) -> list[list[str]]:
 def text(of_speed: Measured, of_pools: Measured, large: list[list[str]], repetitions: int, load: str, command: str) -> str:
     return "\n".join([
         "# Benchmarks", "",
-        *pages.table([["", ""], ["date", datetime.date.today()], ["commit", pages.commit()], ["machine", pages.machine()],
-                      ["load before", load], ["command", f"`{command}`"]]),
+        *pages.origin(command, load),
         f"256 x 256 pixels, paths of up to 16 edges, all threads, medians of {repetitions}. *Rate*: rays per second over those of bare "
         "Embree with the same rays in the same order. *Samples*: millions per second. *Forced*: time with textures, emissive textures, "
         "normal maps, masks, vertex colours and attenuation forced on, over the time with what the scene calls for. *Coated*: time with a "
@@ -97,7 +96,7 @@ def main() -> None:
     parser.add_argument("--repetitions", type=int, default=3, help="of each benchmark (3)")
     parser.add_argument("--min-time", type=float, default=0.5, help="seconds of each repetition (0.5)")
     options = parser.parse_args()
-    load = Path("/proc/loadavg").read_text().split()[0]
+    load = pages.load()
     program = options.build / "tests/bench_render"
     names = f"({options.scenes})"
     of_speed = bench(program, f"^(render|effects|tolerance)/{names}/({'|'.join(ROWS)})/",

@@ -117,11 +117,10 @@ def table(start: Cost, found: list[Cost]) -> list[list[str]]:
                f"{(c.seconds - start.seconds) / c.size * 1e9:.3g}", f"{(c.memory - start.memory) / c.size:.3g}"] for c in found)]
 
 
-def text(start: Cost, found: list[Cost], command: str) -> str:
+def text(start: Cost, found: list[Cost], load: str, command: str) -> str:
     return "\n".join([
         "# Costs of refusals", "",
-        *pages.table([["", ""], ["date", datetime.date.today()], ["commit", pages.commit()], ["machine", pages.machine()],
-                      ["load after", Path("/proc/loadavg").read_text().split()[0]], ["command", f"`{command}`"]]),
+        *pages.origin(command, load),
         f"What `lacuna-render` takes until it refuses a scene, by `tests/hostile/costs.py`: processor time and memory at the peak. An empty "
         f"file takes {start.seconds:.2f} s and {start.memory / 1e6:.0f} MB, which are not counted for each byte.", "",
         *pages.table(table(start, found))])
@@ -135,9 +134,10 @@ def main() -> int:
     parser.add_argument("--megabytes", type=float, nargs="+", default=[1, 10, 100])
     options = parser.parse_args()
     tool = options.build / "render/lacuna-render"
+    load = pages.load()
     start, found = cost(tool, Kind("nothing", 0, lambda path, size: path.write_bytes(b"{")), 0), costs(tool, options.megabytes)
     command = shlex.join(["python3", "tests/hostile/costs.py", *sys.argv[1:]])
-    options.page.write_text(text(start, found, command))
+    options.page.write_text(text(start, found, load, command))
     wrong = [w for c in found for w in c.wrong]
     print(*wrong, sep="\n", end="\n" if wrong else "")
     return 1 if wrong else 0
