@@ -1,5 +1,5 @@
-// A transparent background: the environment is left out where the lens sees it and nowhere else, by
-// whatever technique, and alpha is the share of a pixel that is anything else.
+// A transparent background: every technique leaves the environment out where the lens sees it directly, and nowhere
+// else. Alpha is the share of a pixel that shows anything else.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,10 +14,11 @@ namespace {
 constexpr float kSky = 0.8f, kAlbedo = 0.6f;
 constexpr double kEdge = 5.25;  // in pixels from the left
 
-/// Under an even sky a matte sheet that ends in the middle of pixels. It shows its albedo's share of the sky.
+/// A matte sheet under an even sky; one of its edges runs through the pixels of a column. Its radiance is its albedo
+/// times the sky's.
 SceneBuilder sheetUnderTheSky() {
     SceneBuilder b;
-    // One unit is a pixel, and the picture is 16 of them.
+    // One unit of the sheet is a pixel, and the picture has 16 x 16 of them.
     b.add(quad({-9, -9, 0}, {float(kEdge) + 1, 0, 0}, {0, 18, 0}, b.add(matte(Rgb(kAlbedo)))));
     b.add(lookAt({0, 0, 8}, {0, 0, 0}, 90));
     b.d.environment = EnvironmentDescription{};
@@ -58,10 +59,11 @@ TEST_P(TransparentBackground, holdsThingsByTheirShareOfThePixel) {
     }
 }
 
-/// The same numbers make the same paths: what is left out is the sky behind the share that is missing.
+/// The same random numbers make the same paths. So the pictures differ only by the sky that the lens sees, 1 - alpha of
+/// it.
 TEST(Alpha, IsWhatTheSkyLeavesOfAPixel) {
     SceneBuilder b = sheetUnderTheSky();
-    b.add(box({1, -3, -1}, {3, 3, 0}, b.add(glass(1.5f))));  // the sky through it stays
+    b.add(box({1, -3, -1}, {3, 3, 0}, b.add(glass(1.5f))));  // the sky seen through it stays
     lacuna::Material veil = matte(Rgb(0.9f));
     veil.alphaMode = lacuna::Material::Alpha::Blend;
     veil.baseAlpha = 0.3f;

@@ -1,4 +1,5 @@
-// Even random numbers: the picture is the same, its error smaller, and said as it is.
+// Even random numbers (Sobol): the picture is the same, its error is smaller, and the stated
+// variance covers it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,8 @@
 namespace lacuna::test {
 namespace {
 
-/// 200 groups of each row, against as many iterations alone.
+/// Compares each row with even numbers (1600 iterations are 200 groups) with path tracing by
+/// independent ones.
 void expectIndependentPathTracing(const Scene& scene, const std::vector<std::string>& rows) {
     Shot shot = quickShot(1600);
     shot.seed = 7;
@@ -39,10 +41,10 @@ TEST(EvenNumbersSlow, theSkyIsTheSame) {
     expectIndependentPathTracing(*b.build(), {"pt", "bpt", "lvcbpt"});
 }
 
-/// Over seeds: the mean over pixels of the stated variance, and of what there is.
+/// The stated and the real variance, summed over pixels, as means over seeds.
 struct Variances {
     double stated = 0, real = 0;
-    double error = 0;  ///< of the ratio of both, relative
+    double error = 0;  ///< relative standard error of their ratio
     double ratio() const { return stated / real; }
 };
 
@@ -87,8 +89,9 @@ Variances variancesOf(const Scene& scene, const std::string& row, Sampling sampl
     return v;
 }
 
-// False alarms: 5 errors of a mean of 64, 6e-6 each. Groups of a sequence are further apart than
-// independent ones, which is seen where most of a pixel's numbers are even; iterations more so.
+// False alarms: 5 errors of a mean of 64, 6e-6 each. Groups of one sequence complement each other,
+// so that the stated variance is rather too large. If single iterations were the samples, it would
+// be still larger. Both show in rows that take most of a pixel's numbers from the sequence.
 TEST(EvenNumbersSlow, seedsScatterByNoMoreThanTheVariance) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);

@@ -15,8 +15,8 @@ class Exact : public RowTest {};
 INSTANTIATE_TEST_SUITE_P(All, Exact, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, Exact, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
-/// Closed room with things in it, every surface of albedo a and emission 1 - a: radiance is
-/// 1 - a^depth where paths end after `depth` edges.
+/// A closed room with things in it. Every surface has albedo a and emission 1 - a, so that the radiance is 1 - a^depth
+/// if paths end after `depth` edges.
 SceneBuilder furnace(float albedo) {
     SceneBuilder b;
     b.d.materials[0] = emitter(Rgb(1 - albedo), false, Rgb(albedo));
@@ -39,7 +39,7 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
     const double exact = 1 - std::pow(0.5, shot.maxDepth);
     expectRadiance(p, exact, row().name + ", furnace");
 
-    // The film's border against its interior: filters and splats must agree on where it ends.
+    // The film's border and its interior, each by itself: filters and splats must agree on where the film ends.
     Moments border, inside;
     const Image image = p.pixels.image();
     for (int y = 0; y < shot.height; ++y) {
@@ -53,8 +53,8 @@ TEST_P(Exact, furnaceIsOneEverywhereAndAtTheBorder) {
     stabilityCase("film-border", worstDeviation(), kOfAllowed);
 }
 
-/// Leaves, some of them coloured below, send on what they do not reflect: a box of them glows inside
-/// as it does outside.
+/// Leaves reflect or transmit half of the light, and emit the other half on both sides: a box of them glows inside as
+/// it does outside.
 TEST_P(Exact, furnaceOfLeaves) {
     SceneBuilder b = furnace(0.5f);
     lacuna::Material leaf = emitter(Rgb(0.5f), true, Rgb(0.5f));
@@ -77,7 +77,7 @@ TEST_P(Exact, furnaceOfLeaves) {
 /// Irradiance on the plane y = 0 at (x, z).
 using Irradiance = std::function<double(double x, double z)>;
 
-/// A floor of albedo 0.6 alone under the light that `light` adds, against the closed form.
+/// Compares a floor of albedo 0.6, lit only by what `light` adds, with the closed form.
 void expectFloor(const MethodRow& row, const std::function<void(SceneBuilder&)>& light,
                  const Irradiance& irradiance, const std::string& what,
                  Judge judge = Judge::Everything) {
@@ -111,11 +111,11 @@ TEST_P(Exact, sunShinesThroughPaper) {
             paper.diffuseTransmission = 0.5f;
             b.add(directionalLight({0.6, cosine, 0}, Rgb(3.0f)));
         },
-        // The closed form is of a floor of .6, half of the light goes through this one.
+        // This floor lets half of the light through; expectFloor() multiplies by an albedo of 0.6.
         [&](double, double) { return 3 * cosine * 0.5 / 0.6; }, "sun through paper");
 }
 
-/// Of a rectangle [0, a] x [0, b] at distance 1, seen from below its corner at the origin.
+/// The form factor of a rectangle [0, a] x [0, b] at distance 1, seen from below its corner at the origin.
 double cornerFormFactor(double a, double b) {
     const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
     return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * std::numbers::pi);
@@ -141,11 +141,11 @@ TEST_P(Exact, quadLightHasItsFormFactor) {
     }
 }
 
-/// A lamp sends out what its alpha leaves of it: that share of BLEND, the part that MASK keeps.
+/// A lamp emits what its alpha leaves of it: a share under BLEND, the part that is kept under MASK.
 TEST_P(Exact, lampsWithAlphaHaveTheirShare) {
     using Alpha = lacuna::Material::Alpha;
     const double y = 1.8, x0 = -0.6, x1 = 0.4, z0 = -0.3, z1 = 0.3, radiance = 2;
-    Texture right;  // clear on the left half, 3/4 on the right one
+    Texture right;  // alpha is 0 on the left half, 3/4 on the right one
     right.width = 64;
     right.height = 1;
     right.wrapU = right.wrapV = Texture::Wrap::ClampToEdge;
@@ -173,7 +173,7 @@ TEST_P(Exact, lampsWithAlphaHaveTheirShare) {
                 lacuna::Material m = emitter(Rgb(float(radiance)));
                 m.alphaMode = lamp.mode;
                 m.baseAlpha = lamp.alpha;
-                // Where the interpolated texels are halfway up, the lamp begins.
+                // The lamp begins where the interpolated texels are halfway up.
                 if (lamp.textured) m.alphaCutoff = 0.5f * 191 / 255;
                 if (lamp.textured) m.baseColorTexture = m.emissiveTexture = b.add(right);
                 b.add(quad({float(x0), float(y), float(z0)}, {float(x1 - x0), 0, 0},
@@ -192,7 +192,7 @@ TEST_P(Exact, lampsWithAlphaHaveTheirShare) {
     stabilityCase("lamps-with-alpha", worstDeviation(), kOfAllowed);
 }
 
-/// The slit alone is what the floor sees of a strip of light close behind it.
+/// A strip of light lies close behind the slit, so that the floor sees light in all of the slit and nowhere else.
 TEST_P(Exact, lightThroughAGapOfAThousandth) {
     const double y = 1.8, half = 0.5e-3, radiance = 100;
     expectFloor(
@@ -316,8 +316,8 @@ TEST_P(Exact, colouredGlassFollowsBeerAndLambert) {
     expectRadiance(render(*scene, row(), shot), exact, row().name + ", coloured slab");
 }
 
-/// The sky is dimmed as the scene grows, so that the light that it holds (and whatever a density
-/// makes of beta) stays what it was; Shot::gain takes that back.
+/// The sky dims as the scene grows, so that its power stays the same, and so does whatever a density makes of beta.
+/// Shot::gain undoes the dimming.
 SceneBuilder sphereOnGround(double scale, Vec3d offset) {
     SceneBuilder b;
     const Affine place = translation(offset) * scaling({scale, scale, scale});
@@ -336,7 +336,7 @@ TEST_P(Exact, sizeAndPlaceChangeNothingUnderTheSky) {
     const Picture& there = reference(sphereOnGround(1, {}), shot);
     shot.seed = 2;
     shot.gain = 1e6f;
-    // In the sphere's shadow few splats bring much: blocks, not pixels.
+    // In the sphere's shadow a few splats bring most of the light: blocks are compared, not pixels.
     expectSame(render(*sphereOnGround(1000, {}).build(), row(), shot), there,
                row().name + ", 1000 times as large", Judge::BlocksAndMean);
     shot.gain = 1;
@@ -346,8 +346,8 @@ TEST_P(Exact, sizeAndPlaceChangeNothingUnderTheSky) {
     stabilityCase("offset", worstDeviation(), kOfAllowed);
 }
 
-// Lossless glass that fills the picture. Only hits of the environment can make these paths, and
-// every one reads the same: no noise, so a lost factor shows in each pixel.
+// Lossless glass fills the picture. Only hits of the environment make these paths, and all of them bring the same
+// radiance. So there is no noise, and a lost factor shows in each pixel.
 
 void expectSmoothRadiance(const MethodRow& row, SceneBuilder b, double exact,
                           const std::string& what) {
@@ -367,13 +367,13 @@ TEST_P(Exact, losslessGlassInAConstantEnvironmentReadsOne) {
     solid.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
     expectSmoothRadiance(row(), solid, 1, "solid glass");
 
-    // Smooth normals: panes would let the sky be joined with the lens.
+    // With smooth normals the facets are no panes; through panes connections would join the sky with the lens.
     SceneBuilder thin;
     thin.add(sphere({0, 0, 0}, 1, 16, thin.add(pane()), true));
     thin.add(lookAt({0, 0.5, 4}, {0, 0, 0}, 16));
     expectSmoothRadiance(row(), thin, 1, "thin glass");
 
-    // Glass in glass: the inner surface is a body of ior 1.2 with air on its outside by our model.
+    // Glass in glass: in our model the inner surface is a body of ior 1.2 with air outside.
     SceneBuilder nested;
     nested.add(sphere({0, 0, 0}, 1, 16, nested.add(glass())));
     nested.add(sphere({0.1f, 0, 0.1f}, 0.5f, 16, nested.add(glass(1.2f))));

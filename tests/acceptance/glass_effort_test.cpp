@@ -1,5 +1,5 @@
-// How often next event through glass, along known ways and specular chains are tried, by what they bring to a view.
-// (theory.md, "Effort behind glass")
+// How often next event through glass, next event along known ways, and specular chains are tried: that depends on what
+// they bring to a view. (theory.md, "Effort behind glass")
 #include <gtest/gtest.h>
 
 #include "libcore/methods/glass_effort.h"
@@ -11,7 +11,7 @@ namespace {
 
 enum class LampKind { Square, Point };
 
-/// A floor under a lamp, with a mirror ball and a ball of glass. The lamp is in a box of glass, or open.
+/// A room under a lamp, which is open or in a box of glass; with or without a mirror ball and a ball of glass.
 SceneBuilder floorUnderALamp(bool behindGlass, bool balls, LampKind kind = LampKind::Square) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -67,7 +67,8 @@ TEST(GlassEffort, ofChainsIsLittleWhereFewPlacesGetAnyOfIt) {
     EXPECT_GE(effort, 1.0 / 8);
 }
 
-/// What the lens sees of a caustic is splatted: rows that splat search for fewer chains, for what is seen in mirrors.
+/// Rows that splat make the caustics that the lens sees directly. They search for fewer chains, only for caustics seen
+/// in mirrors.
 TEST(GlassEffort, ofChainsIsAnotherForRowsThatSplat) {
     const auto scene = floorUnderALamp(false, true, LampKind::Point).build();
     const auto of = [&](const char* method) { return effortIn(*scene, 2, {}, method).chains; };
@@ -94,7 +95,8 @@ TEST(GlassEffort, doesNotDependOnThreads) {
     EXPECT_EQ(one.chains, three.chains);
 }
 
-/// So that a crop is a part of the picture, and another seed the same render.
+/// The effort depends on the view alone, so that a crop is a part of the picture, and another seed makes the same
+/// render.
 TEST(GlassEffort, isOfTheView) {
     SceneBuilder b = floorUnderALamp(false, true);
     b.environment(LACUNA_SCENES "/sky.hdr");

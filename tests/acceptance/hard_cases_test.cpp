@@ -15,7 +15,7 @@ namespace {
 
 class HardCases : public RowTest {
   protected:
-    /// This row against path tracing in `builder`'s scene.
+    /// Compares this row with path tracing in `builder`'s scene.
     void expectReference(const SceneBuilder& builder, Shot shot, const std::string& what) const {
         const Picture p = render(*builder.build(), row(), shot);
         shot.seed += 100;
@@ -38,14 +38,15 @@ void expectBlack(const SceneBuilder& builder, const MethodRow& row, const std::s
 
 TEST_P(HardCases, lightOfAMillionthOfTheScene) {
     SceneBuilder b = stage();
-    // Out of the picture: path tracing would not meet it in a lifetime, splats do.
+    // The light is out of the picture: in it splats would meet the light, and path tracing never
+    // would.
     b.add(quad({-0.2f, 2.3f, 1.2f}, {4e-6f, 0, 0}, {0, 0, 4e-6f}, b.add(emitter(Rgb(3e11f)))));
     expectReference(b, quickShot(), "tiny light");
     stabilityCase("tiny-light", worstDeviation(), kOfAllowed);
 }
 
 TEST_P(HardCases, lightATenThousandthAboveASurface) {
-    // Under a ceiling that the camera does not see: what goes up must stay in the gap.
+    // The ceiling is out of the camera's view; the light that goes up must stay in the gap.
     SceneBuilder b = stage();
     b.add(quad({-1, 2.4f, -0.5f}, {2, 0, 0}, {0, 0, 2}));
     const float y = 2.4f - 1e-4f;
@@ -55,7 +56,7 @@ TEST_P(HardCases, lightATenThousandthAboveASurface) {
 }
 
 TEST_P(HardCases, intensitiesFrom1em30To1e37) {
-    // The furnace's mean, so that the truth scales exactly.
+    // The mean of a furnace scales exactly with its radiance.
     double worst = 0;
     for (const float intensity : {1e-30f, 1e-20f, 1.0f, 1e20f, 1e37f}) {
         SceneBuilder b;
@@ -71,7 +72,8 @@ TEST_P(HardCases, intensitiesFrom1em30To1e37) {
     stabilityCase("intensities", worst, kOfAllowed);
 }
 
-/// A float holds 1e-40 to one part in 70,000, and what a path brings of it to fewer.
+/// A float holds 1e-40 to one part in 70,000, and the smaller value that a path brings less
+/// exactly.
 TEST_P(HardCases, lampsOfDenormalRadiance) {
     constexpr float kRadiance = 1e-40f;
     SceneBuilder b;
@@ -126,7 +128,8 @@ TEST_P(HardCases, oneTooBrightPixelDoesNotFollowAPointLight) {
             const float around = (mean(image.at(x - 1, y)) + mean(image.at(x + 1, y)) +
                                   mean(image.at(x, y - 1)) + mean(image.at(x, y + 1))) /
                                  4;
-            // 50: the report behind it (mitsuba#132) had 80,000; smooth shading has about 1.
+            // The report behind this (mitsuba#132) had a factor of 80,000; smooth shading has about
+            // 1.
             EXPECT_LT(mean(image.at(x, y)), 50 * around + 1e-6f) << x << "," << y;
             largest = std::max(largest, double(mean(image.at(x, y)) / around));
         }
@@ -164,7 +167,7 @@ TEST_P(HardCases, grazingCameraInTheFurnace) {
     SceneBuilder b;
     b.d.materials[0] = emitter(Rgb(0.5f), false, Rgb(0.5f));
     b.add(box({-1, -1, -1}, {1, 1, 1}, 0, true));
-    // The film is the floor seen at 89.9 degrees and about.
+    // The film shows the floor at about 89.9 degrees to its normal.
     b.add(lookAt({0, -0.9985, 0.9}, {0, -1, 0.04}, 0.02));
     Shot shot = quickShot(100);
     shot.lightPaths = 2048;
@@ -176,7 +179,7 @@ TEST_P(HardCases, grazingCameraInTheFurnace) {
 TEST_P(HardCases, scaleFromAThousandthToAThousand) {
     const auto scaled = [](double scale) {
         SceneBuilder b = room();
-        // As much light in all, as in the test of size and place under the sky.
+        // The light's power stays the same, as in sphereOnGround() of exact_test.cpp.
         for (lacuna::Material& m : b.d.materials) m.emission *= float(1 / (scale * scale));
         const Affine place = scaling({scale, scale, scale});
         for (Instance& i : b.d.instances) i.toWorld = place;
@@ -209,7 +212,7 @@ TEST_P(HardCases, cropIsThatPartOfTheWholePicture) {
     shot.seed = 2;
     const Picture part = render(*scene, row(), shot);
     Picture cut(shot.crop);
-    // The whole picture cut: means and variances of the same pixels.
+    // Means and variances of the same pixels of both pictures.
     const Image image = whole.pixels.image(), variance = whole.pixels.variance();
     const Image partImage = part.pixels.image(), partVariance = part.pixels.variance();
     double worst = 0;
@@ -217,7 +220,7 @@ TEST_P(HardCases, cropIsThatPartOfTheWholePicture) {
         for (int x = shot.crop.x0; x < shot.crop.x1; ++x) {
             const double a = mean(image.at(x, y));
             const double b = mean(partImage.at(x - shot.crop.x0, y - shot.crop.y0));
-            // Channels as if equal: an upper bound of the variance of their mean.
+            // The channels as if they were equal: an upper bound on the variance of their mean.
             const double v =
                 mean(variance.at(x, y)) + mean(partVariance.at(x - shot.crop.x0, y - shot.crop.y0));
             worst = std::max(worst, std::fabs(a - b) / std::sqrt(v));
@@ -256,7 +259,8 @@ TEST_P(HardCases, thinLensAndItsLimit) {
     stabilityCase("thin-lens", worstDeviation(), kOfAllowed);
 }
 
-/// Middle 4 pixels to the right and 2 up: a quarter and an eighth of its side.
+/// The film's middle is shifted by 4 pixels to the right and 2 up: a quarter and an eighth of its
+/// side.
 TEST_P(HardCases, shiftedFilmIsThatPartOfAWiderOne) {
     SceneBuilder b = stage();
     addLight(b, LightChoice::Quad);
@@ -314,7 +318,7 @@ TEST_P(HardCases, rouletteChangesNothing) {
 }
 
 TEST_P(HardCases, sixtyFourBouncesAtAlbedo99) {
-    // That test row never picks a light vertex beyond the 31st, and says so in its own file.
+    // Potpourri never picks a light vertex beyond the 31st (kMaxLength in test_rows.cpp).
     if (row().name == potpourriRow().name) GTEST_SKIP();
     SceneBuilder b;
     b.d.materials[0] = emitter(Rgb(0.01f), false, Rgb(0.99f));

@@ -1,5 +1,5 @@
-// Lamps with a size in mirrors and by reflections within glass, by next event along known ways: no light is lost
-// or counted twice, and little of it is left to walks. (theory.md, "Next event along known ways")
+// Next event along known ways, to lamps with a size in mirrors and by reflections within glass: no light is lost or
+// counted twice, and little of it is left to walks. (theory.md, "Next event along known ways")
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace lacuna::test {
 namespace {
 
-/// How many mirrors and surfaces of glass light meets before something scatters it, if it is reflected by any;
-/// else zero. What the lens sees of a lamp in a mirror is left to walks.
+/// The number of mirrors and surfaces of glass that light meets before something scatters it; zero if none of them
+/// reflects it. What the lens sees of a lamp in a mirror is left to walks.
 std::size_t lengthOfReflectedWay(const FullPath& path) {
     const int length = path.deltasBehindLight();
     for (int i = 1; i <= length; ++i) {
@@ -26,8 +26,8 @@ bool isReflected(const FullPath& path) {
     return lengthOfReflectedWay(path) > 0;
 }
 
-/// A floor in front of a bent mirror, and a ball in a block of glass. `side`: of a square lamp above, as bright as
-/// it is small.
+/// A floor with a mirror ball, and a matte ball in a block of glass. The lamp above is a square with this `side`; its
+/// power does not depend on it.
 std::shared_ptr<const Scene> mirrorAndBlock(float side, bool alpha = false) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.5f));
@@ -50,13 +50,13 @@ struct Mean {
     double value, error;
 };
 
-/// Of each iteration.
+/// A sum for each iteration.
 class Sums {
   public:
     explicit Sums(std::uint64_t iterations) : sums_(iterations) {}
 
     void add(std::uint32_t iteration, double value) { sums_[iteration] += value; }
-    /// With its standard error.
+    /// Over iterations, with its standard error.
     Mean mean() const {
         double sum = 0, squares = 0;
         for (const double s : sums_) {
@@ -71,7 +71,7 @@ class Sums {
     std::vector<double> sums_;
 };
 
-/// What comes from the lamp by reflections, of all pixels in an iteration.
+/// The light that comes from the lamp by reflections: of all pixels, in an iteration.
 Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iterations,
                     std::uint64_t seed, double effort = 1) {
     Shot shot;
@@ -88,7 +88,8 @@ Mean reflectedLight(const Scene& scene, const MethodRow& row, std::uint64_t iter
     return sums.mean();
 }
 
-/// Against walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each of three comparisons.
+/// Compared with walks alone, which run into a lamp of this size. False alarms: one of 10^5 for each of three
+/// comparisons.
 TEST(KnownWays, areWhatWalksFind) {
     const auto scene = mirrorAndBlock(1.0f, true);
     const Mean walks = reflectedLight(*scene, withoutRefractions(rowNamed("pt")), 24000, 100);
@@ -103,8 +104,8 @@ TEST(KnownWays, areWhatWalksFind) {
     EXPECT_NEAR(seldom.value, walks.value, 4.4 * std::hypot(seldom.error, walks.error));
 }
 
-/// Long chains are mostly those of ways that are drawn. What these make, unweighted, is what walks make of the
-/// same paths. False alarms: one of 10^5.
+/// Long chains come mostly from ways of which one is drawn at random. Unweighted, next event along them makes what
+/// walks make of the same paths. False alarms: one of 10^5.
 TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     const auto scene = mirrorAndBlock(1.0f);
     Shot shot;
@@ -122,7 +123,7 @@ TEST(KnownWays, areDrawnAsOftenAsTheySay) {
     EXPECT_NEAR(a.value, b.value, 4.4 * std::hypot(a.error, b.error));
 }
 
-/// How many samples a path counts as is a function of the path, whoever made it.
+/// The number of samples that a path counts as depends on the path alone, whichever technique made it.
 TEST(KnownWays, countTheSameFromBothSides) {
     const auto scene = mirrorAndBlock(0.5f);
     for (const char* name : {"pt", "bpt"}) {
@@ -146,7 +147,7 @@ TEST(KnownWays, countTheSameFromBothSides) {
     }
 }
 
-/// Of the light that walks bring from the lamp by reflections, nearly all has the technique.
+/// Of the light that walks bring from the lamp by reflections, the technique could make most.
 TEST(KnownWays, areNearlyAll) {
     const auto scene = mirrorAndBlock(0.3f);
     Shot shot = quickShot(3000);
@@ -162,7 +163,7 @@ TEST(KnownWays, areNearlyAll) {
     EXPECT_GT(known, 0.8 * all) << all;
 }
 
-/// Second moment of what comes from the lamp by reflections.
+/// The second moment of the light that comes from the lamp by reflections.
 double secondMoment(const Scene& scene, const MethodRow& row) {
     Shot shot = quickShot(1000);
     shot.maxDepth = 7;
@@ -175,7 +176,7 @@ double secondMoment(const Scene& scene, const MethodRow& row) {
     return sum;
 }
 
-/// Less noise where walks seldom run into a small lamp.
+/// The technique makes less noise where walks seldom run into a small lamp.
 TEST(KnownWays, findWhatWalksMiss) {
     const auto scene = mirrorAndBlock(0.2f);
     for (const char* name : {"pt", "bpt"}) {
@@ -185,8 +186,8 @@ TEST(KnownWays, findWhatWalksMiss) {
     }
 }
 
-/// A camera in the plane of a lamp, which looks at a wall there: over a mirror, rounding alone tells the lamp's sides
-/// apart.
+/// The camera lies in the plane of a lamp and looks at a wall there. By way of a mirror, rounding alone tells the
+/// lamp's sides apart.
 TEST(KnownWays, endNotAlongALampsOwnPlane) {
     SceneBuilder b;
     const auto white = b.add(matte(Rgb(0.5f)));

@@ -1,5 +1,5 @@
-// Next event by what a vertex sees of the lamps against next event by power: the same picture, under
-// lamps of all kinds at once.
+// Next event picks lamps by what a vertex sees of them, or by power: both make the same picture, under lamps of all
+// kinds at once.
 #include <gtest/gtest.h>
 
 #include "tests/acceptance/render_test.h"
@@ -33,7 +33,7 @@ TEST_P(LampsSeen, makeThePictureThatPowerMakes) {
 INSTANTIATE_TEST_SUITE_P(All, LampsSeen, testing::Values("pt", "bpt", "risbpt", "tsrbpt"),
                          ByParameter());
 
-// Hits find what next event leaves out of a sky. Where there are none, next event has to bring all of it.
+// Next event leaves a part of the sky to hits. Without hits it has to bring all of it.
 TEST(SkySeen, isWholeWithHitsAndWithout) {
     for (const bool even : {true, false}) {
         SceneBuilder b = stage();
@@ -42,7 +42,7 @@ TEST(SkySeen, isWholeWithHitsAndWithout) {
         if (even) b.d.environment->colour = Rgb(0.5f, 0.7f, 1.0f);
         const auto scene = b.build();
         Shot shot = quickShot(300);
-        shot.transparentBackground = true;  // which hits alone can bring
+        shot.transparentBackground = true;  // leaves out what only hits can bring
         MethodRow row = rowNamed("pt");
         row.techniques.hits = false;
         const Picture without = render(*scene, row, shot);

@@ -1,5 +1,5 @@
-// Layers of light groups: each holds the light of its lamps and of no others, whatever made the paths,
-// and together they are the picture.
+// Layers of light groups: each holds the light of its lamps and of no others, whichever technique made the paths.
+// Together they are the picture.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,7 +36,7 @@ TEST_P(LightGroupsOf, HoldTheirLampsAndAddUpToThePicture) {
     const auto scene = primaryColours().build();
     Shot shot;
     shot.iterations = 24;
-    shot.radius = 0.1;  // of photons, so that some are there to be merged
+    shot.radius = 0.1;  // of merging, large enough that there are merges
     const PathLayers groups(*scene, true, {});
     shot.layers = &groups;
     const Picture p = render(*scene, rowNamed(GetParam()), shot);

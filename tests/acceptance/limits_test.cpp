@@ -1,4 +1,4 @@
-// Limits: what becomes extreme until something simpler is left, of which the truth is known.
+// Limits: each scene is so extreme that something simpler is left, for which the truth is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 class Limits : public RowTest {
   protected:
-    /// This row against path tracing.
+    /// Compares this row with path tracing.
     void expectReference(const SceneBuilder& builder, Shot shot, const std::string& what) const {
         const Picture p = render(*builder.build(), row(), shot);
         shot.seed += 100;
@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Night, Limits, testing::ValuesIn(rowNames(Rows::OfTests
 // Materials
 // ----------------------------------------------------------------------------------------
 
-/// Mean weighted picture of every strategy, at [edges][t], batch by batch.
+/// The mean of every strategy's weighted picture, at [edges][t], over batches.
 std::vector<std::vector<Moments>> strategyMeans(const Scene& scene, const MethodRow& row, Shot shot,
                                                 int batches) {
     const auto n = std::size_t(shot.maxDepth) + 2;
@@ -50,13 +50,13 @@ std::vector<std::vector<Moments>> strategyMeans(const Scene& scene, const Method
     return means;
 }
 
-/// A delta is the limit of a narrow lobe, strategy by strategy: pictures agree as well where every
-/// delta's density is taken for 1, but the shares of the strategies then jump.
+/// A delta is the limit of a narrow lobe, strategy by strategy. If every delta had a density of 1, the pictures would
+/// agree, too, but the shares of the strategies would jump.
 TEST(DeltaShares, meetThoseOfANarrowLobe) {
-    // Other methods' densities know the pool, and a delta's vertices are not in it. Next event along known ways
-    // goes over deltas alone.
+    // By bpt: other methods' densities depend on the pool, which has no vertices on deltas. Without next event along
+    // known ways, which goes over deltas alone.
     const MethodRow row = withoutRefractions(rowNamed("bpt"));
-    // Ten times as large as 1, so that densities per area are far from 1 themselves.
+    // Ten times the usual size, so that densities per area are far from 1.
     const Affine place = scaling({10, 10, 10});
     const auto withMirror = [&](float roughness) {
         SceneBuilder b;
@@ -75,7 +75,7 @@ TEST(DeltaShares, meetThoseOfANarrowLobe) {
     shot.iterations = 12;
     shot.lightPaths = 512;
     constexpr int kBatches = 40;
-    // alpha just above what counts as a delta, and a delta.
+    // First an alpha just above what counts as a delta, then a delta.
     const auto rough = strategyMeans(*withMirror(0.0100001f), row, shot, kBatches);
     shot.seed = 1001;
     const auto delta = strategyMeans(*withMirror(0), row, shot, kBatches);
@@ -109,7 +109,7 @@ TEST_P(Limits, shadingNormalsBentHard) {
 TEST_P(Limits, lightInsideGlass) {
     SceneBuilder b;
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
-    // Rough, so that splats and connections make its paths as well as hits do.
+    // Rough, so that not only hits make its paths, but also splats and connections.
     b.add(sphere({0, 0.6f, 0}, 0.5f, 12, b.add(glass(1.5f, 0.6f)), true));
     b.add(sphere({0, 0.6f, 0}, 0.25f, 8, b.add(emitter(Rgb(4.0f)))));
     b.add(lookAt({0, 1.4, 2.6}, {0, 0.4, 0}, 38));
@@ -122,8 +122,8 @@ TEST_P(Limits, lightInsideGlass) {
 // Sizes
 // --------------------------------------------------------------------------------------------
 
-/// A length that is not relative to something else of the scene, however small, shows in some bit.
-/// Where methods take their light from the pool (the papers' presets) it may lie at infinity.
+/// An absolute length anywhere in the code, however small, would change some bit. Where methods take their light from
+/// the pool (the papers' presets), it may lie at infinity.
 TEST_P(Limits, powersOfTwoInSizeChangeNoBit) {
     if (isTestRow(row())) GTEST_SKIP() << "has cells, nodes or trees at places of its own";
     std::vector<std::vector<std::string>> settings{{}};
@@ -164,8 +164,7 @@ TEST_P(Limits, powersOfTwoInSizeChangeNoBit) {
     stabilityCase("scale", double(different), "pixels differ in a bit");
 }
 
-/// Camera and all between two plates a ten-thousandth apart, of which one shines: the other one
-/// sees nothing else.
+/// The camera is between two plates a ten-thousandth apart. One plate shines, and the other one sees nothing else.
 TEST_P(Limits, betweenPlatesATenThousandthApart) {
     if (!seesThroughDeltas(row())) GTEST_SKIP() << "splats do not meet a film of 1e-4";
     SceneBuilder b;
@@ -175,7 +174,7 @@ TEST_P(Limits, betweenPlatesATenThousandthApart) {
     b.add(lookAt({0, 5e-5, 0}, {3e-5, 0, 0}, 40));
     Shot shot = quickShot(60);
     shot.maxDepth = 2;
-    // The form factor of a quad of 2 from 1e-4 away is 1 - 1e-8.
+    // The form factor of a quad of side 2 from 1e-4 away is 1 - 1e-8.
     expectRadiance(render(*b.build(), row(), shot), 1.2, row().name + ", between plates");
     stabilityCase("light-near-surface", worstDeviation(), kOfAllowed);
 }
@@ -194,8 +193,8 @@ TEST_P(Limits, lightAMillionTimesTheScene) {
     stabilityCase("huge-light", worstDeviation(), kOfAllowed);
 }
 
-/// A film of a thousandth where three walls of the furnace meet: most connections with what is
-/// there are shorter than that.
+/// The film shows about a thousandth of a unit where three walls of the furnace meet. Connections within that corner
+/// are shorter still.
 TEST_P(Limits, cornerOfTheFurnace) {
     if (!seesThroughDeltas(row())) GTEST_SKIP() << "splats do not meet so narrow a film";
     SceneBuilder b;
@@ -211,8 +210,7 @@ TEST_P(Limits, cornerOfTheFurnace) {
 // Film, lens, iterations
 // -----------------------------------------------------------------------------------------------
 
-/// What the lens sees of a luminous quad is the part of each pixel that the quad covers: for hits
-/// and for splats.
+/// Each pixel shows a luminous quad by the part of the pixel that it covers, for hits and for splats.
 TEST_P(Limits, edgesOfALightCoverPartsOfPixels) {
     SceneBuilder b;
     b.add(quad({-3.6f, -2.5f, 0}, {6.1f, 0, 0}, {0, 6, 0}, b.add(emitter(Rgb(2.0f)))));
@@ -246,8 +244,8 @@ TEST_P(Limits, halfBlockedLens) {
     shot.lightPaths = 2048;
     std::vector<Rgb> exact;
     for (int i = 0; i < shot.width * shot.height; ++i) {
-        // The ray from lens point x towards (u, v, 1) in focus passes the blind's plane at
-        // x (1 - away / focus) + u away; free where that is below 0. Linear over a pixel.
+        // The ray from lens point x towards (u, v, 1) in focus passes the blind's plane at x (1 - away / focus) + u
+        // away. It is free where that is below 0. This is all but linear over a pixel.
         const double u =
             (2.0 * (i % shot.width + 0.5) / shot.width - 1) * std::tan(20 * std::numbers::pi / 180);
         const double c = -u * kAway / (1 - kAway / kFocus) / kRadius;
@@ -275,7 +273,7 @@ TEST_P(Limits, iterationsChangeNoMean) {
         for (int i = 0; i < 64 / iterations; ++i) {
             shot.iterations = iterations;
             ++shot.seed;
-            // Without the scene's caches, which each of 81 renders would make anew.
+            // Without the scene's caches, which each of the 81 renders would make anew.
             std::vector<std::string> settings = smallSettings(row(), 64);
             for (const Option& o : row().options) {
                 if (o.name == "radius") settings.push_back("radius=0.01");
@@ -286,7 +284,7 @@ TEST_P(Limits, iterationsChangeNoMean) {
             means.add(last.mean());
         }
         const double error = iterations == 64 ? last.standardError() : means.standardError();
-        // 5 standard errors that 16 or more samples estimate: 9 by Student's t, 6e-7.
+        // 5 standard errors that 16 or more samples estimate: up to 8.3 by Student's t, 6e-7.
         const double allowed = studentQuantile(5, iterations == 4 ? 15 : 63) * error + 1e-5;
         EXPECT_NEAR(means.mean(), 0.875, allowed) << row().name << ", " << iterations;
         worst = std::max(worst, std::fabs(means.mean() - 0.875) / allowed);

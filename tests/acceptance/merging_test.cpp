@@ -1,5 +1,5 @@
-// Merging on real paths: consistent is not unbiased, so pictures are compared at small radii, and the
-// bias of large ones is seen to be there and to go away.
+// Merging on real paths. It is consistent, not unbiased: so pictures are compared at small radii, and the bias of large
+// radii must be there and fall with the radius.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace lacuna::test {
 namespace {
 
-/// A floor below a pane of smooth glass, seen through it.
+/// A floor below a slab of smooth glass, seen through it.
 SceneBuilder underGlass() {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.7f, 0.6f, 0.5f));
@@ -24,7 +24,7 @@ SceneBuilder underGlass() {
     return b;
 }
 
-/// 24 x 24 pixels that see what lies between two chains of glass.
+/// Long paths and a large pool, for what lies between two chains of glass.
 Shot glassShot(int iterations) {
     Shot shot = quickShot(iterations);
     shot.maxDepth = 7;
@@ -32,7 +32,7 @@ Shot glassShot(int iterations) {
     return shot;
 }
 
-/// A smooth ball over a floor, under a lamp of some size: hits find its caustic, and merges do.
+/// A smooth ball of glass over a floor, under a lamp with a size: hits and merges find its caustic.
 SceneBuilder ballCaustic() {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -54,7 +54,7 @@ TEST(Merging, vcmMeetsBptOnACaustic) {
                Judge::BlocksAndMean);
 }
 
-/// Photon mapping has no other technique for this than merges, and hits of the lamp.
+/// Photon mapping has only merges and hits of the lamp for this.
 TEST(MergingSlow, photonMappingMeetsBpt) {
     const auto scene = ballCaustic().build();
     Shot shot = quickShot(300);
@@ -68,7 +68,7 @@ TEST(MergingSlow, photonMappingMeetsBpt) {
                Judge::BlocksAndMean);
 }
 
-/// A wall of polished metal in a lit room: of the photons on it one in thousands comes from where the eye's lobe is.
+/// A wall of polished metal in a lit room: one in thousands of the photons on it comes from within the eye's lobe.
 TEST(Merging, photonMappingLooksIntoPolishedMetal) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -92,7 +92,7 @@ TEST(Merging, photonMappingLooksIntoPolishedMetal) {
     EXPECT_NEAR(photons.mean(), exact.mean(), 4.5 * error + 0.02 * exact.mean());
 }
 
-/// Rows that merge on demand make what hits make of a lamp that has a size.
+/// Rows that merge on demand make the same light as hits of a lamp with a size.
 TEST(Merging, onDemandMeetsPathTracingUnderGlass) {
     SceneBuilder b = underGlass();
     b.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, b.add(emitter(Rgb(2.0f)))));
@@ -104,8 +104,8 @@ TEST(Merging, onDemandMeetsPathTracingUnderGlass) {
     expectSame(merged, render(*scene, pathTracer(), shot), "lvcbpt merge=on", Judge::BlocksAndMean);
 }
 
-/// Under a sun no connection, hit or splat makes the floor's light: bpt is black there without its
-/// specular chains. With them it agrees with whatever merges.
+/// Under a sun no connection, hit or splat makes the floor's light: bpt is black there without its specular chains.
+/// With them it agrees with all rows that merge.
 TEST(Merging, makesWhatNothingElseDoes) {
     SceneBuilder b = underGlass();
     b.add(directionalLight({0.2, -1, 0.1}, Rgb(3.0f)));
@@ -127,7 +127,7 @@ TEST(Merging, makesWhatNothingElseDoes) {
     }
 }
 
-/// Nothing is kept, asked or changed where no subpath has a delta event.
+/// Where no subpath has a delta event, merging on demand keeps no photons and changes no pixel.
 TEST(Merging, onDemandIsNothingWithoutDeltas) {
     const auto scene = glossyBox().builder.build();
     for (const std::string& name : rowsWithMerge()) {
@@ -142,14 +142,14 @@ TEST(Merging, onDemandIsNothingWithoutDeltas) {
     }
 }
 
-/// The bright half of a floor leaks into the dark one by the radius, and no further: the bias of the
-/// dark half's mean is in proportion to the radius.
+/// The bright half of a floor leaks into the dark one by the radius, and no further. So the bias of the dark half's
+/// mean falls with the radius.
 TEST(Merging, theBiasFallsWithTheRadius) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.8f));
     const auto black = b.add(matte(Rgb(0.0f)));
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
-    // A screen over the half x > 0 keeps the sun away, and the camera looks under it.
+    // A screen over the half x > 0 keeps the sun away; the camera is below it.
     b.add(quad({0, 1, -2}, {2, 0, 0}, {0, 0, 4}, black));
     b.add(directionalLight({0, -1, 0}, Rgb(1.0f)));
     b.add(lookAt({0.4, 0.9, 0}, {0.4, 0, 0}, 40, {0, 0, -1}));
@@ -185,7 +185,7 @@ TEST(Merging, theOtherSideOfAThinSheetStaysDark) {
     }
 }
 
-/// The radius is that of the render's iterations, whichever block they are in, and so is the picture.
+/// The radius of an iteration depends only on its number in the render.
 TEST(Merging, theRadiusOfAnIterationIsTheSameInEveryBlock) {
     const auto scene = ballCaustic().build();
     const MethodRow row = rowNamed("vcm");
@@ -198,12 +198,12 @@ TEST(Merging, theRadiusOfAnIterationIsTheSameInEveryBlock) {
         samples.clear();
         render.iterate(iteration);
         ASSERT_FALSE(samples.empty());
-        const double shrunk = iteration == 255 ? 0.25 : 1.0;  // R halves, the area quarters
+        const double shrunk = iteration == 255 ? 0.25 : 1.0;  // the radius halves
         EXPECT_NEAR(samples.front(), 144 * mergeArea(shot.radius) * shrunk, 1e-9);
     }
 }
 
-/// Without a radius of its own it is two of the pixels' footprints, here of a floor of known distance.
+/// If no radius is set, it is two footprints of a pixel, here on a floor at a known distance.
 TEST(Merging, theRadiusComesFromThePixels) {
     SceneBuilder b;
     b.add(quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}));
@@ -219,8 +219,8 @@ TEST(Merging, theRadiusComesFromThePixels) {
     EXPECT_NEAR(samples, 144 * mergeArea(2 * footprint), 0.02 * samples);
 }
 
-/// A photon right under a light, x_1, under lights of every kind: weights meet full products
-/// (weights_test.cpp has all else).
+/// Paths of two edges merge at x_1, right under the light. Under lights of every kind their weights equal full products
+/// (weights_test.cpp tests all other paths).
 TEST(Merging, pathsOfTwoEdgesAreMergedAtTheirOnlyVertex) {
     for (int light = 0; light < kLightChoices; ++light) {
         SceneBuilder b = stage();

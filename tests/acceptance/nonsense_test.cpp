@@ -61,7 +61,7 @@ std::shared_ptr<const Skeleton> randomSkeleton(std::uint64_t seed) {
     const auto anywhere = [&] { return 6.0 * rng.uniformDouble() - 3.0; };
     auto skeleton = std::make_shared<Skeleton>();
     for (int i = 0; i < 12; ++i) {
-        // Radii from 1e-9 of the room to ten times its size.
+        // Radii from 1e-8 of the room's size to ten times it.
         const double radius = 20.0 * std::pow(1e-9, rng.uniformDouble());
         skeleton->nodes.push_back({{anywhere(), anywhere(), anywhere()}, radius});
     }
@@ -75,7 +75,8 @@ std::shared_ptr<const Skeleton> randomSkeleton(std::uint64_t seed) {
     return skeleton;
 }
 
-/// Renders with three caches each that `equip` gives by their seed.
+/// Compares the means of renders with three caches, which `equip` gives by their seed, for each
+/// form of the weights.
 void expectTheSameMean(const MethodRow& row, std::initializer_list<const char*> weights,
                        std::vector<std::string> settings,
                        const std::function<void(Method&, std::uint64_t)>& equip) {
@@ -112,7 +113,8 @@ TEST(SkeletonsOfNonsense, leaveTheMeanAsItIs) {
     stabilityCase("nonsense-skeletons", worstDeviation(), kOfAllowed);
 }
 
-/// Renders scenes with two guides each, random by what `seed` of the shot says.
+/// Compares renders of each scene by two random guides; `seed` is the member of the shot that seeds
+/// them.
 void expectTheSameMeanGuided(const std::string& row, std::initializer_list<NamedScene> scenes,
                              int maxDepth, std::uint64_t Shot::*seed) {
     for (const NamedScene& named : scenes) {
@@ -132,8 +134,7 @@ void expectTheSameMeanGuided(const std::string& row, std::initializer_list<Named
     }
 }
 
-/// Light paths that begin anywhere, with any density that is positive: all rows, under lights of
-/// all kinds.
+/// Light paths begin anywhere, with any positive density, under lights of all kinds.
 class EmissionOfNonsense : public testing::TestWithParam<std::string> {};
 
 TEST_P(EmissionOfNonsense, leavesTheMeanAsItIs) {
@@ -147,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, EmissionOfNonsense,
                                          "icbpt", "skelbpt", "spcbpt"),
                          ByParameter());
 
-/// Walks that go on anywhere, so far as their surfaces let them: all rows.
+/// Walks go on in any direction that their surface allows.
 class WalksOfNonsense : public testing::TestWithParam<std::string> {};
 
 TEST_P(WalksOfNonsense, leaveTheMeanAsItIs) {
@@ -162,8 +163,8 @@ INSTANTIATE_TEST_SUITE_P(Rows, WalksOfNonsense,
                                          "icbpt", "skelbpt", "spcbpt"),
                          ByParameter());
 
-/// Q and populations over thirty decades: a Q far too small believes in its subspace, one far too
-/// large does not; neither is more than noise.
+/// Q and populations over thirty decades. Weights trust a subspace whose Q is far too small, and
+/// distrust one whose Q is far too large; either only adds noise.
 TEST(SubspacesOfNonsense, valuesOfAnyRangeLeaveTheMeanAsItIs) {
     const auto scene = diffuseBox().builder.build();
     Shot shot = quickShot(300);
@@ -196,7 +197,7 @@ class SubspaceReuse : public testing::Test {
         shot_.iterations = 3000;
     }
     Picture reference() const { return render(*scene_, pathTracer(), shot_); }
-    /// The fourth iterations of so many renders.
+    /// The fourth iterations of this many renders.
     Picture fourth(const MethodRow& row, const char* reuse,
                    const std::shared_ptr<const Subspaces>& subspaces, std::uint64_t renders) const {
         Picture picture({0, shot_.width, 0, shot_.height});
@@ -225,8 +226,8 @@ TEST_F(SubspaceReuse, leavesTheMeanAsItIs) {
 }
 
 /// The paper's queue counts vertices instead of iterations, and its row says that it is biased.
-/// Here all vertices that are not on lights lie in one subspace, so that a short queue holds the
-/// beginnings of subpaths only: what they carry stands for everything.
+/// Here all vertices that are not on lights lie in one subspace. So a short queue holds only the
+/// beginnings of subpaths, which then stand for everything.
 TEST_F(SubspaceReuse, queuesAreBiasedAndTheLongerTheLess) {
     const MethodRow& row = findMethod("spcbpt-fifo");
     EXPECT_TRUE(row.biased);
@@ -245,7 +246,7 @@ TEST_F(SubspaceReuse, queuesAreBiasedAndTheLongerTheLess) {
         const double error =
             std::hypot(queue.standardError(), truth.standardError()) / truth.mean();
         std::printf("    queue: off by %.4f, standard error %.4f\n", off[n], error);
-        // Five standard errors: 6e-7 false alarms.
+        // Five standard errors: an unbiased queue would pass in 6e-7 of runs.
         if (n == 0) {
             EXPECT_GT(std::fabs(off[n]), 5 * error);
         }

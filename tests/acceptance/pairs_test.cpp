@@ -1,7 +1,6 @@
-// Acceptance 6: every row against path tracing, for pairs of light kinds (at night for every pair) in
-// one small scene without delta materials (so that path tracing and light tracing see everything), and
-// on the scenes of the repository. The smallest bias that each comparison can see is printed by
-// expectSame.
+// Acceptance 6: every row against path tracing. First in one small scene, with pairs of light kinds (at night with
+// every pair of lights without alpha); it has no deltas, so that path tracing and light tracing see everything. Then in
+// the scenes of the repository. expectSame() prints the smallest bias that each comparison can see.
 #include <gtest/gtest.h>
 
 #include "libcore/gltf/gltf.h"
@@ -19,7 +18,7 @@ struct Pair {
 void PrintTo(const Pair& p, std::ostream* out) {
     *out << nameOf(p.a) << " and " << nameOf(p.b);
 }
-/// Every kind of light once, and those with alpha beside all that they could be taken for.
+/// Every kind of light at least once, and those with alpha beside lights that they could be mistaken for.
 std::vector<Pair> pairsOfADay() {
     using enum LightChoice;
     std::vector<Pair> pairs = {{Quad, Environment},
@@ -70,8 +69,7 @@ TEST_P(LightPairsSlow, everyRowAgreesWithPathTracing) {
         const MethodRow row = rowNamed(name);
         if (mergesBetweenDeltas(row)) continue;
         Shot its = withSplatsForEveryPixel(shot, row);
-        // Weights that believe nonsense leave large samples so rare that 200 iterations may meet none of
-        // them in a pixel: it was 6.8 errors of its own off once, and none after 6400.
+        // Weights that trust nonsense make large samples so rare that 200 iterations may meet none of them in a pixel.
         if (name == "test-hashed-density") its.iterations = 1600;
         expectSame(render(*scene, row, its), reference, name);
     }
@@ -88,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Night, LightPairsSlow, testing::ValuesIn(pairsOfANight(
 INSTANTIATE_TEST_SUITE_P(NightOfTests, LightPairsSlow, testing::ValuesIn(pairsByRowsOfTests()),
                          ByParameter());
 
-/// What one vertex brings nothing to may be all that the one beside it has: whatever is learned at one and
-/// used at another has to allow for it.
+/// A colour that one vertex absorbs may be all that the vertex beside it reflects. What is learned at one and used at
+/// the other has to allow for that.
 class PureColoursSlow : public testing::TestWithParam<Rows> {};
 INSTANTIATE_TEST_SUITE_P(Day, PureColoursSlow, testing::Values(Rows::SecondHalf), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, PureColoursSlow, testing::Values(Rows::FirstHalf), ByParameter());
@@ -118,15 +116,13 @@ TEST_P(PureColoursSlow, everyRowAgreesWithBpt) {
 struct SceneFile {
     std::string name;
     int iterations;
-    /// Gloss gathers the light of a small or punctual light: eye walks alone meet it too rarely for
-    /// a z-test. The reference is bpt. Rows whose light walks go no further than y_0 are left out,
-    /// and so are the test's own, whose weights believe nonsense on purpose: at 240 iterations
-    /// their samples are too rare (at 4000 test-spcbpt-mapped meets light-spot's reference).
-    /// light-spot has 1920: some of its blocks are so dark that after 240, and once after 960, a
-    /// row had not met what most of their variance is (risbpt: 8 and 6 errors of itself away; after
-    /// 21,000 iterations 1.3, after 120,000 0.9).
+    /// Gloss gathers the light of a small or punctual light: eye walks alone meet it too rarely for a z-test. So the
+    /// reference is bpt. Rows whose light walks go no further than y_0 are left out, and so are the tests' own rows:
+    /// their weights trust nonsense on purpose, and their large samples are too rare at 240 iterations. light-spot has
+    /// 1920 iterations: some of its blocks are so dark that after 240, and once after 960, a row had not met most of
+    /// their variance.
     bool caustics = false;
-    int width = 32, height = 24;  ///< fewer pixels: fewer blocks to judge, each as sharply
+    int width = 32, height = 24;  ///< fewer pixels mean fewer blocks to judge, each as sharply
     int depth = 5;                ///< edges of the longest path
     Rows rows = Rows::OfTheTool;
 };
@@ -164,8 +160,8 @@ TEST_P(SceneFilesSlow, everyRowAgreesWithTheReference) {
         if (hasDeltas(description) ? !seesThroughDeltas(row) : mergesBetweenDeltas(row)) continue;
         if (GetParam().caustics && !walksFromLights(row)) continue;
         Shot its = withSplatsForEveryPixel(shot, row);
-        // Rows that merge have no next event along known ways: after 240 iterations
-        // a block of kitchen-glass was 6 errors of its own too dark, and after 20,000 as bright as other rows'.
+        // Rows that merge have no next event along known ways: after 240 iterations blocks of kitchen-glass are too
+        // dark by up to 6 of their own errors.
         if (GetParam().caustics && merges(row)) its.iterations *= 4;
         expectSame(render(scene, row, its), reference, name, Judge::BlocksAndMean);
     }

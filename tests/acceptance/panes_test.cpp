@@ -1,5 +1,5 @@
-// Panes: rays pass thin flat smooth glass, so that lamps are joined with what they light, and what is
-// lit with the eye, through a window. (theory.md, "Panes")
+// Panes: rays pass thin flat smooth glass. So connections through a window join lamps with what they light, and that
+// with the eye. (theory.md, "Panes")
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ double openOf(double cosine) {
     return 1 - fresnelDielectric(cosine, 1.5);
 }
 
-/// No path with a vertex at the glass has an edge that could be joined, or a lamp that could be hit.
+/// If paths had vertices at the glass, none of their edges could be joined, and no lamp could be hit.
 TEST_P(Panes, pointLightBehindGlassIsSeenThroughGlass) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -50,8 +50,8 @@ TEST_P(Panes, pointLightBehindGlassIsSeenThroughGlass) {
     expectRadiance(render(*scene, row(), shot), exact, row().name + ", point light and panes");
 }
 
-/// Coloured glass before the camera, under the lamp and beside, instanced, turned, mirrored. `bend`:
-/// of the normals, radians.
+/// Sheets of coloured glass before the camera, under the lamp and beside it: instanced, turned and mirrored. `bend`:
+/// how far their normals lean, in radians.
 SceneBuilder behindColours(float bend) {
     SceneBuilder b;
     b.d.materials[0] = matte({0.4f, 0.3f, 0.3f});
@@ -75,7 +75,7 @@ SceneBuilder behindColours(float bend) {
     return b;
 }
 
-/// Sheets whose normals lean a little are no panes: their glass is met at path vertices alone.
+/// Sheets whose normals lean a little are no panes: paths meet their glass only at vertices. They look the same.
 TEST_P(Panes, areTheSheetsThatAllMeet) {
     if (!seesThroughDeltas(row())) GTEST_SKIP() << "splats do not see through smooth glass";
     const auto bent = behindColours(0.004f).build();
@@ -91,7 +91,7 @@ TEST_P(Panes, areTheSheetsThatAllMeet) {
                Judge::BlocksAndMean);
 }
 
-/// A ball of panes: what passes and what is reflected, in it as well, is all that there is.
+/// A ball of panes: what passes and what is reflected, also inside it, add up to all light.
 TEST_P(Panes, takeNothingAway) {
     if (!seesThroughDeltas(row())) GTEST_SKIP() << "splats do not see through smooth glass";
     SceneBuilder b;
@@ -103,11 +103,11 @@ TEST_P(Panes, takeNothingAway) {
     shot.maxDepth = 100;
     shot.iterations = 2000;
     shot.width = shot.height = 8;
-    // A splat of the sky onto the lens is rare, and a whole pixel's worth.
+    // A splat of the sky onto the lens is rare, and brings a whole pixel's worth.
     expectRadiance(render(*scene, row(), shot), 1, row().name + ", ball of panes", Judge::MeanOnly);
 }
 
-/// One behind the other before a wall: layers are of the wall, without specks.
+/// Two panes, one behind the other, before a wall: the feature layers show the wall, without specks.
 TEST(PanesInLayers, areLookedThrough) {
     SceneBuilder b;
     b.add(quad({-9, -9, -1}, {18, 0, 0}, {0, 18, 0}, b.add(matte({0.6f, 0.3f, 0.1f}))));

@@ -1,5 +1,5 @@
-// Layers of light path expressions: each holds the paths that its expression matches, whatever made
-// them, and expressions that share all paths among them add up to the picture.
+// Layers of light path expressions: each holds the paths that its expression matches, whichever technique made them.
+// Expressions that divide all paths among them add up to the picture.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,8 +24,8 @@ std::vector<LayerExpression> expressions(const NamedTexts& texts) {
     return all;
 }
 
-/// Every kind of scattering: matte, coated, metal, mirrors, smooth and rough glass, thin and solid;
-/// every kind of light. Things that have names to tell them apart.
+/// Every kind of scattering: matte, coated, metal, mirrors, smooth and rough glass, thin and solid; every kind of
+/// light. Names tell the things apart.
 SceneBuilder everyEvent() {
     SceneBuilder b;
     const auto named = [&](const char* name, lacuna::Material m) {
@@ -53,7 +53,7 @@ SceneBuilder everyEvent() {
     return b;
 }
 
-/// Families whose layers share all paths among them.
+/// Each family divides all paths among its layers.
 const std::vector<NamedTexts>& families() {
     static const std::vector<NamedTexts> all = {
         {{"light", "CL"}, {"diffuse", "CD.*"}, {"glossy", "CG.*"}, {"singular", "CS.*"}},
@@ -63,7 +63,7 @@ const std::vector<NamedTexts>& families() {
         {{"last-diffuse", "C.*DL"}, {"last-other", "C(.*[^D])?L"}},
         {{"meshes", "C.*O"}, {"sky", "C.*B"}, {"lamps", "C.*<L.'bulb'>"}},
         {{"by-floor", "C.*'floor'.*"}, {"by-others", "C[^'floor']*"}},
-        // Two that do not fit into one automaton together.
+        // These two families do not fit into one automaton together.
         {{"deep-diffuse", "C.*D.{7}L"}, {"others", "C(.{0,7}|.*[^D].{7})L"}},
         {{"deep-glossy", "C.*G.{7}L"}, {"and-others", "C(.{0,7}|.*[^G].{7})L"}},
     };
@@ -84,7 +84,7 @@ TEST_P(PathLayersOf, AddUpToThePicture) {
     Shot shot;
     shot.iterations = 12;
     shot.maxDepth = 9;
-    shot.radius = 0.1;  // of photons, so that some are there to be merged
+    shot.radius = 0.1;  // of merging, large enough that there are merges
     const PathLayers paths(*scene, true, expressions(allOfThem()));
     shot.layers = &paths;
     const Picture p = render(*scene, rowNamed(GetParam()), shot);
@@ -118,7 +118,7 @@ TEST_P(PathLayersOf, AddUpToThePicture) {
     }
 }
 
-/// Means of layers over pixels and channels, with what independent renders say of their error.
+/// Sums of layers over pixels and channels: their means over 12 independent renders, and the error of those.
 std::vector<Moments> meansOf(const Scene& scene, const std::string& row, const PathLayers& paths,
                              Shot shot) {
     std::vector<Moments> means(paths.names().size());
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(All, PathLayersSameAs,
 
 TEST_P(PathLayersSameAs, OfAPathTracer) {
     SceneBuilder b = everyEvent();
-    b.d.lights.clear();  // a path tracer does not find a point's light behind glass
+    b.d.lights.clear();  // a path tracer finds no point light behind glass
     const auto scene = b.build();
     const NamedTexts texts = {{"direct", "C[DG]L"},
                               {"caustics", "C<RD>[GS]+L"},
@@ -166,13 +166,13 @@ TEST_P(PathLayersSameAs, OfAPathTracer) {
         EXPECT_GT(found[i].mean(), 0.0) << texts[i].first;
         const double error = std::hypot(expected[i].standardError(), found[i].standardError());
         EXPECT_NEAR(found[i].mean(), expected[i].mean(), allowed * error) << texts[i].first;
-        // A test that could fail.
+        // Or the test could not fail.
         EXPECT_LT(error, 0.1 * expected[i].mean()) << texts[i].first;
     }
 }
 
-// Coated floors under a sun, level and bumpy: what the coat adds is the glossy layer, and it is the
-// picture of a floor whose base scatters nothing.
+// A coated ball under a sun: what the coat adds is the glossy layer, and it is the picture of a ball whose base
+// scatters nothing.
 TEST(PathLayers, OfLobesAreThePicturesOfThoseLobes) {
     const auto floor = [](bool base, bool coat) {
         SceneBuilder b;
@@ -206,7 +206,7 @@ TEST(PathLayers, OfLobesAreThePicturesOfThoseLobes) {
     EXPECT_GT(sums[1], 1.0);
 }
 
-// Glass that is half a leaf: what goes through is diffuse and glossy light, and together it is all.
+// Glass that is half a leaf: light passes it as diffuse and as glossy light, and both layers add up to all of it.
 TEST(PathLayers, TransmissionIsDividedAsReflectionIs) {
     const auto sheet = [](bool base, bool rough) {
         SceneBuilder b;
@@ -248,8 +248,8 @@ TEST(PathLayers, TransmissionIsDividedAsReflectionIs) {
     EXPECT_GT(sums[1], 1.0);
 }
 
-// A smooth coat mirrors nothing of a sun, which no walk can hit: all that connections find is of the
-// base, though walks go on from there by the coat as well.
+// A smooth coat reflects nothing of a sun, which no walk can hit. So all that connections find is light of the base,
+// though walks also go on by the coat.
 TEST(PathLayers, OfConnectionsAreOfWhatTheyEvaluate) {
     SceneBuilder b;
     b.add(sphere({0, 0, 0}, 1, 12, b.add(plastic({0.7f, 0.4f, 0.2f}, 0)), true));

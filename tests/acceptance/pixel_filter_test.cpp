@@ -1,4 +1,4 @@
-// A box filter of one pixel: denoisers take noise that pixels share for the picture.
+// The pixel filter is a box of one pixel: denoisers would take noise that pixels share for the picture.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 class PixelFilter : public RowTest {};
 INSTANTIATE_TEST_SUITE_P(All, PixelFilter, testing::Values("pt", "lt", "bpt"), ByParameter());
 
-/// Whatever a path brings, a splat too, is in the one pixel that its edge at the lens passes through.
+/// All that a path brings, also by a splat, is in the one pixel that its edge at the lens passes through.
 TEST_P(PixelFilter, keepsEachPathInItsPixel) {
     const auto scene = glossyBox().builder.build();
     Shot shot = quickShot(1);

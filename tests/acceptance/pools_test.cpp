@@ -1,5 +1,6 @@
-// Acceptance 4: pools of 1, 2 and 4 light subpaths give the same mean image as one of 10^4. A
-// density that reads the current pool is off by about 0.8 % at one subpath and hides above.
+// Acceptance 4: pools of 1, 2 and 4 light subpaths give the same mean image as one of 10^4. If a
+// density read the current pool, the mean would be off by about 0.8 % at one subpath, and by too
+// little to see in larger pools.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,10 +15,10 @@
 namespace lacuna::test {
 namespace {
 
-// What is off by .8 % is seen in 99 of 100 runs: the bound lies at .52 %.
+// A mean that is off by 0.8 % is seen in 99 of 100 runs: the bound lies at 0.52 %.
 constexpr double kSmallError = 0.0010, kLargeError = 0.0006;
 
-/// Iterations until the mean is known to `relativeError`.
+/// Iterates until the mean's standard error is below `relativeError` of it.
 Picture renderUntilKnown(const Scene& scene, const MethodRow& row, Shot shot, double relativeError,
                          int most) {
     const ThreadPool single(1);
@@ -48,14 +49,14 @@ std::vector<std::string> rowsOfANight() {
     return names;
 }
 
-/// The worst difference, of what is allowed.
+/// The worst difference, as a share of the allowed one.
 double worstOfTinyPools(const std::string& name) {
     const auto scene = diffuseBox().builder.build();
     const MethodRow row = rowNamed(name);
     Shot shot;
     shot.maxDepth = 4;
-    // The same view on a larger film, the same mean: a pool of 10^4, which is weighed at every
-    // cache point, is worth more eye paths, and no more cache points.
+    // The same view on a larger film has the same mean. A pool of 10^4, which is weighed at every
+    // cache point, is worth more eye paths, but no more cache points.
     shot.width = shot.height = 96;
     shot.candidates = 10000;
     for (const Option& p : row.options) {
@@ -85,7 +86,7 @@ double worstOfTinyPools(const std::string& name) {
     return worst;
 }
 
-/// FiniteSpacePoolsSlow holds every row to the same; here rows have the caches of a scene.
+/// FiniteSpacePoolsSlow expects the same of every row; here rows have the caches of a scene.
 class TinyPoolsSlow : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Day, TinyPoolsSlow, testing::ValuesIn(rowsOfADay()), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, TinyPoolsSlow, testing::ValuesIn(rowsOfANight()), ByParameter());

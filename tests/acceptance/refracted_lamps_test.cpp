@@ -20,8 +20,8 @@ INSTANTIATE_TEST_SUITE_P(Night, RefractedLampsOf,
                          testing::ValuesIn(rowNamesWith(&Techniques::refract, Rows::OfTests)),
                          ByParameter());
 
-/// A floor under a slab of glass under an even sky: what both faces let through, from everywhere. Of such a sky
-/// next event leaves all to hits, unless a guide tells where to look.
+/// A floor under a slab of glass under an even sky gets what both faces let through, from all directions. Next event
+/// leaves all of such a sky to hits, unless a guide tells where to look.
 TEST_P(RefractedLampsOf, skyThroughASlab) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -54,8 +54,8 @@ TEST_P(RefractedLampsOf, skyThroughASlab) {
     EXPECT_GT(refractions, 2500);
 }
 
-/// For a wide lamp behind what bends and colours its light: a slab with a relief, a ball with normals, and
-/// blocks that absorb, one of them turned and mirrored, the other under a veil.
+/// A stage for a wide lamp, below things that bend and colour its light: a slab with a relief, a ball with smooth
+/// normals, and blocks that absorb. One block is turned and mirrored, the other is under a veil.
 SceneBuilder glassAboveAStage() {
     SceneBuilder b;
     // Half a mirror, half a colour: walks go on from it by either, and connections end at it.
@@ -80,7 +80,7 @@ SceneBuilder glassAboveAStage() {
     return b;
 }
 
-/// Likewise with glass that is nearly smooth, and smooth glass before and behind it.
+/// The same with glass that is nearly smooth, and with smooth glass before and behind it.
 SceneBuilder facetsAboveAStage() {
     SceneBuilder b;
     b.d.materials[0] = plastic({0.5f, 0.4f, 0.3f}, 0.1f);  // narrow lobes above a colour
@@ -103,14 +103,14 @@ SceneBuilder facetsAboveAStage() {
     return b;
 }
 
-/// What lies in a block of glass sees a lamp through several of its faces.
+/// Adds a ball in a block of glass; the ball sees a lamp through several of the block's faces.
 void addBallInABlock(SceneBuilder& b, float roughness = 0) {
     b.add(box({-0.5f, -0.3f, -0.5f}, {0.5f, 0.3f, 0.5f}, b.add(glass(1.4f, roughness))),
           translation({-0.8, 0.4, -0.1}) * rotation({1, 3, 1}, 20) * scaling({-1, 1, 1}));
     b.add(sphere({-0.8f, 0.4f, -0.1f}, 0.2f, 8, b.add(matte({0.7f, 0.3f, 0.2f}))));
 }
 
-/// Such a ball, in a corner of a room without lamps.
+/// Such a ball on a floor, without lamps.
 SceneBuilder ballInABlock(float roughness = 0) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.5f));
@@ -136,7 +136,7 @@ void PrintTo(const Lit& lit, std::ostream* out) {
     *out << lit.name;
 }
 
-/// Against walks alone, which run into light this wide.
+/// Compared with walks alone, which run into light this wide.
 class BehindGlass : public testing::TestWithParam<Lit> {};
 INSTANTIATE_TEST_SUITE_P(All, BehindGlass, testing::Values(kLampWithAlpha, kSkyAlone),
                          ByParameter());
@@ -165,8 +165,8 @@ TEST_P(BehindGlass, isWhatWalksFindInABlock) {
     comparedWithWalks(ballInABlock(), GetParam());
 }
 
-/// Through nearly smooth glass; also what walks alone find by next event at its outermost surface, from lights
-/// without a size.
+/// The same through nearly smooth glass. Here also lights without a size: walks alone find them by next event at the
+/// outermost surface.
 class BehindFacets : public testing::TestWithParam<Lit> {};
 constexpr Lit kWithoutASize{"lights without a size", [](SceneBuilder& b) {
                                 addLight(b, LightChoice::Point);
@@ -184,7 +184,7 @@ TEST_P(BehindFacets, isWhatWalksFindInABlock) {
     comparedWithWalks(ballInABlock(0.2f), GetParam());
 }
 
-/// A lamp in a bulb: one surface, with the vertex inside it and outside.
+/// A lamp in a bulb: one surface of glass, with vertices inside and outside of it.
 TEST_P(RefractedLampsOf, lampInABulb) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.5f));
@@ -205,8 +205,8 @@ TEST_P(RefractedLampsOf, lampInABulb) {
                Judge::BlocksAndMean);
 }
 
-/// The technique makes nearly all paths by which the lamp lights the ball through one face: not only those of
-/// the face that the straight way meets, and none is lost where that way would be reflected back.
+/// The technique makes nearly all paths by which the lamp lights the ball through one face. It finds not only the face
+/// that the straight line meets, and loses none where that line would be reflected back.
 TEST(RefractedLamps, shineThroughEachFace) {
     SceneBuilder b = ballInABlock();
     b.add(quad({0.6f, 1.8f, 0.4f}, {0.2f, 0, 0}, {0, -0.2f, 0.2f}, b.add(emitter(Rgb(70.0f)))));
@@ -227,8 +227,8 @@ TEST(RefractedLamps, shineThroughEachFace) {
     EXPECT_GT(known, 0.95 * all) << all;
 }
 
-/// What a path adds, by this technique and by an eye walk that runs into the lamp, are in the ratio of the
-/// densities that weights have. No weight would be wrong without it, only worse.
+/// What a path adds by this technique, and by an eye walk that runs into the lamp, are in the ratio of the densities in
+/// the weights. With other densities the weights would still be unbiased, but worse.
 TEST(RefractedLamps, knowTheirDensity) {
     struct Kind {
         bool alpha;
@@ -261,7 +261,7 @@ TEST(RefractedLamps, knowTheirDensity) {
             if (!event.technique.refracts()) return;
             const FullPath& path = event.path;
             const int depth = event.counts.rouletteDepth;
-            int i = path.edges + 1 - event.technique.t;  // z
+            int i = path.edges + 1 - event.technique.t;  // the eye walk's end
             Rgb walk = path.vertex[std::size_t(i)]->throughput;
             for (; i > 0; --i) {
                 const auto n = std::size_t(i);
@@ -282,9 +282,9 @@ TEST(RefractedLamps, knowTheirDensity) {
     }
 }
 
-/// How many samples a path counts as is a function of the path: what the technique itself has, what a light
-/// subpath knew when it was traced, and what is found anew, also where few are drawn because little of the
-/// light comes as far as the glass.
+/// The number of samples that a path counts as depends on the path alone. The technique itself, a light subpath that
+/// noted it when it was traced, and a new search agree on it. So they do where few samples are drawn, because little of
+/// the light comes as far as the glass.
 void expectTheSameFromAllSides(float roughness, double allowed) {
     SceneBuilder b;
     b.d.materials[0] = plastic({0.5f, 0.4f, 0.3f}, 0.6f);
@@ -295,7 +295,7 @@ void expectTheSameFromAllSides(float roughness, double allowed) {
     }
     addBallInABlock(b, roughness);
     b.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, b.add(emitter({2, 3, 4}))));
-    b.add(quad({-2, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));  // a gap is left
+    b.add(quad({-2, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));  // with a gap between both
     b.add(quad({0.06f, 1.5f, 2}, {1.94f, 0, 0}, {0, 0, -4}));
     b.add(lookAt({0.3, 0.8, 2}, {0, 0, 0.2}, 40));
     const auto scene = b.build();
@@ -323,7 +323,7 @@ void expectTheSameFromAllSides(float roughness, double allowed) {
 }
 TEST(RefractedLamps, countTheSameFromAllSides) {
     expectTheSameFromAllSides(0, 1e-5);
-    // A facet is known from directions in float.
+    // A facet is computed from directions in float.
     expectTheSameFromAllSides(0.2f, 1e-3);
 }
 
@@ -350,7 +350,7 @@ TEST(RefractedLamps, areNoGlassBeforeThemselves) {
     }
 }
 
-/// Less noise where walks seldom run into a small lamp.
+/// The technique makes less noise where walks seldom run into a small lamp.
 TEST(RefractedLamps, findWhatWalksMiss) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.5f));

@@ -22,7 +22,7 @@ PixelRect cropOf(const Shot& shot) {
     return shot.crop == PixelRect{} ? PixelRect{0, shot.width, 0, shot.height} : shot.crop;
 }
 
-/// Films are small, and tests run side by side.
+/// One thread unless the shot has others: films are small, and tests run side by side.
 const ThreadPool& threadsOf(const Shot& shot) {
     static const ThreadPool one(1);
     return shot.threads ? *shot.threads : one;
@@ -51,7 +51,7 @@ float channel(const Rgb& c, int i) {
     return i == 0 ? c.r : i == 1 ? c.g : c.b;
 }
 
-/// Of worstDeviation(): the test that it belongs to, and the largest share so far.
+/// For worstDeviation(): the running test, and its largest share so far.
 struct {
     const testing::TestInfo* test = nullptr;
     double share = 0;
@@ -64,7 +64,7 @@ bool within(double deviation, double allowed) {
     return deviation <= allowed;
 }
 
-/// Messages for the first few places that are more than `z` standard errors apart.
+/// Reports the first few places that are more than `z` standard errors apart.
 void judge(const Image& a, const Image& varianceA, const Image& b, const Image& varianceB, double z,
            const std::string& what) {
     int complaints = 0;
@@ -135,7 +135,7 @@ double Picture::mean() const {
 }
 
 double Picture::standardError() const {
-    // The channels of one path go together: as if they were equal.
+    // The channels of one path are correlated: they are treated as equal.
     const FilmSum::MeanColour m = pixels.meanColour();
     return (m.standardError[0] + m.standardError[1] + m.standardError[2]) / 3;
 }

@@ -1,5 +1,5 @@
-// What users of bidirectional renderers have reported as bugs, as scenes: spikes, lamps that shine
-// on the wrong side, slabs of glass, faces that lie twice in one place.
+// Scenes of bugs that users of bidirectional renderers have reported: spikes, lamps that shine on
+// the wrong side, slabs of glass, faces that lie twice in one place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@ class Reports : public RowTest {
 INSTANTIATE_TEST_SUITE_P(All, Reports, testing::ValuesIn(rowNames(Rows::OfTheTool)), ByParameter());
 INSTANTIATE_TEST_SUITE_P(Night, Reports, testing::ValuesIn(rowNames(Rows::OfTests)), ByParameter());
 
-/// Connections of vertices that nearly touch are as bright as they like, unless the weights know
-/// of it. Inside a coarse sphere with smooth normals there are such pairs everywhere.
+/// Connections of vertices that nearly touch have no bound on their brightness, unless the weights
+/// allow for it. Inside a coarse sphere with smooth normals there are such pairs everywhere.
 TEST_P(Reports, noSpikesInsideABentSphere) {
     SceneBuilder b;
     b.add(sphere({0, 0, 0}, 1, 8, b.add(matte(Rgb(0.7f))), true));
@@ -36,13 +36,14 @@ TEST_P(Reports, noSpikesInsideABentSphere) {
     for (const Rgb& c : p.pixels.image().pixels) {
         largest = std::max(largest, double(mean(c)) / p.mean());
     }
-    // Distances and cosines to the light alone make a factor of 4 between places here; noise of 80
-    // iterations half as much again. Spikes in the report were a thousand times the mean.
+    // Distances and cosines to the light alone make a factor of 4 between places here; the noise of
+    // 80 iterations adds half as much again. Spikes in the report were a thousand times the mean.
     EXPECT_LT(largest, 10) << row().name;
     stabilityCase("connection-spikes", largest, "times the mean in the brightest pixel");
 }
 
-/// Lamps of one mesh that face up, of which one is turned over by a mirroring transform.
+/// Two lamps of one mesh that face up; with `mirrored` = -1 a mirroring transform turns one of them
+/// over.
 SceneBuilder lamps(double mirrored) {
     SceneBuilder b;
     b.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}));
@@ -69,8 +70,8 @@ TEST_P(Reports, mirroredLampsShineOnOneSide) {
     stabilityCase("emission-side", worstDeviation(), kOfAllowed);
 }
 
-/// A luminous wall through a slab of glass, head on: what the slab lets through of it, wherever the
-/// slab and the wall are.
+/// A luminous wall, seen head on through a slab of glass, is dimmed by the slab's transmittance,
+/// wherever the slab and the wall are.
 TEST_P(Reports, slabsDimByTheirTransmittanceAtAnyDistance) {
     if (!seesThroughDeltas(row())) GTEST_SKIP() << "splats do not see through smooth glass";
     for (const auto& [slab, wall] : {std::pair(0.1, 1.0), std::pair(0.5, 1.0), std::pair(0.9, 1.0),
@@ -84,14 +85,16 @@ TEST_P(Reports, slabsDimByTheirTransmittanceAtAnyDistance) {
         Shot shot = quickShot(60);
         shot.width = shot.height = 8;
         shot.maxDepth = 12;
-        // Faces reflect R = 0.04; back and forth between them (1 - R) / (1 + R) get through.
+        // Each face reflects R = 0.04. With all reflections between the faces, (1 - R) / (1 + R)
+        // gets through.
         expectRadiance(render(*b.build(), row(), shot), 2 * 0.96 / 1.04,
                        row().name + ", slab at " + std::to_string(slab));
     }
     stabilityCase("glass-slab", worstDeviation(), kOfAllowed);
 }
 
-/// A slab shifts what passes it, wherever it is: the floor has the same light from the lamp.
+/// A slab shifts what passes it by the same amount wherever it is, so that the floor gets the same
+/// light from the lamp.
 TEST_P(Reports, slabsUnderALampMayBeAnywhere) {
     const auto withSlab = [](float y) {
         SceneBuilder b;
@@ -122,13 +125,13 @@ TEST_P(Reports, facesThatLieTwiceInOnePlaceChangeNothing) {
     stabilityCase("duplicate-faces", worstDeviation(), kOfAllowed);
 }
 
-/// A sample that overflows is dropped, counted, and said where it is; so is one that is finite but
-/// whose pixel's sum is not. The picture stays finite.
+/// A sample that overflows is dropped, counted, and reported with its place. So is a finite sample
+/// whose pixel's sum overflows. The picture stays finite.
 TEST_P(Reports, samplesThatOverflowAreDroppedAndCounted) {
     SceneBuilder b;
     b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
-    // The sum of its channels' powers is just a float; near enough that a part of a sample, where a
-    // method makes several, overflows as well.
+    // The sum of its channels' powers just fits into a float. The light is so near that each of the
+    // samples of a method with several overflows as well.
     b.add(pointLight({0, 0.01, 0}, Rgb(8e36f)));
     b.add(lookAt({0, 1, 1.5}, {0, 0, 0}, 5));
     Shot shot = quickShot(20);

@@ -9,13 +9,14 @@
 namespace lacuna::test {
 namespace {
 
-/// What roughness gives alpha = kMinAlpha: the roughest delta and the smoothest rough lobe meet
-/// there.
+/// The roughness of the smoothest rough lobe: its alpha is just above kMinAlpha, where deltas
+/// begin.
 constexpr float kLimit = 0.0100001f;
-/// Below this a splat meets the lobe of what the lens sees too rarely for a z-test on few samples.
+/// Below this roughness a splat meets the lobe of what the lens sees too rarely for a z-test on few
+/// samples.
 constexpr float kSplatsSee = 0.3f;
 
-/// A floor with an object of that material and a second one behind it, under a large light.
+/// A floor and a wall, with a box and a ball of that material, under a large light.
 SceneBuilder objects(const lacuna::Material& material) {
     SceneBuilder b;
     const auto wall = b.add(matte({0.7f, 0.5f, 0.3f}));

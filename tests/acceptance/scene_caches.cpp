@@ -43,7 +43,7 @@ void giveCaches(Method& method, const MethodRow& row, const Scene& scene, const 
         }
         method.use(assets);
     } catch (const InputError&) {  // no surface
-    } catch (const UsageError&) {  // nothing but solid voxels, as where all there is is a floor
+    } catch (const UsageError&) {  // only solid voxels, as in a scene that is nothing but a floor
     }
 }
 

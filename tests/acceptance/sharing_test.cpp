@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(All, SharedWalks, testing::Range(0, int(weightScenes().
                              return testName(weightScenes()[std::size_t(test.param)].name);
                          });
 
-/// In groups of all sizes, guided walks too; walks of one edge more than are shared, and longer ones.
+/// In groups of sixteen, and of four with guided walks. Paths go on behind the shared edge.
 TEST_P(SharedWalks, haveTheMeanOfWalksAlone) {
     const NamedScene named = weightScenes()[std::size_t(GetParam())];
     const auto scene = named.builder.build();
@@ -37,8 +37,8 @@ TEST_P(SharedWalks, haveTheMeanOfWalksAlone) {
                Judge::BlocksAndMean);
 }
 
-/// Pixels beside each other that look over and under a shelf: one side of it is lit, and who looks at one
-/// side neither sees what lies on the other nor could have gone on from there.
+/// Pixels beside each other look over and under a shelf that is lit on one side. A pixel that sees one side does not
+/// see what lies on the other, and its walk could not have gone on from there.
 TEST(SharedWalks, stayOnTheirSideOfAShelf) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.7f));
@@ -54,7 +54,7 @@ TEST(SharedWalks, stayOnTheirSideOfAShelf) {
     expectSame(withShare(*scene, "16", shot), alone, "shelf");
 }
 
-/// What a walk has lost, in one colour or in all, is not lost to those who share it.
+/// A walk may have lost one colour or all of them: the pixels that share it still get them.
 TEST(SharedWalks, carryColoursThatTheirOwnersLack) {
     for (const Rgb& walls : {Rgb(0.9f), Rgb(0, 0.9f, 0.3f)}) {
         const auto scene = tilesOfPureColours(walls).build();
@@ -69,14 +69,14 @@ TEST(SharedWalks, carryColoursThatTheirOwnersLack) {
     stabilityCase("pure-colours", worstDeviation(), kOfAllowed);
 }
 
-/// A picture whose squares are cut by its border, and pixels of one square alone.
+/// The picture's border cuts squares of pixels, and a crop of one line cuts all of them.
 TEST(SharedWalks, ofACropAreThoseOfTheWholePicture) {
     const auto scene = diffuseBox().builder.build();
     Shot shot;
     shot.width = 18;
     shot.height = 15;
     shot.iterations = 3;
-    shot.lightPaths = 1;  // splats of what is outside do not matter then
+    shot.lightPaths = 1;  // as many for the crop as for the whole
     shot.settings = {"emission=plain"};
     MethodRow row = rowNamed("sharebpt");
     row.techniques.splats = false;
@@ -88,7 +88,7 @@ TEST(SharedWalks, ofACropAreThoseOfTheWholePicture) {
     }
 }
 
-/// What it is for.
+/// Less noise is what sharing is for.
 TEST(SharedWalks, areLessNoisy) {
     const auto scene = diffuseBox().builder.build();
     Shot shot;

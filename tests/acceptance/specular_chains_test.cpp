@@ -1,5 +1,5 @@
-// Light that no edge can be joined for: over mirrors and through smooth glass to what is seen over
-// mirrors and through smooth glass, from lamps without a size. (theory.md, "Specular chains")
+// Light of lamps without a size that no connection can make: it comes over mirrors or through smooth glass, and is seen
+// over mirrors or through smooth glass. (theory.md, "Specular chains")
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -25,7 +25,7 @@ INSTANTIATE_TEST_SUITE_P(Night, SpecularChainsOf,
                                                         Rows::OfTests)),
                          ByParameter());
 
-/// How far a ray at an angle to the vertical, by its sine, comes to the side through slabs and air.
+/// How far to the side a ray comes through slabs and air, by the sine of its angle to the vertical.
 struct Stack {
     double air, glass, index;
     double across(double sine) const {
@@ -44,7 +44,7 @@ struct Stack {
     }
 };
 
-/// Both faces of a slab.
+/// What both faces of a slab let through.
 double throughSlab(double sine) {
     const double f = fresnelDielectric(std::sqrt(1 - sine * sine), 1.5);
     return (1 - f) * (1 - f);
@@ -84,7 +84,7 @@ void expectLampsBySlab(const MethodRow& row, std::span<const Lamp> lamps, float 
             const Stack toLamp{lamp.y - 0.5, 0.5, 1.5};
             const double distance = std::hypot(lamp.x - point.x, lamp.z - point.z);
             const double sine = toLamp.sineOf(distance);
-            // The power of a ring of directions, on the ring of the floor that it comes to.
+            // The power of a ring of directions falls on the ring of the floor that it reaches.
             const double by = 1e-6;
             const double ring = (toLamp.across(sine + by) - toLamp.across(sine - by)) / (2 * by);
             const double cosine = std::sqrt(1 - sine * sine);
@@ -102,13 +102,14 @@ TEST_P(SpecularChainsOf, pointLightThroughSolidGlassSeenThroughSolidGlass) {
     expectLampsBySlab(row(), {&lamp, 1}, 30, 400);
 }
 
-/// A dim lamp nearby is drawn by the ways that are known more often than by its power.
+/// The known ways draw a dim lamp nearby more often than its power would.
 TEST(SpecularChains, ofADimLampNearbyAndABrightOneFarAway) {
     const Lamp lamps[] = {{{0.2, 2.0, 0}, 0.5}, {{4, 2.5, -3}, 3}};
     expectLampsBySlab(rowNamed("pt"), lamps, 8, 1600);
 }
 
-/// A floor that a mirror shows the sun to, seen in another mirror: against the sun's image itself.
+/// A mirror lights a floor with the sun, and another mirror shows the floor. In the reference the sun's image stands in
+/// for the first mirror.
 TEST_P(SpecularChainsOf, sunInAMirrorSeenInAMirror) {
     const Vec3d way{1.0, -0.8, 0};
     const double reflected = 0.8 + 0.2 * std::pow(1 - normalize(way).x, 5);
@@ -116,7 +117,7 @@ TEST_P(SpecularChainsOf, sunInAMirrorSeenInAMirror) {
         SceneBuilder b;
         b.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}));
         b.add(quad({-9, 0, -3}, {18, 0, 0}, {0, 9, 0}, b.add(mirror(Rgb(0.9f)))));
-        // A wall keeps the sun from the floor but for the mirror opposite.
+        // A wall keeps the sun off the floor, except by way of the mirror opposite.
         b.add(quad({-1.5f, 0, 2}, {0, 3, 0}, {0, 0, -4}));
         if (mirrored) b.add(quad({3, 0, 9}, {0, 9, 0}, {0, 0, -18}, b.add(mirror(Rgb(0.8f)))));
         b.add(directionalLight({mirrored ? way.x : -way.x, way.y, way.z},
@@ -133,8 +134,8 @@ TEST_P(SpecularChainsOf, sunInAMirrorSeenInAMirror) {
     expectSame(render(*stage(true), row(), shot), image, row().name + ", sun in mirrors");
 }
 
-/// From its middle, light leaves a ball as if there were no glass: what is reflected inside comes back
-/// and is refracted out behind. However often chains are searched for.
+/// From its middle, light leaves a ball as if there were no glass: what is reflected inside comes back and is refracted
+/// out on the other side. This holds however often chains are searched for.
 TEST(SpecularChains, aBallAboutALampTakesNothingAway) {
     SceneBuilder b;
     b.d.materials[0] = matte(Rgb(0.6f));
@@ -165,9 +166,8 @@ TEST(SpecularChains, aBallAboutALampTakesNothingAway) {
     }
 }
 
-/// Where the camera sees a caustic itself, splats make it, and a path tracer by chains. Of things that
-/// hardly focus: where a caustic is sharp, few samples hold most of it. So the mirror is a fine mesh, since coarse ones
-/// draw bright lines.
+/// Caustics that the camera sees directly: splats make them, and chains do in a path tracer. The things hardly focus,
+/// because few samples hold most of a sharp caustic. The mirror is a fine mesh, since coarse ones draw bright lines.
 class Caustics : public testing::TestWithParam<LightChoice> {};
 std::string nameOfLight(const testing::TestParamInfo<LightChoice>& test) {
     return testName(nameOf(test.param));
@@ -210,15 +210,15 @@ void expectChainsAsSplats(const SceneBuilder& b, int maxDepth, int iterations, i
 }
 
 TEST_P(Caustics, areTheSameByChainsAndBySplats) {
-    // Of no more edges than the longest chains make.
-    // Few samples hold the light of ways that no ray of the light came by: after 3000 iterations of pt blocks were up
-    // to 8 errors of their own too dark, and after 18,000 and 24,000 none was.
+    // Paths have no more edges than the longest chains. Few samples hold the light of ways that no ray from the light
+    // came by: after 3000 iterations of pt blocks were too dark by up to 8 of their own errors, and after 18,000 none
+    // was.
     expectChainsAsSplats(specularStage(GetParam()), 6, 3000, 18000,
                          nameOf(GetParam()) + ", caustics");
 }
 
-/// Mirrors with a little relief under flat lacquer, and flat mirrors under lacquer with a relief: two images of
-/// the lamp each.
+/// Mirrors with a little relief under flat lacquer, and flat mirrors under lacquer with a relief: each shows two images
+/// of the lamp.
 TEST_P(Caustics, ofLacquerAreTheSameByChainsAndBySplats) {
     SceneBuilder b;
     b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
@@ -238,8 +238,7 @@ TEST_P(Caustics, ofLacquerAreTheSameByChainsAndBySplats) {
     expectChainsAsSplats(b, 4, 2000, 2000, nameOf(GetParam()) + ", lacquer");
 }
 
-/// A mirror that alpha leaves a part of, and a coloured window that reflects a little: rays meet either
-/// by chance.
+/// A mirror that alpha leaves half of, and a coloured window that reflects a little: rays meet either only at random.
 TEST_P(Caustics, ofHalfAMirrorAndAWindowAreTheSameByChainsAndBySplats) {
     SceneBuilder b;
     b.d.materials[0] = matte({0.5f, 0.4f, 0.3f});
@@ -271,7 +270,7 @@ TEST_P(SpecularChainsOf, makeWhatNothingElseMakes) {
         };
         EXPECT_EQ(weightOf(event.path), 1.0);
         EXPECT_FALSE(event.path.hittable);
-        // At the edge of a body rays go in and out in one place.
+        // At the edge of a body a ray goes in and out at one point: there, too, the weight must be one.
         for (int i = 1; i + 1 < event.path.edges; ++i) {
             if (!event.path.delta[i] || !event.path.delta[i + 1]) continue;
             ++meeting;

@@ -119,8 +119,8 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
-        // Light inside smooth glass: only splats and hits make what it casts on the floor, and the
-        // one has refracted importance where the other has refracted radiance.
+        // Light inside smooth glass: only splats and hits make what it casts on the floor. Where one refracts
+        // importance, the other refracts radiance.
         SceneBuilder b;
         b.add(quad({-1.2f, 0, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}));
         b.add(quad({-9, 0.9f, 9}, {0, 0, -18}, {18, 0, 0}, b.add(glass())));
@@ -153,7 +153,7 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
-        // A leaf between light and floor, cloth, a brushed ball under lacquer that is smoother than it.
+        // A leaf between light and floor, cloth, and a brushed ball under lacquer.
         TechniqueScene s{"leaf, cloth, brushed metal and lacquer", plates(true), 2, 3};
         SceneBuilder& b = s.builder;
         lacuna::Material cloth = matte({0.5f, 0.3f, 0.3f});
@@ -175,8 +175,8 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
-        // A plate of coloured glass with a leaf in it, between light and floor: edges from face to
-        // face, and from either face to what says nothing about the glass.
+        // A plate of coloured glass with a matte sheet in it, between light and floor. Edges go from face to face, and
+        // from either face to a surface that says nothing about the glass.
         TechniqueScene s{"coloured rough glass", plates(false), 2, 4};
         SceneBuilder& b = s.builder;
         const auto rough = b.add(colouredGlass({3, 1, 0.2f}, 1.3f, 0.95f));
@@ -187,8 +187,8 @@ std::vector<TechniqueScene> techniqueScenes() {
         scenes.push_back(s);
     }
     {
-        // Camera inside coloured glass, which glows itself on both sides of one face: light leaves
-        // its back for the glass, and meets a floor there that says nothing.
+        // The camera is inside coloured glass, one face of which glows on both sides. Light leaves its back into the
+        // glass, and meets a floor there that says nothing about the glass.
         SceneBuilder b;
         const auto rough = b.add(colouredGlass({1.5f, 0.5f, 0.1f}, 1.3f, 0.9f));
         lacuna::Material glow = b.d.materials[rough];
@@ -221,7 +221,7 @@ std::vector<TechniqueScene> techniqueScenes() {
         TechniqueScene s{"environment", plates(false), 1, 3};
         s.builder.add(sphere({0, 0.6f, 0}, 0.35f, 12, 0));
         s.builder.environment(sunnySky());
-        s.settings = {"lamps=power"};  // of what is seen next event leaves a part to hits
+        s.settings = {"lamps=power"};  // lamps=seen leaves a part to hits
         s.iterations = 60;
         scenes.push_back(s);
     }

@@ -57,7 +57,7 @@ std::vector<Case> allCases() {
     for (const std::string& row : rowNamesOfWeights()) {
         for (int i = 0; i < int(weightScenes().size()); ++i) {
             cases.push_back({row, i});
-            // Of all rows in some scenes, and in all scenes of some rows.
+            // Guided: all rows in some scenes, and some rows in all scenes.
             if (row == "bpt" || row == "spcbpt" || i % 4 == 3) {
                 cases.push_back({row, i, std::uint64_t(i) + 1});
             }
@@ -234,7 +234,7 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     };
     ASSERT_GT(keeper.kept.size(), 20u);
     bool done = false;
-    std::optional<TechniqueCounts> last;  // a copy: they end with the iteration
+    std::optional<TechniqueCounts> last;  // a copy, since they end with the iteration
     shot.observer = [&](const PathEvent& event) {
         last = event.counts;
         if (event.technique.t == 1 || done)
@@ -250,8 +250,8 @@ TEST_P(PathOnly, aPathsWeightIsTheSameUnderAnotherPool) {
     stabilityCase("other-pool", worst, "between a path's weights");
 }
 
-/// Weights of a method that does not learn are those of the first iteration for ever: a density
-/// that took the current pool's number of vertices would change with each.
+/// The weights of a method that does not learn are those of the first iteration for ever. A density
+/// that used the current pool's number of vertices would change in each iteration.
 TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
     const auto scene = glossyBox().builder.build();
     const MethodRow row = rowNamed(GetParam());
@@ -268,7 +268,7 @@ TEST_P(PathOnly, onlyMethodsThatLearnChangeTheirMinds) {
             mergeSamples = event.counts.mergeSamples;
             return keeper.keep(event);
         }
-        if (++judged % 500 != 1) return;  // the same for all events of an iteration
+        if (++judged % 500 != 1) return;  // all events of an iteration have the same counts
         TechniqueCounts counts = event.counts;
         counts.mergeSamples = mergeSamples;  // radii shrink
         for (const auto& k : keeper.kept) {
