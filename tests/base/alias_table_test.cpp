@@ -1,4 +1,4 @@
-// Alias tables: what is realised is what is reported.
+// Alias tables: they draw with the probabilities that they report.
 #include "libcore/base/alias_table.h"
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 namespace lacuna::test {
 namespace {
 
-constexpr double kInside = 1e-10;  // of a slot: its border may round to its neighbour
+constexpr double kInside = 1e-10;  // of a slot: its border may round into the next slot
 
-/// Realised probabilities, to kInside of a slot: by halving each slot to where its second outcome
-/// begins.
+/// The probabilities that a table draws with, to kInside of a slot. Bisection finds where each
+/// slot's second outcome begins.
 std::vector<double> realised(const AliasTable& table) {
     const auto n = double(table.size());
     std::vector<double> mass(table.size(), 0.0);
@@ -111,7 +111,7 @@ TEST(AliasTable, NothingToPick) {
     const AliasTable zeros(std::vector<double>{0, 0, 0});
     EXPECT_TRUE(zeros.empty());
     EXPECT_EQ(zeros.total(), 0.0);
-    // Sanitizers look at this: there is no slot to point at.
+    // For the sanitizers: there is no slot to point at.
     AliasTable().prefetch(0.7);
     zeros.prefetch(0.7);
 }

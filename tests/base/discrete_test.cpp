@@ -19,7 +19,8 @@ constexpr double kAlarm = 1e-3;
 constexpr double kComparisons = 16;
 constexpr double kLast = 0x1.fffffffffffffp-1;  // largest u below one
 
-/// What must hold whatever the weights: pmf adds up, is realised, zeros are never picked.
+/// What must hold for all weights: the pmf adds up to one and is realised, and zeros are never
+/// picked.
 void checkInvariants(const std::vector<double>& weights) {
     const DiscreteDistribution d{weights};
     ASSERT_EQ(d.size(), weights.size());

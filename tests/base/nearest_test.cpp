@@ -45,7 +45,7 @@ TEST(NearestPoints, areThoseOfBruteForce) {
             std::sort(all.begin(), all.end());
             std::vector<bool> seen(n);
             for (std::size_t i = 0; i < k; ++i) {
-                // Which of equally far ones comes first is open, how far they are is not.
+                // The order of points that are equally far is open; how far they are is not.
                 EXPECT_NEAR(apart2(p, s, found[i]), all[i], 1e-6);
                 EXPECT_FALSE(seen[found[i]]);
                 seen[found[i]] = true;

@@ -1,4 +1,4 @@
-// Options as a table of typed fields: what texts they take, what they say of those they do not.
+// Options as a table of typed fields: which texts they take, and what they say of others.
 #include "libcore/base/options.h"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST(OptionTable, readsWhatIsGivenAndTheLastOfSeveral) {
     EXPECT_EQ(table().read(resolved({"note="})).note, "");
 }
 
-/// What is written of a record reads back as the same.
+/// The written values of a record read back as the same record.
 TEST(OptionTable, valuesReadBack) {
     Record record;
     record.paths = 999'999;
@@ -191,7 +191,7 @@ TEST(OptionTable, messagesNameTheOptionAndWhatItTakes) {
     EXPECT_EQ(refusalOf({"count=1"}), "--set count: " + names) << "without its group's name";
     EXPECT_EQ(refusalOf({"=1"}), "--set : " + names);
     EXPECT_EQ(refusalOf({"Paths=1"}), "--set Paths: " + names);
-    // An earlier mistake is not mended by a later value.
+    // A later value does not mend an earlier mistake.
     EXPECT_NE(refusalOf({"paths=0", "paths=1"}), "accepted");
     try {
         resolveOptions({}, std::vector<std::string>{"a=1"}, "method pt", "");
@@ -201,7 +201,7 @@ TEST(OptionTable, messagesNameTheOptionAndWhatItTakes) {
     }
 }
 
-/// What code gets wrong, not people: settings that are not all there.
+/// Incomplete settings are a mistake of the code, not of a user.
 TEST(OptionTable, incompleteSettingsAreNoRecord) {
     Settings settings = resolved({});
     settings.erase("metal");

@@ -15,7 +15,7 @@ namespace {
 constexpr double kAlarm = 1e-3;
 constexpr double kComparisons = 13;
 
-/// Whether 2^m points lie one in each of the boxes of every shape 2^-a x 2^-(m-a).
+/// Whether each box of every shape 2^-a x 2^-(m-a) has one of the 2^m points.
 testing::AssertionResult isNet(const std::vector<OwenPair>& points, int m) {
     for (int a = 0; a <= m; ++a) {
         std::set<std::uint64_t> boxes;
@@ -45,7 +45,8 @@ TEST(Owen, reversedBitsComeBack) {
 }
 
 TEST(Owen, theSecondDimensionIsSobols) {
-    // By its direction numbers: 1, 3, 5, 15, 17, 51, .. (each bit of the index adds one).
+    // By its direction numbers: 1, 3, 5, 15, 17, 51, .. (each bit of the index that is set
+    // contributes one).
     std::uint32_t directions[32] = {0x80000000u};
     for (int i = 1; i < 32; ++i) directions[i] = directions[i - 1] ^ directions[i - 1] >> 1;
     Rng rng(1, 0, StreamKind::User, 0);
@@ -77,7 +78,7 @@ TEST(Owen, aNumberIsEvenAlone) {
     }
 }
 
-/// Of `samples` draws in 8 x 8 cells.
+/// The significance of kSamples draws in 8 x 8 cells.
 template <class Draw>
 double evenness(const Draw& draw) {
     constexpr std::uint32_t kSamples = 50'000;
@@ -98,7 +99,7 @@ TEST(Owen, aSinglePointIsUniformOverSeeds) {
                   }),
                   significance)
             << index;
-        // Bits that no box of few points sees.
+        // The bits below those that boxes of few points depend on.
         EXPECT_GT(evenness([&](std::uint32_t seed) {
                       const OwenPair p = owenPair(index, mixBits(seed));
                       return std::pair(p.x << 12, p.y << 12);
@@ -111,7 +112,8 @@ TEST(Owen, aSinglePointIsUniformOverSeeds) {
 TEST(Owen, sequencesKnowNothingOfEachOther) {
     const double significance = sidak(kAlarm, kComparisons);
     constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
-    // The same point of two seeds that are neighbours, and that differ by the steps of dimensions.
+    // The same point of two seeds that are neighbours, or that differ by the step between
+    // dimensions.
     for (const std::uint64_t apart : {std::uint64_t(1), std::uint64_t(2), kStep}) {
         EXPECT_GT(evenness([&](std::uint32_t seed) {
                       return std::pair(owenPair(3, seed).x, owenPair(3, seed + apart).x);
@@ -119,7 +121,7 @@ TEST(Owen, sequencesKnowNothingOfEachOther) {
                   significance)
             << apart;
     }
-    // The same seed's number and pair, over points: how they are ordered is scrambled as well.
+    // Two dimensions of one seed, over points: their orders are scrambled as well.
     EXPECT_GT(evenness([&](std::uint32_t i) {
                   return std::pair(owenPair(i % 64, mixBits(i / 64)).x,
                                    owenNumber(i % 64, mixBits(i / 64) + kStep));

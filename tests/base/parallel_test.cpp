@@ -55,7 +55,7 @@ TEST(ThreadPool, ExceptionsComeThrough) {
         EXPECT_STREQ(e.what(), "index 137");
     }
     EXPECT_THROW(pool.run([] { throw std::logic_error("run"); }), std::logic_error);
-    // The pool is as good as new.
+    // The pool still works.
     std::atomic<int> sum = 0;
     pool.forEach(1000, [&](std::size_t i) { sum += int(i); });
     EXPECT_EQ(sum, 499'500);

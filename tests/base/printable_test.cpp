@@ -1,4 +1,4 @@
-// Names of foreign files as they come into messages.
+// Names out of foreign files, as messages show them.
 #include "libcore/base/printable.h"
 
 #include <gtest/gtest.h>

@@ -117,7 +117,8 @@ TEST(Rng, BelowIsUniform) {
 }
 
 TEST(Rng, NeighbouringStreamsAreIndependent) {
-    // Pairs of (stream i, stream i + 1), and of one stream's neighbours, in 8 x 8 cells.
+    // Pairs of numbers in 8 x 8 cells: of neighbouring streams, kinds and iterations, and of one
+    // stream.
     std::vector<std::uint64_t> across(64), along(64), kinds(64), iterations(64);
     constexpr unsigned kSamples = 50'000;
     const auto cell = [](float a, float b) { return unsigned(a * 8) * 8 + unsigned(b * 8); };

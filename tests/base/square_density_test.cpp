@@ -22,7 +22,8 @@ TEST(SquareDensity, IsUniformByItself) {
 }
 
 TEST(SquareDensity, KnowsItsHalves) {
-    // The left half is a quarter; of the right half, the lower part is three quarters.
+    // The left half has a quarter of the mass. Of the right half's mass, the lower part has three
+    // quarters.
     const SquareDensity d(
         {{0.25f, 1 | kInner}, {1, 0}, {0.75f, 3 | kInner | kSecond}, {1, 1}, {1, 2}});
     EXPECT_EQ(d.leafCount(), 3u);
@@ -75,7 +76,7 @@ TEST(SquareDensity, RefusesWhatIsNoTree) {
     refused({{std::nanf(""), 1 | kInner}, {1, 0}, {1, 1}});
     refused({{0.5f, 1 | kInner}, {1, 0}, {1, 0}});                              // a leaf twice
     refused({{0.5f, 1 | kInner}, {1, 0}, {1, 7}});                              // no such leaf
-    refused({{0.5f, 1 | kInner}, {1, 0}, {1, 1}, {1, 2}});                      // a node of nobody
+    refused({{0.5f, 1 | kInner}, {1, 0}, {1, 1}, {1, 2}});                      // no parent
     refused({{0.5f, 1 | kInner}, {0.5f, 2 | kInner}, {1, 0}, {1, 1}, {1, 2}});  // two parents
     std::vector<Node> deep;
     for (std::uint32_t i = 0; i < 60; ++i) {

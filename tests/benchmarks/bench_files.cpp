@@ -1,4 +1,4 @@
-// What it takes to read a cache of lacuna-train: a thousand subspaces on either side, 4 MB.
+// The time to read a cache of lacuna-train: a thousand subspaces on either side, 4 MB.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>

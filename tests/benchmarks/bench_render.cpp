@@ -52,7 +52,7 @@ class Bench {
     const Scene& scene() const { return scene_; }
     std::size_t pixelCount() const { return pixels_.size(); }
 
-    /// Seconds; rays are added to `traced`.
+    /// Renders one iteration and returns its seconds; adds its rays to `traced`.
     double iterate(std::uint64_t& traced) {
         IterationStatistics statistics;
         const auto start = Clock::now();
@@ -154,7 +154,7 @@ void tolerance(benchmark::State& state, const std::string& file, const MethodRow
     compare(state, "all_over_within", within, all);
 }
 
-/// Peak and stored size of a pool of 10^6 light subpaths.
+/// The size of a pool of 10^6 light subpaths.
 void lightPool(benchmark::State& state, const std::string& file) {
     const ThreadPool pool;
     const Scene scene(loadGltf(file), pool);

@@ -70,7 +70,8 @@ TEST(Blocks, drawNumbersOfTheirOwnInWarmUpsToo) {
         SCOPED_TRACE(size);
         const Seen seen = seenBy(*scene, size, {0, 1, 2, 3});
         ASSERT_EQ(seen.generations.size(), 4 * (2 + size));
-        // One after the other, so that the first block is what there was before there were blocks.
+        // Blocks use one generation after the other, so that the first block is that of a render
+        // without blocks.
         for (std::uint32_t i = 0; i < seen.generations.size(); ++i) {
             EXPECT_EQ(seen.generations[i], i);
         }

@@ -1,5 +1,5 @@
-// What the estimate of a picture's error says, against errors that are known: iterations are drawn
-// from distributions whose means are known, so that the truth is a sum over the pixels.
+// The estimate of a picture's error, against the true error: iterations are drawn from distributions with known means,
+// so that the truth is a sum over the pixels.
 #include "libcore/bidir/error_estimate.h"
 
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@ namespace {
 
 constexpr int kWidth = 96, kHeight = 64;
 
-/// A surface of one kind from edge to edge.
+/// The features of one surface that fills the picture.
 FeatureLayers even(int width, int height) {
     return {Image(width, height, Rgb(0.5f)), Image(width, height, Rgb(0.0f, 1.0f, 0.0f)), {}};
 }
 
-/// What a pixel is in an iteration, around a mean of one.
+/// Draws a pixel's value in an iteration, with a mean of one.
 using Draw = std::function<float(Rng&)>;
 
 float normal(Rng& rng) {
@@ -32,8 +32,7 @@ float normal(Rng& rng) {
     return std::sqrt(-2.0f * std::log(1.0f - u)) * std::cos(6.2831853f * v);
 }
 
-/// Noise of standard deviation `sigma` with a spike in one of 1 / p draws that holds `share` of all
-/// light.
+/// Noise of standard deviation `sigma`, with a spike in one of 1 / p draws; spikes hold `share` of all light.
 Draw noise(float sigma, float share = 0.0f, float p = 1.0f) {
     return [=](Rng& rng) {
         const float spike = rng.uniform() < p ? share / p : 0.0f;
@@ -52,8 +51,8 @@ ErrorMeasures errorOf(const FilmSum& sum) {
     return reference.compare(sum.image(kWidth, kHeight));
 }
 
-/// The picture after `iterations`, each pixel drawn by itself and `shared`, if there is one, added
-/// to bands of 32 columns of an iteration's pixels.
+/// The estimate and the truth after `iterations`. Each pixel is drawn by itself. `shared`, if there is one, adds a
+/// number to each band of 32 columns of an iteration's pixels.
 Said said(int iterations, std::uint64_t seed, const Draw& draw, const Draw& shared = {},
           BlockPlan plan = {}) {
     const ThreadPool threads(1);
@@ -80,15 +79,15 @@ TEST(ErrorEstimate, meetsTheErrorOfNoise) {
         const Said s = said(n, 1, noise(0.7f));
         EXPECT_EQ(s.estimate.mape.doubt, "");
         EXPECT_EQ(s.estimate.rmse.doubt, "");
-        // What is said stands above the truth by the margin and 3 % of statistics.
+        // The estimate stands above the truth by its margin and by 3 % for statistics.
         EXPECT_NEAR(s.ratio(), 0.94, 0.04);
         EXPECT_NEAR(s.truth.rmse / s.estimate.rmse.error, 0.94, 0.04);
         EXPECT_NEAR(s.truth.relmse / s.estimate.relmse.error, 0.93, 0.07);
     }
 }
 
-// Halves of a sequence are further apart than their mean is from the truth: an edge through the pixel,
-// alone and beside noise that no numbers make even.
+// Halves of a sequence differ by more than their mean is off. Here the integrand is an edge through the pixel, alone
+// and beside noise that no numbers make even.
 TEST(ErrorEstimate, meetsTheErrorOfEvenNumbers) {
     const ThreadPool threads(1);
     const ErrorMeter meter(even(kWidth, kHeight));
@@ -116,8 +115,8 @@ TEST(ErrorEstimate, meetsTheErrorOfEvenNumbers) {
     }
 }
 
-// Two halves show half of what spikes cost of which a pixel has none or one: without the model the
-// error would be twice what is said.
+// If a pixel has one spike or none, two halves show half of what spikes cost. Without the model the error would be
+// twice the estimate.
 TEST(ErrorEstimate, isNeverFarBelowTheErrorOfRareSpikes) {
     for (const float np : {0.05f, 0.2f, 0.5f, 1.0f, 2.5f, 5.0f, 20.0f}) {
         for (const float sigma : {0.1f, 1.0f}) {
@@ -130,7 +129,7 @@ TEST(ErrorEstimate, isNeverFarBelowTheErrorOfRareSpikes) {
     }
 }
 
-// One number for a third of the picture: what one pair of halves says may be anything.
+// Each third of the picture shares one number, so that a single pair of halves may say anything.
 TEST(ErrorEstimate, allowsForErrorsThatPixelsShare) {
     int above = 0;
     double ratios = 0.0;
@@ -157,7 +156,7 @@ TEST(ErrorEstimate, saysNothingOfIterationsThatShareLightPaths) {
 }
 
 TEST(ErrorEstimate, doubtsWhereFewPixelsCarryTheError) {
-    // One spike of all that there is to see: a few thousandths of the light, most of its square.
+    // About one spike in the whole picture: it has a hundredth of the light, but most of its square.
     const Said s = said(64, 7, noise(0.01f, 0.01f, 3e-6f));
     EXPECT_NE(s.estimate.relmse.doubt, "");
     EXPECT_NE(s.estimate.rmse.doubt, "");
@@ -218,8 +217,8 @@ TEST(ErrorEstimate, isMadeAtSetTimes) {
                                                  48, 56, 64, 80, 96}));
 }
 
-/// Where the window meets another surface it does not look at it: beside a lamp of a hundred the
-/// wall's error is relative to the wall.
+/// The window does not look at pixels of another surface: beside a lamp of 100 the wall's error is relative to the
+/// wall.
 TEST(ErrorEstimate, looksAtPixelsThatShowTheSame) {
     const ThreadPool threads(1);
     FeatureLayers features = even(64, 64);

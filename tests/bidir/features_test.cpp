@@ -1,4 +1,4 @@
-// The layers albedo, normal, Z and position: what they are of, over mirrors and through glass.
+// The layers albedo, normal, Z and position: what they show over mirrors and through glass.
 #include "libcore/bidir/features.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ void expectNear(const Rgb& value, const Rgb& expected, float error = 1e-4f) {
     EXPECT_NEAR(value.b, expected.b, error);
 }
 
-/// A large square at this z, front towards +z.
+/// A large square at this z. Its front is towards +z, or towards -z if it is `turned`.
 Mesh wall(float z, std::uint32_t material, bool turned = false) {
     return turned ? quad({-50, -50, z}, {0, 100, 0}, {100, 0, 0}, material)
                   : quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
@@ -86,7 +86,8 @@ TEST(Features, EndWhereNothingElseIsSeen) {
     }
 }
 
-/// Of a mirror that shows nothing as well: what meets nothing is nothing, in every layer.
+/// Where a ray meets nothing, every layer is zero. Where a mirror shows nothing, albedo and normal
+/// are zero as well.
 TEST(Features, AreZeroWhereNothingIs) {
     SceneBuilder b;
     b.add(quad({-50, -50, -2}, {50, 0, 0}, {0, 100, 0}, b.add(mirror())));
@@ -103,7 +104,7 @@ TEST(Features, AreZeroWhereNothingIs) {
     }
 }
 
-/// As Open Image Denoise asks for them, where every kind of lobe is seen.
+/// The ranges that Open Image Denoise asks for, with every kind of lobe in view.
 TEST(Features, LieInTheRangesOfDenoisers) {
     SceneBuilder b;
     lacuna::Material shiny = plastic(Rgb(1.0f), 0.3f);
@@ -126,7 +127,8 @@ TEST(Features, LieInTheRangesOfDenoisers) {
     }
 }
 
-/// Far from the file's origin, by any number of threads, in a crop as in the whole.
+/// A pixel's features are the same far from the file's origin, by any number of threads, and in a
+/// crop as in the whole.
 TEST(Features, OfAPixelAreItsOwn) {
     SceneBuilder b;
     b.add(box({999, -61, -1}, {1061, 60, 0}, b.add(glass(1.5f))));

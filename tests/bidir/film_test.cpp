@@ -1,4 +1,4 @@
-// What a film says of its iterations: sums, and the spread that every z-test is as good as.
+// What a film says of its iterations: sums, and the spread on which every z-test depends.
 #include "libcore/bidir/technique_film.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ constexpr int kPixels = 3;
 std::vector<Rgb> iterationPixels(std::uint64_t number) {
     Rng rng(9, std::uint32_t(number), StreamKind::User, 0);
     std::vector<Rgb> pixels(kPixels);
-    // Over many orders of magnitude, so that every other order of sums would show.
+    // Over many orders of magnitude, so that any other order of summation would show.
     const auto value = [&] { return std::pow(10.0f, 8.0f * rng.uniform() - 4.0f); };
     for (Rgb& p : pixels) p = {value(), value(), 0.25f};
     return pixels;
@@ -177,8 +177,8 @@ TEST(Film, whereNumbersAreEvenGroupsAreTheSamples) {
     EXPECT_EQ(blocks.sum().samples, 5u);
 }
 
-// One group alone: 1, 2, 4 spread about 7/3 as if they were independent. Beside another one that is
-// forgotten. Iterations that share light paths may be closer than that, so that nothing is said.
+// A single group: 1, 2, 4 spread about 7/3 as if they were independent. With a second group this is forgotten.
+// Iterations that share light paths may be closer than that, so that nothing is said.
 TEST(Film, aSingleGroupTellsByItsIterations) {
     const ThreadPool threads(1);
     const auto filmOf = [&](BlockPlan plan, std::initializer_list<float> values) {
@@ -225,7 +225,7 @@ TEST(Film, layersAreMeansOverAllBlocks) {
     EXPECT_FLOAT_EQ(film.finalState(threads).open[0].sum->layers.at("a.R")[0], 6.0f);
 }
 
-// Sums of floats would be infinite, and so would squares.
+// Sums in floats would overflow, and so would squares.
 TEST(Film, holdsThePowersThatAFloatHolds) {
     const ThreadPool threads(1);
     for (const float unit : {1e-37f, 1e37f}) {
@@ -237,7 +237,8 @@ TEST(Film, holdsThePowersThatAFloatHolds) {
     }
 }
 
-// A day's render: sums of floats would stand still long before. Red is one and noise, green is rare, blue never changes.
+// A day's render: sums in floats would stop growing long before its end. Red is one and noise, green is rare, blue
+// never changes.
 TEST(Film, aMillionIterationsAreSummedAsTheFirstOnes) {
     const ThreadPool threads(1);
     constexpr int kIterations = 1'000'000;
@@ -301,8 +302,8 @@ TEST(TechniqueFilm, isAMeanOverIterationsAndKnowsTheShareOfFirstConnections) {
     EXPECT_EQ(image.channel("share.t02")[1], 0.0f);
 }
 
-/// Joined as films join them: `blocks` of iterations, in each of which technique s = 2, t = 3 adds a
-/// value in two halves, behind a mirror, and s = 3, t = 2 one more of the same group.
+/// Layers as films join them. In each iteration of the `blocks`, technique s = 2, t = 3, behind a mirror, adds a value
+/// in two halves, and s = 3, t = 2 adds one more to the same group.
 Layers layersOf(const std::vector<std::vector<float>>& blocks, bool blocksAreSamples) {
     const BlockPlan plan{blocks[0].size(), blocksAreSamples};
     TechniqueFilm technique(1, 1, 4, plan.sampleIterations());
@@ -354,7 +355,7 @@ TEST(LightProducts, areTheCovariancesOfSamples) {
         second{5, 4, 0, 1, 4, 2, 2, 0, 1, 6};
     constexpr std::uint64_t kBlock = 5;
     LightProducts products(2, 1, 2);
-    /// As a film keeps them.
+    /// Gives the products to a film as layers.
     class Kept final : public BlockLayers {
       public:
         explicit Kept(LightProducts& of) : of_(of) {}

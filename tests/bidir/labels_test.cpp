@@ -1,5 +1,5 @@
-// The labels that a density sees at the ends of a connection, whichever strategy closed the path:
-// those that walks would have given them that came by this very path.
+// The labels that a density sees at the ends of a connection. Whichever strategy closed the path,
+// they are those that walks along this very path would have.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace lacuna::test {
 namespace {
 
-/// Knows a vertex by its place and that of its predecessor, and notes what it is asked about.
+/// Labels a vertex by its place and its predecessor's, and counts what it is asked about.
 class LabelsOfPlaces final : public ConnectionDensity {
   public:
     bool keepsLabels() const override { return true; }
@@ -39,7 +39,7 @@ class LabelsOfPlaces final : public ConnectionDensity {
 
     struct Asked {
         int known = 0, wrong = 0;
-        int unknown = 0;       ///< but for z_1 and y_0
+        int unknown = 0;       ///< except z_1 and y_0
         int unknownFirst = 0;  ///< z_1 or y_0
     };
     mutable Asked asked;
@@ -84,7 +84,7 @@ TEST(Labels, areThoseOfAWalkThatCameThisWay) {
     for (std::uint64_t n = 0; n < 400; ++n) {
         Rng rng(61, 0, StreamKind::User, n);
         walker.traceLight(rng, tally, lightPath);
-        // Every other one by way of the lamp, from where it may go on.
+        // Every other eye walk goes by way of the lamp, from where it may go on.
         walker.traceEye({0.16f * float(n), n % 2 == 0 ? 10.0f : 24.0f}, rng, tally, eyePath);
         counts[kHit].labelWalk(lightPath);
         counts[kHit].labelWalk(eyePath);
@@ -117,8 +117,9 @@ TEST(Labels, areThoseOfAWalkThatCameThisWay) {
         EXPECT_EQ(asked.wrong, 0);
         EXPECT_GT(asked.known, 20);
         EXPECT_EQ(asked.unknown, 0);
-        // What a walk of the other side ended on has no predecessor in this role: y_0 of a hit, z_1
-        // of a splat. A connection's ends are looked up for it.
+        // If only a walk of the other side came to an end of the connection, that end has no
+        // predecessor in this role: y_0 of a hit, z_1 of a splat. labelEnds() looks the ends of
+        // connections up.
         EXPECT_EQ(asked.unknownFirst > 0, kind != kConnection);
     }
 }

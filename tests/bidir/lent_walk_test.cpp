@@ -1,4 +1,4 @@
-// Walks that pixels lend each other: what a borrower gets, and how those who could have gone one way share it.
+// Walks that pixels lend each other: what a borrower gets, and how the pixels that could have gone one way share it.
 #include "libcore/bidir/lent_walk.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr int kDepth = 6;
 struct Walks {
     explicit Walks(const Scene& s) : scene(s), camera(s.makeCamera("", {64, 48}, {})) {}
 
-    /// f(walk, h, n) for 400 walks, those that lend from their z_h on.
+    /// Calls f(walk, h, n) for those of 400 walks that can be lent, from their z_h on.
     template <class F>
     void forEachLent(const F& f) {
         for (std::uint64_t n = 0; n < 400; ++n) {
@@ -45,7 +45,7 @@ void expectAlike(const Rgb& a, const Rgb& b) {
     EXPECT_NEAR(a.b, b.b, allowed);
 }
 
-/// Nobody else sees its second vertex: it stays what it was.
+/// No other pixel sees the vertex after z_h: the walk stays what it was.
 TEST(LentWalk, aloneIsTheWalkItself) {
     const auto scene = room(4);
     Walks walks(*scene);
@@ -58,7 +58,7 @@ TEST(LentWalk, aloneIsTheWalkItself) {
         walk.take(0, walk.lastEnd(), taken);
         ASSERT_EQ(taken.size(), walk.lastEnd());
         for (std::size_t i = 0; i < taken.size(); ++i) {
-            const bool last = i + 2 > taken.size();  // its other density is of what it is joined to
+            const bool last = i + 2 > taken.size();  // its reverse density is still open
             expectAlike(taken[i].throughput, own[i].throughput);
             EXPECT_NEAR(taken[i].pdfA, own[i].pdfA, 1e-4 * double(own[i].pdfA));
             if (last || i + 2 == taken.size()) continue;
@@ -70,7 +70,7 @@ TEST(LentWalk, aloneIsTheWalkItself) {
     EXPECT_GT(lent, 100);
 }
 
-/// Of two who see it: arriving light over the sum of both densities, for both.
+/// If two pixels see the vertex, both get the arriving light over the sum of both densities.
 TEST(LentWalk, isASampleOfAllWhoCouldHaveGoneIt) {
     const auto scene = room(4);
     Walks walks(*scene);

@@ -14,7 +14,7 @@ namespace {
 /// A sheet of one unit per pixel, from x0 to x1 of a picture of 16 x 16 pixels.
 void addSheet(SceneBuilder& b, float x0, float x1, float z, const std::string& name,
               std::uint32_t material) {
-    const float s = (8 - z) / 8;  // as large as at z = 0
+    const float s = (8 - z) / 8;  // so that it looks as large as at z = 0
     b.add(quad({(x0 - 8) * s, -20, z}, {(x1 - x0) * s, 0, 0}, {0, 40, 0}, material));
     if (name.empty()) return;
     b.d.instances.back().nodeName = std::uint32_t(b.d.nodeNames.size());
@@ -42,7 +42,7 @@ TEST(Mattes, AreSharesOfThePixel) {
     const auto redOne = b.add(red), veilOne = b.add(veil);
     addSheet(b, 2.25f, 5, 0, "left", redOne);
     addSheet(b, 5, 7.5f, 0, "right", redOne);
-    addSheet(b, 7.5f, 9, 0, "right", 0);  // of the same name, without a material's
+    addSheet(b, 7.5f, 9, 0, "right", 0);  // the same object's name, no material's
     addSheet(b, 9, 12, 0, "", veilOne);
     addSheet(b, 11, 16, -1, "behind", redOne);
     addSheet(b, 3, 4, 1, "window", b.add(window));
@@ -57,7 +57,7 @@ TEST(Mattes, AreSharesOfThePixel) {
     using Shares = std::map<std::string, double>;
     const std::size_t row = 8 * 16;
     EXPECT_EQ(covers(mattes.objects, row + 0), Shares{});
-    EXPECT_NEAR(covers(mattes.objects, row + 2)["left"], 0.75, 1e-6);   // strata know it exactly
+    EXPECT_NEAR(covers(mattes.objects, row + 2)["left"], 0.75, 1e-6);   // strata make it exact
     EXPECT_EQ(covers(mattes.objects, row + 3), (Shares{{"left", 1}}));  // through the window
     EXPECT_EQ(covers(mattes.objects, row + 7), (Shares{{"right", 1}}));
     EXPECT_NEAR(covers(mattes.materials, row + 7)["red"], 0.5, 1e-6);
@@ -70,7 +70,7 @@ TEST(Mattes, AreSharesOfThePixel) {
     EXPECT_NEAR(veiled, 0.5, 0.08);
     EXPECT_NEAR(veiled + behind, 1, 1e-6);
 
-    // In a crop as in the whole.
+    // A crop has the same covers as the whole.
     const Mattes part = renderMattes(*scene, camera, {9, 13, 4, 6}, 1, ThreadPool(1));
     for (std::size_t i = 0; i < part.objects.pixels.size(); ++i) {
         const std::size_t j = (4 + i / 4) * 16 + 9 + i % 4;

@@ -1,4 +1,4 @@
-// Photons by place against all of them asked one by one.
+// The grid of photons, against all of them asked one by one.
 #include "libcore/bidir/photon_grid.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::vector<PathVertex> clumps(int count, float size) {
     return vertices;
 }
 
-/// Every third is left out of the grid.
+/// All vertices but every third: the grid must leave those out.
 std::vector<std::uint32_t> photonsOf(const std::vector<PathVertex>& vertices) {
     std::vector<std::uint32_t> photons;
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(PhotonGrid, answersInOneOrderWhateverTheQuestion) {
     EXPECT_EQ(found, photons);
 }
 
-/// The k-th root of a radius's photons: their share of all falls like i^(alpha - 1).
+/// The merging area falls like i^(alpha - 1), with alpha = 3/4 and i over the iterations of all blocks.
 TEST(Merging, radiiShrinkByTheIterationsOfAllBlocks) {
     EXPECT_EQ(mergeRadius(0.5, 0), 0.5);
     EXPECT_NEAR(mergeRadius(0.5, 255), 0.25, 1e-12);  // 256^(-1/8)
@@ -114,7 +114,7 @@ TEST(Merging, takesPhotonsOfTheSameSideOfAboutTheSamePlane) {
     EXPECT_TRUE(onSameSurface(surface(normalize(Vec3{0, 0.5f, 1}), from), eye));
     EXPECT_FALSE(onSameSurface(surface(-up, from), eye));  // a sheet's other face
     EXPECT_FALSE(onSameSurface(surface(normalize(Vec3{0, 2, 1}), from), eye));
-    // It came along the one surface and would come from behind the other.
+    // The photon came along one surface, and would come from behind the other.
     EXPECT_FALSE(onSameSurface(surface(up, normalize(Vec3{1, 0, 0.1f})),
                                surface(normalize(Vec3{-0.5f, 0, 1}), up)));
 }

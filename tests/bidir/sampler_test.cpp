@@ -1,5 +1,5 @@
-// What streams are even with, and what they know nothing of. False alarms: 1e-3 over all comparisons
-// of this file, for fixed seeds.
+// Which numbers of streams are even together, and which are independent. False alarms: 1e-3 over all comparisons of
+// this file, for fixed seeds.
 #include "libcore/bidir/sampler.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(Sampler, independentStreamsAreThoseThatTheyAlwaysWere) {
     const Rng::Draw draw = plain.draw();
     const std::vector<float> expected{u1, u2, one, float(pick), float(draw.pick), draw.u1, draw.u2};
     EXPECT_EQ(drawn(kIndependent.stream(5, StreamKind::EyePath, 17), 0), expected);
-    // Beyond the even dimensions, and of kinds that have none, these are the numbers as well.
+    // Beyond the even dimensions, and for kinds that have none, streams of the sequence give the same numbers.
     EXPECT_EQ(drawn(kSobol.stream(5, StreamKind::EyePath, 17), 1000), expected);
     EXPECT_EQ(drawn(kSobol.stream(5, StreamKind::Warmup, 17), 0),
               drawn(kIndependent.stream(5, StreamKind::Warmup, 17), 0));
@@ -89,7 +89,7 @@ TEST(Sampler, allIterationsAreEven) {
     }
 }
 
-/// Of pairs of numbers in 8 x 8 cells.
+/// Expects pairs of numbers to be independent, in 8 x 8 cells.
 template <class Pair>
 void expectIndependent(const char* what, const Pair& pair) {
     constexpr std::uint32_t kSamples = 40'000;

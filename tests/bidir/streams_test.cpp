@@ -1,6 +1,6 @@
-// What a pixel draws its eye path, its own light path and its picks by has nothing in common.
-// (A pick that knows its eye path's numbers is biased wherever the two agree on what is bright, and
-// looks right everywhere else.)
+// A pixel draws its eye path, its own light path and its picks by independent numbers. (A pick that
+// knows its eye path's numbers is biased wherever the two agree on what is bright, and looks right
+// everywhere else.)
 #include <gtest/gtest.h>
 
 #include <array>
@@ -58,7 +58,7 @@ class NotesNumbers final : public Method {
     OneSample density_;
 };
 
-/// Standard normal where the columns are independent.
+/// The correlation times the root of n: standard normal if the columns are independent.
 double correlation(const Column& a, const Column& b) {
     const auto n = double(a.values.size());
     double meanA = 0, meanB = 0;

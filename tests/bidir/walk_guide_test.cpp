@@ -62,7 +62,7 @@ TEST(DirectionSquare, DrawsWithTheDensityThatItTells) {
     }
 }
 
-/// What a walk draws at a vertex, and what is told of it: by BSDF, guide, and a delta event beside them.
+/// A walk draws by BSDF, guide, and a delta event beside them: the densities that it stores must be those.
 TEST(WalkGuide, WalksGoOnWithTheDensityThatIsToldOfThem) {
     const auto scene = room(4);
     const Camera camera = scene->makeCamera("", {4, 4}, {});
@@ -139,7 +139,7 @@ TEST(WalkGuide, RefusesWhatIsNoTree) {
     refused(with({leaf, leaf}, inner(6, 4)), {even});  // no such number
     refused(with({leaf, leaf}, inner(0, 0)), {even});  // its own child
     refused(with({leaf, leaf}, inner(0, 5)), {even});  // half of it missing
-    refused(with({leaf, leaf}, leaf), {even});         // nodes of nobody
+    refused(with({leaf, leaf}, leaf), {even});         // nodes without a parent
     refused(with({leaf, leaf}, inner(0, 4, std::nanf(""))), {even});
     refused(with({inner(0, 4), leaf}, inner(0, 4)), {even});  // two parents
     WalkGuide::Region wild = even;

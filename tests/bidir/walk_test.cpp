@@ -1,4 +1,4 @@
-// Walks that go on together (Walker::finish) against each of them alone.
+// Walks that go on together (Walker::finish), against each of them traced alone.
 #include "libcore/bidir/walk.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(Walker, TogetherAsAlone) {
                     walker.traceLight(rngsAlone[i], alone, path);
                 }
                 expectSame(paths[i], path);
-                EXPECT_EQ(rngs[i].bits(), rngsAlone[i].bits());  // what comes next, too
+                EXPECT_EQ(rngs[i].bits(), rngsAlone[i].bits());  // the next numbers agree, too
                 longest = std::max(longest, path.size());
             }
             EXPECT_GT(longest, 4u);
