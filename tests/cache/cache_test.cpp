@@ -158,7 +158,7 @@ TEST(Cache, damagedFilesAreRefused) {
     expectRefused(read, "no file");
 }
 
-/// Two processes that prepare the same: the file of one never lies beside the checksum of the other.
+/// Two writers of one path: the file of one never lies beside the checksum of the other.
 TEST(Cache, pairsOfTwoWritersFitTogether) {
     const Directory d;
     const std::string path = d.file("pair.vdb");
@@ -174,7 +174,7 @@ TEST(Cache, pairsOfTwoWritersFitTogether) {
     EXPECT_NO_THROW(readGuarded(path, "do it again"));
 }
 
-/// Every input is part of the name; a newline in a value is none of the stamp's text.
+/// Every input is a part of the file's name; a newline in a value starts no line of the stamp's text.
 TEST(CacheStamps, inputsTellFilesApart) {
     std::set<std::string> names{cacheFile("d", kVoxelStamp, "x")};
     for (const auto& [name, value] : kVoxelStamp.inputs) {
@@ -190,7 +190,7 @@ TEST(CacheStamps, inputsTellFilesApart) {
     EXPECT_EQ(back.inputs.size(), 4u);
     EXPECT_EQ(back.inputs.at("scene"), "0123abc");
     EXPECT_EQ(back.inputs.at("camera"), "1 a=b scene=c");
-    // Hashes are not for reading; what one side lacks is said.
+    // Messages do not show hashes, and say what one side lacks.
     const std::string hash(32, 'a'), other(32, 'b');
     EXPECT_EQ(differencesText({{{"scene", hash}}}, {{{"scene", other}}}),
               "scene (of another content)");

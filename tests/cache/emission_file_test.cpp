@@ -54,7 +54,7 @@ TEST_F(EmissionFiles, areRefusedWhereAByteIsWrongOrMissing) {
     expectRefused("another scene", other);
 }
 
-/// With a checksum that is right: what a program with a fault may have written.
+/// The checksums are right: a program with a fault may have written such files.
 TEST_F(EmissionFiles, areRefusedWhereTheirPartsDoNotFit) {
     const auto refused = [&](const char* what, const auto& spoil) {
         auto guide = exampleGuide();

@@ -57,7 +57,7 @@ TEST_F(SubspaceFiles, damagedOnesAreRefused) {
     expectRefused("no file");
 }
 
-/// And what differs is said.
+/// The message says what differs.
 TEST_F(SubspaceFiles, foreignOnesAreRefused) {
     writeSubspaceFile(path(), example(5, 3));
     CacheStamp other = kStamp;

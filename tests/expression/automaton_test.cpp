@@ -20,7 +20,8 @@ Automaton compiled(const std::string& text, const Alphabet& alphabet = twoObject
     return Automaton(parseExpression(text, text).root, alphabet, text);
 }
 
-/// A character of its own for each event: the camera, scattering, lights.
+/// All events, each of which has a character of its own in regular expressions: the camera,
+/// scattering, lights.
 std::vector<VertexEvent> allEvents(const Alphabet& alphabet) {
     std::vector<VertexEvent> all{VertexEvent{}};
     all.insert(all.end(), alphabet.scattering.begin(), alphabet.scattering.end());

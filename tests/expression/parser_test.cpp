@@ -1,4 +1,4 @@
-// What is no light path expression is refused at its character.
+// Texts that are no light path expression are refused, with the position of the character.
 #include <gtest/gtest.h>
 
 #include "libcore/base/error.h"
@@ -52,7 +52,7 @@ TEST(ExpressionParser, PointsAtTheCharacter) {
                   "position 3: expected a number from 0 to 1000, found \"9\"");
     expectRefused("C{3,2}", "position 5: expected a number from 3 to 1000, found \"2\"");
     expectRefused("C{3", "position 4: expected }, found the end");
-    // Of characters, not of bytes.
+    // Positions count characters, not bytes.
     expectRefused(
         "C'M\xc3\xb6"
         "bel'\xc3\xa4",

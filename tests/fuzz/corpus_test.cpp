@@ -1,5 +1,5 @@
-// Every parser reads the files that the fuzzer starts from, and what it made of them (corpus/), and those
-// with damage at random: the fuzzer itself is run by hand.
+// Every parser reads the files that the fuzzer starts from, the same with damage at random, and what the fuzzer found
+// (corpus/). The fuzzer itself runs by hand or at night.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -52,7 +52,7 @@ openvdb::MetaMap metaOf(Source& source, const char* kind) {
     return meta;
 }
 
-/// Voxels with values, some where the grid should have none; the next value may be a whole tile.
+/// Voxels with values, some where the grid should have none. A value may fill a whole tile.
 template <class GridType>
 typename GridType::Ptr gridOf(Source& source, const char* name) {
     auto grid = GridType::create();
@@ -92,7 +92,7 @@ bool acceptsSkeleton(Bytes bytes) {
     const auto node = gridOf<openvdb::Int32Grid>(source, "node");
     return acceptsGrids({node}, meta, [](const std::string& path) {
         const SkeletonFile file = readSkeletonFile(path, kStamp, {}, "make it again");
-        // Wherever one looks, there is a node of the skeleton or none.
+        // At any place the map names a node of the skeleton or none.
         for (const double x : {-1e30, -1.0, 0.0, 0.5, 1.0, 3.0, 1e30}) {
             const std::uint16_t found = file.skeleton.map.at({x, x, x}, {0, 0, 1});
             if (found != NodeMap::kNone && found >= file.skeleton.nodes.size()) {

@@ -1,4 +1,4 @@
-// What packs parts of a scene, in a scene that is otherwise sound: the fuzzer need not find the way to it.
+// Packed parts of a scene that is otherwise sound, so that the fuzzer need not find the way to them.
 #include "tests/fuzz/parsers.h"
 #include "tests/gltf/everything.h"
 #include "tests/gltf/packed.h"

@@ -61,7 +61,7 @@ void scenes(const fs::path& folder) {
     write(folder / "files.gltf", withFilesBesideIt());
 }
 
-/// Streams alone, as packed_streams.cpp has them.
+/// Streams alone, as packed_streams.cpp reads them.
 void packed(const fs::path& folder) {
     write(folder / "draco" / "edgebreaker",
           textOf(dracoStream(GridBuilder(2), 0, {true, 10, true})));
@@ -114,7 +114,7 @@ LayeredImage smallPicture() {
     return image;
 }
 
-/// Of one block, and another that is begun.
+/// A part of one block.
 Part smallPart() {
     const auto sum = [] {
         auto made = std::make_shared<FilmSum>();
@@ -171,7 +171,7 @@ void caches(const fs::path& folder) {
     write(pair, sidecar + '\0' + "some bytes");
     fs::remove(pair.string() + ".xxh3");
 
-    // A grid of 2 x 2 x 2, one node, no edge, one voxel of it (grids.cpp takes them from here).
+    // A grid of 2 x 2 x 2, one node, no edge, and one voxel, in the order in which grids.cpp reads them.
     std::string grid;
     const auto put = [&](const auto& value) {
         grid.append(reinterpret_cast<const char*>(&value), sizeof value);

@@ -28,7 +28,7 @@ const Parser& chosen() {
     std::exit(2);
 }
 
-/// What an input may have allocated at one time: so much, and so much for each of its bytes. Half of it is for
+/// What an input may have allocated at one time: so much, and so much more for each of its bytes. Half of it is for
 /// what is unpacked.
 constexpr std::int64_t kFreeBytes = 2 * kUnpackedFree, kBytesPerByte = 2 * kUnpackedPerByte;
 

@@ -23,7 +23,7 @@ struct Asset {
     bool isGlb = false;
 };
 
-/// Empty for what is no glTF. Without what lies deeper than in any sound file.
+/// Empty for what is no glTF. Leaves out what is nested deeper than in any sound file.
 std::optional<Asset> read(Bytes bytes) {
     constexpr std::size_t kHeaders = 20,
                           kHeader = 8;  // of the file and its first chunk; of the next
@@ -45,7 +45,7 @@ std::optional<Asset> read(Bytes bytes) {
     return asset;
 }
 
-/// Those of `value` and all below it that `suits(value, key)`.
+/// Collects those of `value` and all below it for which `suits(value, key)` holds.
 template <class Suits>
 void collect(json& value, const Suits& suits, Values& all, const std::string& key = "") {
     if (suits(value, key)) all.push_back(&value);
@@ -65,7 +65,8 @@ const json& edge(Rng& rng) {
     return oneOf(kEdges, rng);
 }
 
-/// Another number, an index, another type (null is what writers have for NaN), or what stands elsewhere.
+/// Replaces a value: by another number, an index, another type (null is what writers have for NaN), or what stands
+/// elsewhere.
 void changeValue(json& document, Rng& rng) {
     static const json kTypes[] = {nullptr, true, 1, "a", json::array(), json::object()};
     const bool isNumber = rng() % 2 == 0;
@@ -77,7 +78,7 @@ void changeValue(json& document, Rng& rng) {
     *oneOf(values, rng) = oneOf(choices, rng);
 }
 
-/// An element or a key goes, or is there once more: a key in place of another one, or elsewhere.
+/// Removes an element or a key, or copies it: a key in place of another one, or elsewhere.
 void changeMembers(json& document, Rng& rng) {
     const auto type = rng() % 2 == 0 ? json::value_t::array : json::value_t::object;
     Values containers;
@@ -99,7 +100,7 @@ void changeMembers(json& document, Rng& rng) {
     }
 }
 
-/// Where data lies and how much of it: more of it, mostly.
+/// Changes where data lies or how much of it there is: to more, mostly.
 void changeExtent(json& document, Rng& rng) {
     static const std::string kKeys[] = {"count", "byteOffset", "byteLength", "byteStride"};
     const auto suits = [](const json& v, const std::string& key) {
@@ -114,7 +115,7 @@ void changeExtent(json& document, Rng& rng) {
     extent = oneOf(choices, rng);
 }
 
-/// In place; the new size, or 0 where nothing is to be changed so.
+/// Changes the file in place. Returns the new size, or 0 where nothing is to be changed so.
 std::size_t changeAsset(std::uint8_t* data, std::size_t size, std::size_t maxSize, Rng& rng) {
     std::optional<Asset> asset = read({data, size});
     if (!asset) return 0;
