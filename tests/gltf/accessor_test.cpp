@@ -159,7 +159,7 @@ std::vector<std::vector<float>> rowsOf(const Mesh& mesh, const std::string& name
     return rows;
 }
 
-/// Integers of all sizes the type has, their ends among them; none of them zero.
+/// Integers of all sizes that the type has, its limits among them; none is zero.
 template <class T>
 std::vector<T> integers(std::size_t n, std::uint32_t seed) {
     constexpr T most = std::numeric_limits<T>::max(), least = std::numeric_limits<T>::min();
@@ -171,7 +171,7 @@ std::vector<T> integers(std::size_t n, std::uint32_t seed) {
     return values;
 }
 
-/// The integers of `row` as glTF 2.0, 3.6.2.3 says, and as the description keeps them.
+/// The values of `row` by glTF 2.0, 3.6.2.3, as the description keeps them.
 template <class T>
 std::vector<float> expectedRow(const IntegerAttribute& a, const T* row, bool normalized) {
     std::vector<float> expected;
@@ -185,8 +185,9 @@ std::vector<float> expectedRow(const IntegerAttribute& a, const T* row, bool nor
     return expected;
 }
 
-/// Seven vertices of which the mesh uses all or three, five of them overwritten or (`base`: false)
-/// there at all. Of the three one is not, and the one before it is, which must not matter.
+/// Seven vertices, of which the mesh uses all or three. Sparse values overwrite five of them;
+/// without a `base` the others are zero. One of the three is not overwritten, but the vertex before
+/// it is, which must not matter.
 template <class T>
 void expectSparseIntegers(const IntegerAttribute& a, bool normalized, bool base, bool parts) {
     SCOPED_TRACE(std::string(a.name) + " of " + std::to_string(a.components) +
@@ -377,7 +378,7 @@ TEST(Accessor, SparseRangesAreChecked) {
                       s["indices"]["componentType"] = 5125;
                   }),
                   {"indices below 3", "131072"});
-    // The first that is not there.
+    // The first vertex that does not exist.
     TriangleBuilder b;
     const json s = sparse(b, {0, 3}, bytesOf<float>({0, 0, 0, 0, 1, 0}));
     b.root["accessors"][0]["sparse"] = s;
@@ -425,7 +426,7 @@ TEST(Accessor, WithoutDataItCannotAskForMuch) {
     expectRefused(c, {"accessor[1] invalid bufferView"});
 }
 
-/// Sums are bounded: many primitives may ask for a little each.
+/// Sums are bounded, since many primitives may ask for a little each.
 TEST(Accessor, ManyThatAskForALittleAskForMuch) {
     TriangleBuilder b;
     b.root["accessors"][0].erase("bufferView");

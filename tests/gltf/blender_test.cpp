@@ -1,6 +1,6 @@
-// scenes/blender-still-life.glb, as Blender 3.4 exported it: what scenes/make_blender_scene.py put
-// there arrives, with nothing to warn about. And what Blender's exporter writes where its user
-// meant something else, as versions 3.4 to 5 do.
+// scenes/blender-still-life.glb, as Blender 3.4 exported it: what scenes/make_blender_scene.py made
+// arrives, without a warning. And what Blender's exporter (3.4 to 5) writes if its user meant
+// something else.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -35,7 +35,7 @@ TEST(Blender, TheStillLifeArrives) {
     EXPECT_TRUE(named(scene, "tiles").baseColorTexture);
     EXPECT_TRUE(named(scene, "enamel").metallicRoughnessTexture);
     EXPECT_TRUE(named(scene, "copper").normalTexture);
-    // Tangents are exported of all, read where a normal map uses them.
+    // Blender exports tangents of all meshes; the loader reads them where a normal map uses them.
     EXPECT_EQ(std::count_if(scene.meshes.begin(), scene.meshes.end(),
                             [](const Mesh& m) { return !m.tangents.empty(); }),
               1);
@@ -122,7 +122,7 @@ std::string tooBright(const GltfBuilder& b, LampUnits units = LampUnits::Radiome
 }
 
 TEST(BlenderLighting, StandardAndRawAreSaidUnitlessIsNot) {
-    // Round and odd, as typed and as dragged with the mouse.
+    // Round and odd powers, as users type them and as they drag them with the mouse.
     const float powers[] = {1.0f, 1000.0f, 40.0f, 0.5f, 12.5f, 37.3f, 7.25f, 1234.5677f, 57.29304f};
     for (const char* type : {"point", "spot", "directional"}) {
         for (const float power : powers) {
@@ -162,7 +162,7 @@ TEST(BlenderLighting, PhotometricLampsAreDividedAndNothingElse) {
                   float(exported(Mode::Standard, lamps[i].type, lamps[i].power)));
     }
     EXPECT_EQ(found.materials[0].emission, Rgb(0.25f, 0.5f, 1.0f));
-    // Who knows is not told; Raw is no matter of lumens.
+    // Whoever sets the units gets no warning about them; Raw has nothing to do with lumens.
     EXPECT_EQ(tooBright(shining(Mode::Standard), kPhotometric), "");
     EXPECT_NE(tooBright(shining(Mode::Standard)).find("--units photometric"), std::string::npos);
     EXPECT_NE(tooBright(shining(Mode::Raw), kPhotometric).find("4 pi"), std::string::npos);
@@ -174,17 +174,18 @@ TEST(BlenderLighting, ManyLampsAgreeOrNothingIsSaid) {
     EXPECT_NE(tooBright(withLamps(Mode::Standard, lamps)).find("683"), std::string::npos);
     EXPECT_EQ(tooBright(withLamps(Mode::Unitless, lamps)), "");
     EXPECT_NE(tooBright(withLamps(Mode::Raw, lamps)).find("4 pi"), std::string::npos);
-    // One that was meant like this (or changed afterwards): no exporter's setting.
+    // One lamp differs (on purpose, or changed afterwards), so that no setting of the exporter
+    // explains them all.
     TriangleBuilder mixed = withLamps(Mode::Standard, lamps);
     mixed.root["extensions"]["KHR_lights_punctual"]["lights"][1]["intensity"] =
         exported(Mode::Unitless, "spot", 0.1f);
     EXPECT_EQ(tooBright(mixed), "");
-    // A lamp of nodes has no float's power: it says nothing, the others do.
+    // The power of a lamp by nodes is no float. That lamp tells nothing, but the others do.
     mixed = withLamps(Mode::Standard, lamps);
     mixed.root["extensions"]["KHR_lights_punctual"]["lights"][1]["intensity"] =
         100.0 / (16 * std::numbers::pi * std::numbers::pi) * 683;
     EXPECT_NE(tooBright(mixed).find("683"), std::string::npos);
-    // Lamps that are not in the scene do not count, nor do files of others.
+    // Files of other exporters are not judged.
     TriangleBuilder others = withLamps(Mode::Standard, lamps);
     others.root["asset"]["generator"] = "three.js";
     EXPECT_EQ(tooBright(others), "");
@@ -192,7 +193,7 @@ TEST(BlenderLighting, ManyLampsAgreeOrNothingIsSaid) {
     EXPECT_EQ(tooBright(others), "");
 }
 
-/// Over powers as one types them, one lamp per file, and as one drags them.
+/// One lamp per file, with powers as users type them and as they drag them.
 TEST(BlenderLighting, FalseAlarmsAreRare) {
     using gltf::BlenderLamp;
     using gltf::lightingOf;
@@ -221,14 +222,14 @@ TEST(BlenderLighting, FalseAlarmsAreRare) {
         bits = bits * 1664525u + 1013904223u;
         count(i % 2, std::ldexp(1.0f + float(bits >> 9) * 0x1p-23f, int(bits % 16) - 4));
     }
-    // A 683rd of all floats are multiples of 683: those are taken for Unitless unless the quotient
-    // is one that somebody would type.
+    // A 683rd of all floats are multiples of 683. The loader takes those for Unitless unless the
+    // quotient is one that somebody would type.
     EXPECT_LE(alarms, 4);
     EXPECT_NEAR(missed, lamps / 683, 5 * std::sqrt(lamps / 683));
 }
 
 TEST(BlenderMaterials, ShadersThatAreNotExportedAreNamed) {
-    // What Blender 3.4 writes of Glass BSDF and of mixtures; 4 leaves the object out.
+    // What Blender 3.4 writes of Glass BSDF and of mixtures; Blender 4 leaves the object out.
     TriangleBuilder b = fromBlender();
     const auto use = [&](const json& material) {
         json primitive = b.primitive();
@@ -249,7 +250,7 @@ TEST(BlenderMaterials, ShadersThatAreNotExportedAreNamed) {
     use({{"name", "fourth"}});
     use({{"name", "fifth"}});
     EXPECT_EQ(warningsWith(b.load(), "'glass', 'mixed', 'third' and 2 more ("), 1);
-    // Of a lamp nobody asks what it reflects; unused materials matter to nobody.
+    // There is no warning about what a lamp reflects, nor about unused materials.
     b = fromBlender();
     use({{"name", "lamp"}, {"emissiveFactor", {1, 1, 1}}});
     b.add("materials", {{"name", "unused"}});

@@ -41,7 +41,7 @@ TEST(Draco, PredictedTextureCoordinatesAreNear) {
 }
 
 TEST(Draco, NoFourBytesCostSeconds) {
-    // As a count of 2^31 - 1: of triangles, symbols, flags or whatever it may be.
+    // Any four bytes may be a count: of triangles, symbols or flags. Here they become 2^31 - 1.
     const TempDir dir;
     GridBuilder b(2, true);
     const int view = packByDraco(b, 0, {true, 12, false, true});
@@ -107,7 +107,7 @@ TEST(Draco, CountsMayNotExceedTheAccessors) {
     count(b.indices()) = 21;
     expectRefused(b, {"meshes[0].primitives[0]", "7 triangles", "found 8 triangles"});
 
-    // Fewer is what encoders leave that drop flat triangles.
+    // Encoders that drop flat triangles leave fewer.
     count(b.indices()) = 27;
     const SceneDescription scene = b.load();
     EXPECT_EQ(scene.meshes[0].triangles.size(), 8u);
@@ -191,7 +191,7 @@ TEST(Draco, BooleansAreRefused) {
     expectRefused(b, {"attributes.TEXCOORD_0", "numbers", "booleans"});
 }
 
-/// A stream that claims `faces` triangles and as many vertices, and has nothing of them.
+/// A stream that claims `faces` triangles and as many vertices, and has none of them.
 ByteVector claims(std::uint8_t method, std::uint32_t faces) {
     ByteVector bytes = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, method, 0, 0};
     if (method == 1) bytes.push_back(0);  // the plain traversal

@@ -10,7 +10,7 @@
 namespace lacuna::test {
 namespace {
 
-/// Mesh 2 under node 4, which a skin bends and a target moves.
+/// Mesh 2 under node 4, which a skin bends and a morph target moves.
 void addBentMesh(GltfBuilder& b) {
     const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
     std::vector<float> matrix(16);

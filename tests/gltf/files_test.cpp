@@ -44,7 +44,7 @@ TEST(Files, GltfWithDataUris) {
     }
 }
 
-// Two texels each, written by zlib and the PNG specification alone.
+// Two texels each, written by zlib and the PNG specification, without a library for PNG.
 TEST(Files, PngOfEveryKind) {
     const struct {
         const char *kind, *base64;

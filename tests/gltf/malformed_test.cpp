@@ -244,7 +244,7 @@ TEST(Malformed, NestingIsBounded) {
             expectRefused(dir.write("a.gltf", text.substr(0, text.size() / 3)), {"JSON"});
         }
     }
-    // Brackets in strings do not nest; nor does what stands side by side.
+    // Brackets in strings do not nest, nor do siblings.
     TriangleBuilder b;
     b.extras()["note"] = std::string(1000, '[') + "\\\"{" + std::string(1000, '{');
     for (int i = 0; i < 1000; ++i) b.extras()["list"].push_back(json::array({json::array()}));

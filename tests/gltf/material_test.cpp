@@ -122,7 +122,7 @@ TEST(Material, SpecularColourAndItsTextures) {
     ASSERT_TRUE(m.specularTexture && m.specularColorTexture);
     EXPECT_FALSE(scene.textures[std::size_t(m.specularTexture.value)].srgb);
     EXPECT_TRUE(scene.textures[std::size_t(m.specularColorTexture.value)].srgb);
-    // Without the layer its colour says nothing.
+    // Without the layer its colour has no effect.
     EXPECT_FALSE(scene.materials[1].specularTexture || scene.materials[1].specularColorTexture);
     EXPECT_EQ(
         warningsWith(
@@ -158,7 +158,7 @@ TEST(Material, ClearcoatAndItsTextures) {
     EXPECT_FALSE(scene.materials[1].clearcoatTexture);
     EXPECT_FALSE(hasOwnClearcoatNormal(m));
     EXPECT_FALSE(hasOwnClearcoatNormal(scene.materials[1]));
-    // Lacquer is as smooth as the mesh over a normal map, or has one of its own.
+    // Over a normal map lacquer is as smooth as the mesh, or has a normal map of its own.
     coat["clearcoatFactor"] = 1;
     b.add("materials",
           {{"normalTexture", info}, {"extensions", {{"KHR_materials_clearcoat", coat}}}});
@@ -173,7 +173,7 @@ TEST(Material, ClearcoatAndItsTextures) {
     EXPECT_EQ(lacquers.materials[3].clearcoatNormalScale, 0.5f);
 }
 
-/// Files of games have a texture for everything: only where it has a texel that is smooth are there mirrors.
+/// Files of games have a texture of roughness on everything: only where it has a smooth texel may there be mirrors.
 TEST(Material, TexturesOfRoughnessTellWhereMirrorsMayBe) {
     TriangleBuilder b;
     const auto green = [&](std::uint8_t first, std::uint8_t second) {
@@ -465,7 +465,7 @@ TEST(Material, TexturesLieByTheirCoordinateSet) {
     TriangleBuilder b;
     const int t = b.texture(redBlue());
     json placed = placedTexture(t, {{"texCoord", 0}});
-    placed["texCoord"] = 1;  // the transform's own goes before it
+    placed["texCoord"] = 1;  // the transform's own overrides it
     b.add("materials", {{"pbrMetallicRoughness",
                          {{"baseColorTexture", {{"index", t}, {"texCoord", 1}}},
                           {"metallicRoughnessTexture", {{"index", t}, {"texCoord", 0}}}}},
@@ -620,7 +620,7 @@ TEST(Texture, SizesAreCappedBeforeAnythingIsAllocated) {
                   {"images[0]", "unpacks to at most 4096 times", "scale the image"});
 }
 
-/// A grey JPEG of 8 x 8 texels that is scanned so often. Each code is one bit and says zero.
+/// A grey JPEG of 8 x 8 texels with this many scans. Each code is one bit and says zero.
 ByteVector greyJpeg(int scans) {
     ByteVector bytes{0xFF, 0xD8, 0xFF, 0xDB, 0, 67, 0};
     bytes.insert(bytes.end(), 64, 8);
@@ -637,7 +637,7 @@ ByteVector greyJpeg(int scans) {
     return bytes;
 }
 
-// Each goes over all texels: half a megabyte of empty ones took minutes.
+// Each scan goes over all texels: half a megabyte of empty scans would take minutes.
 TEST(Texture, JpegsHaveFewScans) {
     ByteVector grey;
     for (int i = 0; i < 64; ++i) grey.insert(grey.end(), {128, 128, 128, 255});
@@ -651,7 +651,7 @@ TEST(Texture, JpegsHaveFewScans) {
     EXPECT_EQ(withImage(commented).load().textures[0].rgba, grey);
 }
 
-// The decoder has room for 256 codes, and did not ask; tables that are not there are all zeros to it.
+// stb_image has room for 256 codes and does not check. Missing tables are all zeros to it.
 TEST(Texture, HuffmanTablesAreChecked) {
     const ByteVector plain = greyJpeg(1);
     const std::ptrdiff_t tables = 2 + 69 + 13;

@@ -72,7 +72,7 @@ TEST(Mesh, LeftOverVerticesAreReported) {
 
 TEST(Mesh, FlatTrianglesAreCountedInOneWarning) {
     TriangleBuilder b = fivePoints(4);
-    // Good; twice the same corner; the same again elsewhere; three on a line.
+    // A good triangle, three that have a corner twice, and one with its corners on a line.
     b.root["accessors"][1]["count"] = 5;
     const int line = b.accessor<float>({0, 0, 0, 1, 1, 1, 3, 3, 3}, "VEC3");
     b.primitive()["indices"] =
@@ -87,7 +87,7 @@ TEST(Mesh, FlatTrianglesAreCountedInOneWarning) {
 }
 
 TEST(Mesh, TinyTrianglesAreKept) {
-    for (const float s : {1e-9f, 1e-19f}) {  // of the second a float holds no squared area
+    for (const float s : {1e-9f, 1e-19f}) {  // a float cannot hold the second one's squared area
         TriangleBuilder b;
         b.primitive()["attributes"]["POSITION"] =
             b.accessor<float>({s, 0, 0, 2 * s, 0, 0, s, s, 0}, "VEC3");
@@ -144,7 +144,7 @@ TEST(Mesh, ZeroNormalsBecomeFaceNormals) {
     EXPECT_EQ(scene.meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
     EXPECT_EQ(warningsWith(scene, "zero length"), 1);
     EXPECT_EQ(warningsWith(scene, "2 times"), 1);
-    // What rounding left of one has no direction either.
+    // What rounding has left of a normal has no direction either.
     b.primitive()["attributes"]["NORMAL"] =
         b.accessor<float>({1e-13f, 0, 0, 0, 1, 0, 0, -1e-13f, 0}, "VEC3");
     EXPECT_EQ(b.load().meshes[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {0, 0, 1}}));
@@ -174,7 +174,7 @@ TEST(Mesh, OnePrimitiveOneMesh) {
     expectValid(scene);
     ASSERT_EQ(scene.meshes.size(), 2u);
     EXPECT_EQ(scene.instances.size(), 2u);
-    // The first has no material: glTF's default stands behind the file's own.
+    // The first has no material: glTF's default comes after the file's own.
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_EQ(scene.meshes[0].material, 1u);
     EXPECT_EQ(scene.meshes[1].material, 0u);
@@ -183,7 +183,7 @@ TEST(Mesh, OnePrimitiveOneMesh) {
 
 TEST(Mesh, OnlyMeshesOfTheSceneAreRead) {
     TriangleBuilder b;
-    b.mesh({{"attributes", {{"POSITION", 0}}}, {"mode", 99}});  // unused, so nobody minds
+    b.mesh({{"attributes", {{"POSITION", 0}}}, {"mode", 99}});  // unused, so not checked
     EXPECT_EQ(b.load().meshes.size(), 1u);
     b.rootNode({{"mesh", 1}});
     expectRefused(b, {"meshes[1].primitives[0].mode", "99"});

@@ -343,7 +343,7 @@ TEST(Node, HiddenOnesHaveNeitherMeshNorLightNorHasWhatIsBelow) {
     ASSERT_EQ(scene.cameras.size(), 1u) << "cameras look from hidden nodes as well";
     EXPECT_EQ(scene.cameras[0].toWorld.m[3], Vec3d(1, 0, 5));
     EXPECT_TRUE(scene.warnings.empty());
-    // The mesh of hidden nodes alone is not even read.
+    // If all nodes of a mesh are hidden, there are no instances.
     b.root["nodes"][0]["extensions"] = hidden(false);
     scene = b.load();
     EXPECT_TRUE(scene.instances.empty());
@@ -414,7 +414,7 @@ TEST(Light, ImpossibleOnesAreRefused) {
               std::numbers::pi / 2);
 }
 
-/// Not "found 0.000000" for what is refused because it is below zero, by however little.
+/// No "found 0.000000" for a number that is refused because it is slightly below zero.
 TEST(Light, MessagesShowTheNumberThatWasFound) {
     expectRefused(withLight({{"type", "point"}, {"intensity", -1e-46}}), {"found -1e-46;"});
     expectRefused(withLight({{"type", "point"}, {"intensity", 1e39}}), {"found 1e+39;"});
@@ -432,7 +432,7 @@ TEST(Extras, LacunaMembers) {
     EXPECT_FALSE(b.load().width);
     b.extras()["lacuna"] = {
         {"width", 640}, {"height", 480}, {"max_depth", 7}, {"aperture", 0.25}, {"focus", 3}};
-    b.extras()["license"] = "CC0";  // others' extras are their own business
+    b.extras()["license"] = "CC0";  // extras of other programs are ignored
     const SceneDescription scene = b.load();
     EXPECT_EQ(scene.width, 640);
     EXPECT_EQ(scene.height, 480);

@@ -15,7 +15,7 @@ struct Plain {
     int componentType;
 };
 
-/// What accessor `index` of the builder has, packed tightly.
+/// The data of accessor `index`, which must be packed tightly.
 Plain plainOf(const GltfBuilder& builder, int index) {
     const json& accessor = builder.root["accessors"][std::size_t(index)];
     const json& view = builder.root["bufferViews"][accessor["bufferView"].get<std::size_t>()];
@@ -60,7 +60,7 @@ draco::GeometryAttribute::Type dracoKind(const std::string& name) {
     return draco::GeometryAttribute::GENERIC;
 }
 
-/// The first primitive of `mesh`; ids of its attributes are their places in the JSON's order.
+/// The first primitive of `mesh`; the ids of its attributes count from 100, in the JSON's order.
 std::unique_ptr<draco::Mesh> dracoMesh(const GltfBuilder& builder, int mesh) {
     const json& primitive = builder.root["meshes"][std::size_t(mesh)]["primitives"][0];
     const Plain indices = plainOf(builder, primitive["indices"]);
@@ -91,7 +91,7 @@ std::unique_ptr<draco::Mesh> dracoMesh(const GltfBuilder& builder, int mesh) {
 using Corner = std::array<float, 16>;
 using CornerTriangle = std::array<Corner, 3>;
 
-/// Positions to a thousandth: what rounding moves does not change the order.
+/// Positions to a thousandth, so that rounding does not change the order.
 std::array<long, 3> keyOf(const Corner& c) {
     return {std::lround(c[0] * 1000), std::lround(c[1] * 1000), std::lround(c[2] * 1000)};
 }

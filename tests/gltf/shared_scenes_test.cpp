@@ -1,4 +1,4 @@
-// The real scenes beside the repository, where they are: what they hold, and how long they take.
+// The real scenes beside the repository, if they are there: what they hold, and how long they take.
 #include <chrono>
 #include <map>
 

@@ -4,7 +4,8 @@
 namespace lacuna::test {
 namespace {
 
-/// A triangle that two joints lead: the first its first two corners, and half of the third.
+/// A triangle that two joints lead: the first joint leads the first two corners, and half of the
+/// third.
 struct SkinBuilder : TriangleBuilder {
     SkinBuilder() {
         primitive()["attributes"]["JOINTS_0"] =
@@ -14,11 +15,11 @@ struct SkinBuilder : TriangleBuilder {
         primitive()["attributes"]["NORMAL"] = accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
         add("skins", {{"joints", {1, 2}}});
         root["nodes"][0]["skin"] = 0;
-        root["nodes"][0]["translation"] = {100, 0, 0};  // where a skinned mesh is not
+        root["nodes"][0]["translation"] = {100, 0, 0};  // which must not move a skinned mesh
         rootNode({{"translation", {0, 0, 2}}});
         rootNode({{"translation", {0, 4, 2}}});
     }
-    /// Moves by the opposite of x, y, z before a joint leads.
+    /// Inverse bind matrices, which move by -x, -y, -z before a joint leads.
     void bind(std::vector<std::array<float, 3>> origins) {
         std::vector<float> matrices;
         for (const auto& [x, y, z] : origins) {

@@ -63,7 +63,7 @@ TEST(Webp, DamagedOnesAreReadOrRefused) {
 }
 
 TEST(Webp, FlatPicturesMayNotTakeAllMemory) {
-    // 16,383 x 16,383 texels of one colour take 2 GB to decode; the file has a hundred kilobytes.
+    // 16,384 x 16,384 texels of one colour take 2 GB to decode; the file has a few dozen bytes.
     ByteVector flat = webp(1, 1, {9, 9, 9, 255});
     for (const std::size_t i : {21, 22, 23}) flat[i] = 0xFF;
     flat[24] |= 0x0F;

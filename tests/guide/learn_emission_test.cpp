@@ -98,7 +98,7 @@ TEST(LearnEmission, SharesByTheRootOfTheSecondMoment) {
     }
 }
 
-/// A light that is one point has nothing to learn there.
+/// A light that is one point has no points to learn.
 TEST(LearnEmission, DividesNoLightWithoutExtent) {
     const Lights lights({}, std::vector<PunctualLight>{pointLight({}, Rgb(1.0f))}, {}, nullptr,
                         4.0f);
@@ -120,7 +120,7 @@ TEST(LearnEmission, DividesNoLightWithoutExtent) {
     EXPECT_NEAR(learned.heldOutLoss, 1.0 / (0.1 + 0.9 * 4), 0.02);
 }
 
-/// Rounding leaves lights without power no less than nothing.
+/// Lights without power get exactly zero, despite rounding.
 TEST(LearnEmission, GivesNothingToLightsWithoutPower) {
     std::vector<EmissiveTriangle> triangles(4);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -152,10 +152,11 @@ TEST(LearnEmission, GivesNothingToLightsWithoutPower) {
     stabilityCase("learned-dark-lamps", furthest, "for a lamp without power");
 }
 
-/// What was found under a guide speaks as if it had been found without one.
+/// Paths that were found under a guide count as if they had been found without one.
 TEST(LearnEmission, KnowsWhatItsPathsWereFoundWith) {
     const Lights lights = twoLamps();
-    // Where rays were found twice as often, each stands for half as much.
+    // Half of the square's rays are found three times as often as the others: each of them stands
+    // for a third as much.
     Planted p;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 200'000; ++i) {

@@ -60,7 +60,7 @@ double gainAround(const WalkGuide& guide, const WalkGuide::Place& place, Side si
 }
 
 TEST(LearnWalks, FindsWhereLightComesFromByPlaceAndWall) {
-    // A lamp of 1 in 16 of the cosine's directions: another one left, right, and from the wall; light
+    // A lamp takes 1 in 12 of the cosine's directions: another one on the left, on the right, and from the wall. Light
     // walks find the camera elsewhere.
     const Vec3 left = normalize(Vec3{-1, 0, 1}), right = normalize(Vec3{0, 1, 1}),
                fromWall = normalize(Vec3{1, -1, 0}), camera = normalize(Vec3{0.2f, -1, 1});
@@ -74,7 +74,7 @@ TEST(LearnWalks, FindsWhereLightComesFromByPlaceAndWall) {
     const LearnedWalks learned = learnWalks(p.train, p.heldOut, twoThreads());
     ASSERT_TRUE(learned.guide);
     for (const Side side : {Side::Light, Side::Eye}) {
-        // The largest share of a guide that knew the lamp's rim has .09.
+        // A guide that knew the lamp's rim would reach .09 with the largest share.
         EXPECT_LT(learned.heldOutLoss[std::size_t(side)], 0.3);
     }
     const auto gain = [&](float x, const Vec3& n, Side side, const Vec3& axis) {
@@ -104,7 +104,7 @@ TEST(LearnWalks, LeavesBsdfsAloneWhereTheyAreAsGood) {
     EXPECT_FALSE(learnWalks({}, {}, twoThreads()).guide);
 }
 
-/// What only a mirror makes is no reason to go elsewhere.
+/// Light that only delta events make is no reason to go elsewhere.
 TEST(LearnWalks, LeavesMirrorsAlone) {
     const PlantedSteps p = plantSteps(
         50'000, [](const WalkSamples::Step&, const Vec3&, Rng&) { return 1.0; }, true);
@@ -113,12 +113,13 @@ TEST(LearnWalks, LeavesMirrorsAlone) {
     EXPECT_FALSE(learned.guide);
 }
 
-/// What was found by another density speaks as if it had been found by the BSDF.
+/// Steps that were found by another density count as if the BSDF had found them.
 TEST(LearnWalks, KnowsWhatItsStepsWereFoundWith) {
     PlantedSteps p;
     Rng rng(3, 0, StreamKind::User, 0);
     for (int i = 0; i < 200'000; ++i) {
-        // One half of the turns three times as often as the other: each stands for a third.
+        // One half of the directions comes three times as often as the other, so that each step there stands for a
+        // third.
         const bool often = rng.below(4) != 0;
         const Vec3 local = cosineHemisphere(rng.uniform(), rng.uniform());
         WalkSamples::Step s{};
