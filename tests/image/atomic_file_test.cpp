@@ -93,7 +93,7 @@ TEST_F(AtomicFileTest, FullDiskKeepsTheOldFile) {
     EXPECT_EQ(listing(), (Names{"a", "a.exr", "a.pfm", "a.png"}));
 }
 
-/// Whatever part of the header, the table or the pixels it was that no longer fitted.
+/// It does not matter which part of the header, the table or the pixels no longer fits.
 TEST_F(AtomicFileTest, FullDiskIsNoticedAtEveryByteOfAnExr) {
     const LayeredImage image = test::layered(test::randomImage(5, 40, 1));
     writeExr(path("a.exr"), image);
@@ -125,7 +125,7 @@ TEST_F(AtomicFileTest, UnwritableTargets) {
     EXPECT_THROW(AtomicFile(""), RunError);
     test::spill(path("file"), "x");
     EXPECT_THROW(AtomicFile(path("file/a")), RunError);
-    EXPECT_THROW(AtomicFile("/proc/a"), RunError);  // root may do all else
+    EXPECT_THROW(AtomicFile("/proc/a"), RunError);  // root may write everywhere else
     EXPECT_EQ(listing(), (Names{"directory", "file"}));
     if (::geteuid() == 0) return;
     fs::permissions(path("file"), fs::perms::owner_read);
@@ -142,7 +142,7 @@ TEST_F(AtomicFileTest, LinksAndDevices) {
     EXPECT_TRUE(fs::is_symlink(path("link")));
     EXPECT_EQ(text(path("real")), "new");
 
-    // One that points nowhere yet as well, and through others.
+    // Also links to a file that does not exist yet, and through other links.
     fs::create_directory(path("folder"));
     fs::create_symlink("folder/later", path("dangling"));
     fs::create_symlink(path("dangling"), path("twice"));
@@ -159,7 +159,7 @@ TEST_F(AtomicFileTest, LinksAndDevices) {
               std::string::npos);
 }
 
-/// `kill -9` leaves them where the file system has no files without names.
+/// `kill -9` leaves such files where the file system has no files without names.
 TEST_F(AtomicFileTest, LeftoversOfKilledProcessesAreRemoved) {
     test::spill(path(".lacuna-123-0.tmp"), "left");
     test::spill(path(".lacuna-456.tmp"), "being written");

@@ -111,7 +111,7 @@ TEST_F(CompareTool, UsageErrors) {
     expectFailure("@a.jpg @b.exr", 2, ".jpg");
 }
 
-/// By any path to it.
+/// Whichever path names them.
 TEST_F(CompareTool, ResultsNeverReplaceImages) {
     std::filesystem::copy(path("a.exr"), path("a.png"));  // the ending of an error map
     const test::Bytes before = test::slurp(path("a.png"));
@@ -142,7 +142,7 @@ TEST_F(CompareTool, InputsThatCannotBeUsed) {
     expectFailure("@a.exr @d.exr", 3, "a directory");
     writeImage(path("small.exr"), test::layered(Image(16, 16, Rgb(1))));
     expectFailure("@a.exr @small.exr", 3, "expected 16 x 16");
-    // Found in the headers: pixels that are damaged as well would be a longer wait for the same.
+    // Sizes are compared by the headers, before pixels are read: pixels may be damaged as well.
     writeImage(path("flat.exr"), test::layered(Image(32, 16, Rgb(1))));
     test::Bytes damaged = test::slurp(path("flat.exr"));
     std::fill(damaged.end() - 16, damaged.end(), '\x55');

@@ -40,7 +40,7 @@ TEST(Cryptomatte, LayersHoldTwoRanksEach) {
     EXPECT_EQ(image.find("CryptoObject00.A")->front(), 0.25f);
     EXPECT_EQ(image.find("CryptoObject01.G")->front(), 0.125f);
     EXPECT_EQ(image.find("CryptoObject02.G")->front(), 0.0f);
-    // Of the hash 3ae39a58 of the type; the keys in the specification are examples.
+    // The key is from the type's hash, 3ae39a58; the keys in the specification are examples.
     const std::string key = "cryptomatte/3ae39a5/";
     const auto text = [&](const char* name) {
         return std::get<std::string>(image.attributes.at(key + name));

@@ -131,7 +131,7 @@ TEST_F(Exr, RoundTripOfPartsKeepsEveryBit) {
     }
 }
 
-/// The picture first; ids say what they are of in their own part as well.
+/// The picture is the first part. The attributes of Cryptomatte are in the part of its ids, too.
 TEST_F(Exr, PartsAreLayers) {
     LayeredImage image = manyLayers(9, 20);
     image.channel("A").assign(180, 1.0f);
@@ -158,7 +158,7 @@ TEST_F(Exr, PartsAreLayers) {
     EXPECT_EQ(parts.size(), 10u);
 }
 
-/// What half is too coarse for stays as it was; what is too large is the largest there is.
+/// Layers for which half is too coarse stay float; a value that is too large becomes the largest half.
 TEST_F(Exr, HalfWhereItIsEnough) {
     LayeredImage image(2, 1);
     for (const char* name : {"R", "G", "B", "albedo.R", "light.sun.R", "Z", "position.X",
@@ -178,7 +178,7 @@ TEST_F(Exr, HalfWhereItIsEnough) {
     }
 }
 
-/// Rec. 709, which is what OpenEXR assumes of those who say nothing.
+/// Rec. 709, which OpenEXR assumes of files that say nothing.
 TEST_F(Exr, SayWhichColoursTheyHave) {
     writeExr(path("a.exr"), manyLayers(2, 2));
     const Imf::InputFile file(path("a.exr").c_str());
@@ -190,7 +190,7 @@ TEST_F(Exr, SayWhichColoursTheyHave) {
     EXPECT_EQ(c.white, Imath::V2f(0.3127f, 0.3290f));
 }
 
-/// As others write them: channels without their layer, the picture not the first, parts of other sizes.
+/// As others write them: channels without their layer's name, the picture not the first part, parts of other sizes.
 TEST_F(Exr, ForeignParts) {
     const auto write = [&](int secondWidth) {
         const Imath::Box2i frame({0, 0}, {3, 1});
@@ -321,7 +321,7 @@ TEST_F(Exr, AbsurdClaimsInTheHeader) {
     const std::string size("channels\0chlist\0", 16);
     EXPECT_NE(patched(size, 0, 0x7fffffff).find("bytes of EXR header"), std::string::npos);
     EXPECT_NE(patched(size, 0, -1).find("bytes of EXR header"), std::string::npos);
-    // OpenEXR reads on behind the channels and not behind their size.
+    // OpenEXR reads on behind the channels, not behind the size that the header states.
     EXPECT_NE(patched({"B\0\2", 3}, 13, 0).find("as long as their values"), std::string::npos);
     writeExr(path("a.exr"), test::layered(Image(16, 4096)));
     whole = test::slurp(path("a.exr"));

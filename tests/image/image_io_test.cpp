@@ -18,7 +18,8 @@ using test::messageOf;
 
 class ImageIo : public test::FileTest {
   protected:
-    /// Cuts and flips the file `name`: nothing but an InputError or an image may come of it.
+    /// Cuts the file `name` and flips its bits: nothing but an InputError or an image may come of
+    /// it.
     void damage(const std::string& name, bool truncationIsAlwaysFound) {
         const test::Bytes whole = test::slurp(path(name));
         const std::string broken = path("broken" + endingOf(name));
@@ -222,10 +223,11 @@ TEST_F(ImageIo, DamagedFiles) {
     writeHdr("a.hdr", image);
     damage("a.pfm", true);
     damage("a.hdr", true);
-    damage("a.png", false);  // what lacks is the checksum only
+    damage("a.png", false);  // only a checksum may be missing
 }
 
-// Room is made for all pixels that a header claims, before anyone looks for them.
+// Without the check, memory for all pixels that a header claims would be taken before anyone looks
+// for them.
 TEST_F(ImageIo, HeadersThatClaimMoreThanThereIs) {
     writeImage(path("a.png"), test::layered(test::randomImage(40, 11, 2)));
     test::Bytes bytes = test::slurp(path("a.png"));
@@ -280,7 +282,7 @@ TEST_F(ImageIo, PngThatUnpacksToMoreThanItMay) {
               std::string::npos);
 }
 
-// Before any of them is decoded: the rows of both files are damaged.
+// Sizes are known before anything is decoded: in the end the rows of two files are damaged.
 TEST_F(ImageIo, SizesAreReadFromHeaders) {
     const Image image = test::randomImage(40, 11, 2);
     writeImage(path("a.exr"), test::layered(image));

@@ -37,7 +37,7 @@ TEST(Canvas, textsOfAnyBytesFit) {
     EXPECT_GT(Canvas::widthOf("Wand"), Canvas::widthOf("."));
 }
 
-/// Each kind of layer in its own way, and none is left out.
+/// Each kind of layer is shown in its own way, and none is left out.
 TEST(LayerSheet, showsEveryLayer) {
     LayeredImage image(40, 30);
     image.setRgb("", Image(40, 30, Rgb(0.5f, 0.25f, 0.125f)));

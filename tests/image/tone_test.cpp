@@ -28,7 +28,7 @@ TEST(Tone, filmicKeepsMidGreyAndTellsHighlightsApart) {
         EXPECT_GT(shown, before) << v;
         before = shown;
     }
-    // What standard shows as one white are tens of levels of eight bits.
+    // Highlights that Standard shows as one white are tens of 8-bit levels apart.
     const auto code = [](double v) { return 255.0 * linearToSrgb(grey(v, Tone::Filmic)); };
     EXPECT_GT(code(8.0) - code(1.0), 30.0);
 }

@@ -1,5 +1,5 @@
-// What other programs see of Lacuna: the headers of libcore/include and liblacuna.so, nothing else
-// of it but what method.h brings.
+// What other programs see of Lacuna: the headers of libcore/include and liblacuna.so, and nothing
+// else but what method.h brings.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -45,7 +45,7 @@ SceneBuilder::Mesh quad(SceneBuilder::Index material) {
     return mesh;
 }
 
-/// It alone, and a camera at that distance that sees `width` of it.
+/// Adds only that square, and a camera at this distance that sees `width` of it.
 void addSquare(SceneBuilder& scene, const SceneBuilder::Material& material, double distance,
                double width) {
     scene.addInstance(scene.addMesh(quad(scene.addMaterial(material))));
@@ -159,7 +159,7 @@ TEST_F(Library, texturesLieAsTheirRowsDo) {
                                               0,   0, 255, 255, 255, 255, 255, 255};
     SceneBuilder scene;
     lamp.emissionTexture = scene.addTexture(2, 2, texels);
-    // The square fills the picture: these are the texels' centres.
+    // The square fills the picture: these pixels lie near the texels' centres.
     addSquare(scene, lamp, 10.0, 2.0);
     Render render(scene);
     render.option("width", 20).option("height", 20).option("method", "pt").option("iterations", 4);
@@ -236,7 +236,7 @@ TEST_F(Library, sceneFromMemoryIsTheSceneThatItSaves) {
     EXPECT_GT(here.rgb()[0], 0.0f);
 }
 
-// Trained methods keep their caches where the user's caches are.
+// Trained methods keep their caches in the user's cache folder.
 TEST_F(Library, scenesFromMemoryHaveCaches) {
     Render render = small(Render(rich()));
     render.option("method", "spcbpt").option("prepare", true).option("iterations", 2);
@@ -290,7 +290,7 @@ TEST_F(Library, builderRefusesWhatDoesNotFit) {
     material.normalTexture = 0;
     EXPECT_THROW(scene.addMaterial(material), UsageError);
     EXPECT_THROW(SceneBuilder::lookAt({0, 0, 0}, {0, 1, 0}), UsageError);
-    // A scene without a camera is said to be one by the renderer.
+    // Not the builder but the renderer refuses a scene without a camera.
     EXPECT_THROW(Render(scene).run(), InputError);
 }
 
