@@ -4,8 +4,9 @@
   python3 tests/benchmarks/large_scenes.py [LACUNA-RENDER]      default: build/render/lacuna-render
 
 Makes each scene in a temporary directory, has one small picture of it rendered, and prints what lacuna-render measured:
-seconds for parsing (JSON, hierarchy, materials), decoding (textures), meshes (accessors to triangles) and building (world
-space, lights, hierarchy of boxes), and the peak of its memory. `file` is what has to be read at least.
+seconds for parsing (JSON, hierarchy, materials), decoding (textures), meshes (accessors to triangles) and building
+(world space, lights, hierarchy of boxes), and the peak of its memory. `file` is the file's size, which has to be read
+at least.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ PHASES = ("parse", "decode", "meshes", "build")
 
 
 def write_glb(path: Path, root: dict, parts: list[array]) -> None:
-    """`parts`: a buffer view each, in the order of the views' numbers."""
+    """Each of `parts` becomes a buffer view, in this order."""
     sizes = [len(p) * p.itemsize for p in parts]
     root["bufferViews"] = [{"buffer": 0, "byteOffset": sum(sizes[:i]), "byteLength": s} for i, s in enumerate(sizes)]
     root["buffers"] = [{"byteLength": sum(sizes)}]
@@ -46,7 +47,7 @@ def write_glb(path: Path, root: dict, parts: list[array]) -> None:
 
 
 def png(side: int, rows: Iterable[bytes]) -> bytes:
-    """`rows`: `side` of them, each of as many texels of R, G, B."""
+    """`rows`: `side` rows, each of `side` texels of R, G, B."""
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
@@ -91,7 +92,7 @@ def scene(side: int, nodes: list[dict]) -> tuple[dict, list[array]]:
 
 
 def many(count: int) -> list[dict]:
-    """That many small copies on a square, turned and stretched."""
+    """`count` small copies on a square, turned and stretched."""
     side = math.isqrt(count - 1) + 1
     return [{"mesh": 0, "translation": [20 * (i % side / side - 0.5), 0, 20 * (i // side / side - 0.5)],
              "rotation": [0, math.sin(i), 0, math.cos(i)], "scale": [0.002, 0.002 + 1e-7 * (i % 1000), 0.002]}
@@ -118,7 +119,7 @@ SCENES = {
 
 
 def table(tool: Path, names: Iterable[str] = SCENES) -> list[list[str]]:
-    """What lacuna-render measured of each scene, below a head."""
+    """What lacuna-render measured of each scene, below a row of heads."""
     rows = [["scene", "file", *PHASES, "peak memory"]]
     with tempfile.TemporaryDirectory() as folder:
         glb, report = Path(folder) / "scene.glb", Path(folder) / "report.json"

@@ -28,7 +28,7 @@ import large_scenes  # noqa: E402
 import pages  # noqa: E402
 
 ROWS = ("pt", "bpt")
-COLUMNS = {  # head of the table: benchmark, its counter
+COLUMNS = {  # head of the column: benchmark, its counter
     "rate": ("render", "of_bare_embree"),
     "samples": ("render", "Msamples/s"),
     "forced": ("effects", "all_over_needed"),
@@ -39,7 +39,7 @@ Measured = dict[tuple[str, ...], dict[str, float]]  # by the parts of a benchmar
 
 
 def medians(benchmarks: list[dict]) -> Measured:
-    """Of every counter, over the repetitions of Google Benchmark's JSON."""
+    """The median of every counter, over the repetitions in Google Benchmark's JSON."""
     runs = defaultdict(list)
     for run in benchmarks:
         if run["run_type"] == "iteration":

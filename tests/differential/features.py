@@ -1,8 +1,8 @@
 """What the loader reads, taken from its sources, and which of it a scene has.
 
-A path is one of the loader's table of rules (rules.cpp: every value that it uses), a word any name in quotes in its sources,
-a constant one of tinygltf's that they ask for, and a lamp's is what a material says that also emits. Whatever is new there and
-in no scene fails `run.py --features`.
+There are four kinds of features. A path is one of the loader's table of rules (rules.cpp: every value that it uses). A
+word is any name in quotes in its sources. A constant is one of tinygltf's that they ask for. A lamp's feature is the
+path of a value in a material that also emits. `run.py --features` fails if the loader has a new feature in no scene.
 """
 
 import json
@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 
 LOADER = Path(__file__).resolve().parents[2] / "libcore" / "gltf"
-# Words that are no feature: parts of messages, names of phases, what Blender's lamps are told by.
+# Words that are no feature: parts of messages, names of phases, what identifies Blender's lamps.
 OTHER_WORDS = {"none", "more", "neither", "both", "default", "parse", "decode", "meshes", "glTF", "VEC", "Blender",
                "Standard", "Raw", "triangles", "vertices"}
 # Where a constant of tinygltf is seen in a file: member and value.
@@ -75,7 +75,7 @@ def _words(value, found):
 
 
 def of_scene(root, features):
-    """Those that a file's JSON shows."""
+    """The features that a file's JSON shows."""
     found = set()
     _words(root, found)
     lamps = [m for m in root["materials"] if "emissiveFactor" in m]

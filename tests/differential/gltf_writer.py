@@ -35,7 +35,7 @@ class Gltf:
         return self.add("bufferViews", view)
 
     def accessor(self, rows, component=FLOAT, normalized=False, gap=0, sparse=False):
-        """`rows`: tuples of numbers; those of normalised integers from -1 to 1. `gap`: bytes before the first and
+        """`rows`: tuples of numbers, from -1 to 1 for normalised integers. `gap`: bytes before the first and
         between any two, as in a shared vertex buffer. `sparse`: the last row comes from a list of its own."""
         if normalized:
             rows = [[round(x * _LARGEST[component]) for x in row] for row in rows]
@@ -116,7 +116,8 @@ def jpeg(columns, rows, greys):
     """A grey JPEG of columns x rows blocks of 8 x 8 texels, each of one brightness (0 to 255)."""
     def segment(mark, data):
         return struct.pack(">BBH", 0xFF, mark, len(data) + 2) + data
-    # Twelve codes of four bits for the differences' lengths, and for all that varies within a block "nothing".
+    # Twelve codes of four bits for the differences' lengths, and one code, "nothing", for all that varies within a
+    # block.
     tables = bytes([0x00, 0, 0, 0, 12] + [0] * 12 + list(range(12))) + bytes([0x10, 1] + [0] * 15 + [0])
     bits, last = "", 0
     for grey in greys:

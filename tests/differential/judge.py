@@ -1,9 +1,10 @@
 """Renders a scene by all rows, and tells what is wrong with what comes out.
 
-Means are compared with those of bpt. A row that differs by SIEVE errors in a channel is rendered anew, it and its
-reference with other random numbers, MORE times as long, and if it still differs by CONFIRM errors once more; who differs three
-times is a find. The three are independent, so that the chances of a false alarm multiply. Tails, which make a short
-render's own error too small, are shorter in the long ones, and a row that missed rare light meets it there.
+Means are compared with those of bpt. If a row differs by SIEVE errors in a channel, it and its reference are rendered
+anew: with other random numbers, MORE times as long. If it still differs by CONFIRM errors, this is done once more. A
+row that differs three times is a find. The three are independent, so that the chances of a false alarm multiply. Tails,
+which make a short render's own error too small, are shorter in long renders, and a row that missed rare light meets it
+there.
 """
 
 import json
@@ -20,8 +21,8 @@ REFERENCE = 4  # times as many iterations for the reference
 SIEVE, CONFIRM, MORE = 3.0, 3.3, (16, 64)
 VERIFY = 1e-4  # what lacuna-render itself warns above
 ROUNDING = 2e-5
-NOISE = 0.2  # a mean whose own error is such a share of it has not met what its picture is made of
-MOST_RAYS = 1e7  # of a long render, which then is shorter
+NOISE = 0.2  # a mean with a larger relative error has not met most of its light
+MOST_RAYS = 1e7  # of a long render, which is cut to this many
 SECONDS = 300  # for one render
 USAGE = 2  # the exit code where settings do not go together
 DRAWS = 5
@@ -33,7 +34,7 @@ def tail(z):
 
 
 def false_alarm():
-    """Of one comparison."""
+    """The chance of a false alarm in one comparison."""
     return tail(SIEVE) * tail(CONFIRM) ** len(MORE)
 
 
@@ -46,7 +47,7 @@ class Judge:
         self.finds = []
 
     def render(self, method, options, iterations, seed, threads=1, more=(), refusable=False):
-        """The report of a render; None, and a find, where it failed."""
+        """The report of a render. None if it failed, which is a find unless the row may refuse the scene."""
         arguments = [self.path.name, *self.options, "--method", method, *options, "--iterations", str(iterations),
                      "--seed", str(seed), "--prepare", "--cache", "cache", "--threads", str(threads), *more]
         out = self.folder / "out.pfm"
@@ -79,7 +80,7 @@ class Judge:
         self.finds.append({"kind": kind, "method": method, "arguments": arguments, "what": what})
 
     def judge(self, every_row):
-        """By row what was found; `finds` has what is wrong."""
+        """What was found, by row; `finds` has what is wrong."""
         found = {"effects": [], "rows": {}}
         reference = self.render("bpt", [], ITERATIONS * REFERENCE, 1)
         if reference is None:
@@ -90,7 +91,7 @@ class Judge:
         simulated = set(reference["effects"]["simulated"])
         found.update(effects=sorted(simulated), mean=numbers(reference["mean_rgb"]))
         chosen = every_row
-        if not any(found["mean"]):  # to look for the reason takes a second, which two rows are enough for
+        if not any(found["mean"]):  # the program looks for the reason, which takes a second: two rows are enough
             chosen = self.r.sample(every_row, min(2, len(every_row)))
         threads = self.r.choice(chosen)
         for row in chosen:
@@ -158,7 +159,7 @@ def text(report):
 
 
 def deviation(report, reference, kind):
-    """Of the channel that differs most, in errors; 0 on the side that is allowed."""
+    """How far the channel that differs most is off, in errors; 0 on the side that is allowed."""
     worst = 0.0
     for m, e, m0, e0 in zip(*(numbers(r[name]) for r in (report, reference) for name in ("mean_rgb", "mean_rgb_stderr"))):
         difference = m - m0

@@ -1,4 +1,4 @@
-"""Streams that hold meshes and pictures in fewer bytes elsewhere: the simplest that a decoder takes, hardly any smaller."""
+"""Packed meshes and pictures: the simplest streams that a decoder takes, hardly smaller than plain data."""
 
 import math
 import struct
@@ -43,7 +43,7 @@ def meshopt_vertices(data, stride):
             column = [v[k] for v in (last, *block)]
             steps = [(b - a) & 255 for a, b in zip(column, column[1:])]
             coded = bytes((-(d >> 7) ^ d << 1) & 255 for d in steps)
-            # Two bits for each group of 16: it follows as it is.
+            # Two bits for each group of 16 say that it follows unpacked.
             heads = b"".join(bytes([sum(3 << 2 * i for i in range(min(4, groups - g)))]) for g in range(0, groups, 4))
             out += heads + coded + bytes(16 * groups - len(coded))
         last = block[-1]
@@ -97,8 +97,8 @@ def quaternion(q):
 
 
 def webp(width, height, colours, texels):
-    """A WebP without loss. `colours`: two values for each of red, green, blue and alpha; `texels`: for each texel which of
-    the two, four times."""
+    """A WebP without loss. `colours`: two values for each of red, green, blue and alpha; `texels`: which of
+    the two, for each channel of each texel."""
     bits = []
 
     def put(value, count):

@@ -13,11 +13,11 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import pages  # noqa: E402
 
-FLOOR = 0.01  # no scene alone decides about the pooled deviation
+FLOOR = 0.01  # so that no scene alone decides about the pooled deviation
 
 
 def pooled(deviations):
-    """Mean of relative deviations, each by its error, and the error of that mean."""
+    """The mean of relative deviations, each weighted by its error, and the error of that mean."""
     weights = [1 / (error ** 2 + FLOOR ** 2) for _, error in deviations]
     mean = sum(w * d for w, (d, _) in zip(weights, deviations)) / sum(weights)
     error = math.sqrt(sum((w * e) ** 2 for w, (_, e) in zip(weights, deviations))) / sum(weights)

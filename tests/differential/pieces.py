@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Random command lines on random scenes: the same picture, bit for bit, on one thread and on three, after interrupts, and
-out of parts. A find is where it is another one.
+"""Renders random command lines on random scenes. The picture must be the same, bit for bit, on one thread and on three,
+after interrupts, and merged from parts; a find is where it differs.
 
     pieces.py PROGRAMS [--lines N] [--first SEED] [--seconds T]
     pieces.py PROGRAMS --seed SEED     one command line alone
@@ -26,7 +26,7 @@ from random_scene import RandomScene  # noqa: E402
 SECONDS = 300  # for one render
 INTERRUPTS = 8
 USAGE, INPUT, INTERRUPTED = 2, 3, 130  # exit codes
-WHOLE = ("--half", "--multi-part")  # of a picture, not of its parts
+WHOLE = ("--half", "--multi-part")  # options of the picture, not of its parts
 
 
 class Failed(Exception):
@@ -34,7 +34,7 @@ class Failed(Exception):
 
 
 def _picture_options(r, width, height):
-    """What else may be said of the picture. Each has its chance, whatever the others are."""
+    """Random options for the picture, each by a chance of its own."""
     def sometimes(chance, *words):
         return [str(word) for word in words] if r.random() < chance else []
 
@@ -114,7 +114,7 @@ class CommandLine:
         return exr_pixels.of(self.folder / out)
 
     def check(self):
-        """False where the command is refused. Throws Failed."""
+        """False if the command is refused. Raises Failed if anything is wrong."""
         code, error = self.run("lacuna-render", *self.arguments, "--threads", "1", "-o", "one.exr")
         if code in (USAGE, INPUT) and error:
             return False
@@ -130,7 +130,7 @@ class CommandLine:
         return True
 
     def interrupted(self):
-        """What is shown after some interrupts, each at any time, the first of which may come before a signal is heard."""
+        """What is shown after some interrupts at random times. They may come before the program handles signals."""
         options = ("--checkpoint", "checkpoint")
         for _ in range(self.r.randrange(INTERRUPTS)):
             threads = str(self.r.choice((1, 2)))

@@ -7,7 +7,7 @@ from gltf_writer import jpeg, png
 
 
 class Draws:
-    """What is drawn at random, from `r`."""
+    """Random draws, from `r`."""
 
     def chance(self, p):
         return self.r.random() < p

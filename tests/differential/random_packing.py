@@ -30,7 +30,7 @@ class Packing:
         return self.r.random() < p
 
     def all(self):
-        """The extensions that a reader must have from now on."""
+        """Packs, and returns the extensions that a reader must have from now on."""
         for i, node in enumerate(self.gltf.root["nodes"]):
             if "skin" in node and "extensions" not in node:
                 self.bend(i, node)
@@ -51,7 +51,7 @@ class Packing:
         for texture in self.gltf.root["textures"]:
             if self.chance(0.15):
                 self.picture(texture)
-            elif self.chance(0.05):  # nobody reads it: the plain one is there
+            elif self.chance(0.05):  # not read, since the plain one is there
                 texture["extensions"] = {"KHR_texture_basisu": {"source": texture["source"]}}
         if MESHOPT in self.used:
             self.gltf.more_buffers = [{"byteLength": 1 << 20, "extensions": {MESHOPT: {"fallback": True}}}]
@@ -62,7 +62,7 @@ class Packing:
         return self.r.sample(UNREAD, 2) if self.chance(0.3) else []
 
     def bend(self, index, node):
-        """Gives the node's skin two joints, the node itself and one a little beside it."""
+        """Gives the node's skin two joints: the node itself, and mostly the same a little beside it."""
         gltf, r = self.gltf, self.r
         skin = gltf.root["skins"][node["skin"]]
         skin["joints"] = [index, index]

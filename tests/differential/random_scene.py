@@ -3,7 +3,7 @@
 
     random_scene.py SEED FOLDER       writes scene.glb or scene.gltf with its pictures; prints options of lacuna-render
 
-features.py tells what of the loader's no scene has: what it learns to read must be made here as well.
+features.py tells which of the loader's features no scene has: what the loader learns to read must be made here as well.
 """
 
 import json
@@ -187,14 +187,14 @@ class RandomScene(Meshes):
 
     # The rest of the file
     def idle_entries(self):
-        """What the loader reads and has nothing to do with."""
+        """What the loader reads to no effect."""
         if self.chance(0.05):
             self.gltf.root["animations"] = []
         if self.chance(0.2):
             self.gltf.root["asset"]["minVersion"] = "2.0"
 
     def hidden(self, seed):
-        """Nodes that are not there, or are all the same; by numbers of their own, so that scenes are what they were before."""
+        """Nodes that are hidden or not, by a generator of their own: a scene is otherwise the same as without."""
         r = random.Random(f"hidden {seed}")
         if r.random() < 0.9 or "meshes" not in self.gltf.root:
             return

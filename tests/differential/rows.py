@@ -4,7 +4,8 @@ import math
 import re
 import subprocess
 
-# Parameters that are drawn no larger than this, for time. Those that count many things and have no entry: MANY.
+# Parameters that are drawn no larger than this, to save time. MANY is for those that count many things and have no
+# entry.
 MOST = {"connections": 6, "first_connections": 8, "deep_connections": 6, "voxels.resolution": 32, "train.epochs": 3,
         "train.subspaces": 40, "train.paths": 1500, "train.light_paths": 1500, "emission_paths": 1500,
         "walk_paths": 1500, "cache_density": 0.1, "record_density": 0.1, "node_acceptance": 10}
@@ -12,15 +13,17 @@ MANY = 300
 # Set in every render that takes them: the defaults are for large pictures.
 SMALL = {"candidates": 100, "voxels.resolution": 16, "train.paths": 600, "train.subspaces": 20,
          "train.light_paths": 600, "train.epochs": 2, "emission_paths": 600, "walk_paths": 600, "second_candidates": 40}
-LEARNED = {"emission_paths", "walk_paths"}  # 0 is half a million of them
+LEARNED = {"emission_paths", "walk_paths"}  # 0 means half a million of them
 # Never drawn: a box in the scene's coordinates, and what merging is set to below.
 UNDRAWN = {"voxels.domain", "radius", "photons"}
-RADIUS = 0.003  # units; what merging then blurs no test here can see
+RADIUS = 0.003  # in units; no test here can see what merging then blurs
 SPLATS = 2000  # light paths where little else makes the picture: few of them meet what the camera sees
-# Photon mapping alone is noise with few photons and a small radius, and blurs with a large one: no mean of it is judged.
+# Photon mapping alone is too noisy with few photons and a small radius, and blurs with a large one: no mean of it is
+# judged.
 PHOTONS, PHOTON_RADIUS = 500, 0.06
 
-# Effects that can be forced on where nothing calls for them, which changes no picture; and those that are no scene's.
+# Effects that can be forced on where nothing calls for them, which changes no picture; and those of rows, not of
+# scenes.
 FORCED_ON = ("emissive_textures", "textures", "alpha_mask", "normal_maps", "vertex_colors", "attenuation")
 TECHNIQUES = {"hits": "s = 0", "connections": "s >= 1, t >= 2", "splats": "t = 1"}  # and how --help-method tells of them
 # What a row may say instead of rendering a scene: skeletons are of the space between surfaces.
@@ -42,7 +45,7 @@ def _answer(render, *arguments):
 
 
 def rows(render):
-    """All that are not experiments with a bias, with their parameters as (name, what it may be)."""
+    """All rows but experiments with a bias, with their parameters as (name, what it may be)."""
     found = []
     for line in _answer(render, "--list-methods").splitlines():
         name = line.split()[0]
@@ -71,7 +74,7 @@ def _drawn(r, name, kind):
     high = min(high, MOST.get(name, MANY if high > 1e4 else high))
     if limits[1] == "number":
         value = r.choice((low, high, r.uniform(low, high)))
-        return f"{max(value, 0.05) if name == 'defensive' else value:.4g}"  # 0 goes with points=weighted alone
+        return f"{max(value, 0.05) if name == 'defensive' else value:.4g}"  # 0 is allowed only with points=weighted
     if low == 0 and r.random() < 0.2 and name not in LEARNED:
         return "0"
     return str(round(math.exp(r.uniform(math.log(max(low, 1)), math.log(high)))))
@@ -86,7 +89,7 @@ def settings(row, r, unit, switches):
             if value is not None:
                 chosen[name] = value
     if any(f"{technique}=off" in switches for technique in TECHNIQUES):
-        chosen.pop("merge", None)  # which would bring what is to be missing
+        chosen.pop("merge", None)  # which would bring what is left out
     if row.techniques == {"splats"} or "connections=off" in switches and "splats" in row.techniques:
         chosen["light_paths"] = SPLATS
     if row.name == "ppm":
@@ -115,7 +118,7 @@ def switches(row, left_out, r):
 
 
 def effects(render, scene):
-    """The names of all."""
+    """The names of all effects."""
     return [line.split()[1] for line in _answer(render, scene, "--effects").splitlines()]
 
 
@@ -134,12 +137,12 @@ def nearly_smooth(materials):
 
 
 def expectation(row, options, simulated, nearly):
-    """`same` as the reference, bpt, or no more than it, or `any`; `simulated`: effects, as its report has them."""
+    """`same` as the reference, bpt; `at most` as much; or `any`. `simulated`: effects, as its report has them."""
     if row.name == "ppm":
         return "any"
     deltas, punctual = nearly or bool(DELTAS & simulated), bool(PUNCTUAL & simulated)
     if merges(row, options) and deltas and punctual:
-        return "any"  # by few photons, what bpt's chains find in each iteration
+        return "any"  # few photons make what bpt's chains find in each iteration
     left = {technique for technique in row.techniques if f"{technique}=off" not in options}
     if left == {"hits"}:
         lacks = punctual  # a point cannot be hit

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Random small scenes, rendered by all rows and held against bpt: a find is where one row differs from the others.
+"""Renders random small scenes by all rows, and compares them with bpt: a find is where a row differs.
 
     run.py RENDER [DIRECTORY] [--scenes N] [--first SEED] [--rows N] [--seconds T] [--page FILE]
     run.py RENDER --seed SEED     one scene alone, and what each row said
@@ -35,7 +35,7 @@ EXAMPLE = Path(__file__).resolve().parents[2] / "scenes" / "cornell-box.glb"  # 
 
 
 def one(render, every_row, directory, seed, known):
-    """What was found in a scene; its folder stays where something was."""
+    """What was found in a scene; its folder is kept if there are finds."""
     folder = directory / str(seed)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

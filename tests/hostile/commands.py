@@ -1,4 +1,4 @@
-"""The commands that are attacked, and what is asked of each whatever happens."""
+"""The commands that are attacked, and what must hold for each, whatever happens."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ class Attack:
         return Outcome(process.returncode, time.monotonic() - begin, (text or b"").decode(errors="replace").strip())
 
     def judge(self, command: Command, folder: Path, outcome: Outcome, *, speaks: bool = True) -> list[str]:
-        """What is wrong with how it ended, in words; empty: nothing. `speaks`: stderr was there to be written to."""
+        """What is wrong with how it ended, in words; empty if nothing is. `speaks`: it could write to stderr."""
         wrong = []
         lines = outcome.message.splitlines()
         if outcome.exit < 0:
@@ -216,7 +216,7 @@ class Attack:
         return True
 
     def again(self, command: Command, folder: Path) -> list[str]:
-        """Whether the command does its work now that nothing is in its way: what was left behind must not be."""
+        """What is wrong when the command runs again with nothing in its way: what was left behind must not be."""
         more = ["--prepare"] if command.caches and command.tool == "lacuna-render" else []
         outcome = self.run(command, folder, more=more)
         return [f"afterwards: {wrong}" for wrong in self.judge(command, folder, outcome)] + (

@@ -105,13 +105,13 @@ def costs(tool: Path, megabytes: list[float]) -> list[Cost]:
 
 
 def run(attack) -> tuple[dict[str, int], list[str]]:
-    """As the other attacks of run.py."""
+    """Like the other attacks of run.py."""
     found = costs(Path(attack.program("lacuna-render")), [1])
     return {"costs of refusals": len(found)}, [wrong for c in found for wrong in c.wrong]
 
 
 def table(start: Cost, found: list[Cost]) -> list[list[str]]:
-    """`start`: of an empty file."""
+    """`start`: the cost of a file of one byte."""
     return [["file", "size, MB", "seconds", "memory, MB", "ns for each byte", "bytes for each byte"],
             *([c.kind, f"{c.size / 1e6:.3g}", f"{c.seconds:.2f}", f"{c.memory / 1e6:.0f}",
                f"{(c.seconds - start.seconds) / c.size * 1e9:.3g}", f"{(c.memory - start.memory) / c.size:.3g}"] for c in found)]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Renders a scene that lies nowhere by the library, with caches: they go to the user's cache folder, or to the temporary one."""
+"""Renders a scene from memory by the library, with caches in the user's cache folder, or in the temporary one."""
 
 import sys
 

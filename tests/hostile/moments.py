@@ -1,4 +1,4 @@
-"""Signals and kills at moments spread over a tool's whole life, and two that run at once."""
+"""Signals and kills at moments spread over a tool's whole life, and two tools that run at once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 
 
 def is_handled(process: subprocess.Popen, number: signal.Signals) -> bool:
-    """Whether the tool handles the signal by now: while the dynamic linker is at work nothing of ours can."""
+    """Whether the tool handles the signal by now: while the dynamic linker is at work, no code of ours can."""
     for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (number - 1) & 1)

@@ -3,7 +3,7 @@
 
   python3 tests/hostile/run.py BUILD SHIM [--quick]
 
-SHIM is faults.c, compiled. Prints how often what was done, and what was wrong; exits 1 if anything was.
+SHIM is faults.c, compiled. Prints how often each thing was done, and what was wrong; exits 1 if anything was.
 """
 
 from __future__ import annotations

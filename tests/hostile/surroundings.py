@@ -149,7 +149,7 @@ def temporary_folders(attack: Attack) -> Iterator[Finding]:
 
 
 def as_nobody(attack: Attack) -> Iterator[Finding]:
-    """Without root's rights, which no permission holds up."""
+    """Without root's rights, since permissions do not hold root up."""
     if os.geteuid() != 0:
         return
     attack.home.chmod(0o755)

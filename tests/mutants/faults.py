@@ -9,10 +9,10 @@ class Fault(NamedTuple):
     file: str
     old: str     # occurs exactly once in it
     new: str
-    tests: dict  # by folder: what catches it, as a gtest filter; none: it costs quality alone
+    tests: dict  # by folder: what catches it, as a gtest filter; none: it only costs quality
 
 
-# Everything of one room together, in the order of the rooms.
+# Faults of one subject stand together.
 FAULTS = [
     # Base
     Fault("stream-without-high-index", "streams 2^32 apart are the same",

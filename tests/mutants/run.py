@@ -13,7 +13,7 @@
 The faults are put into a copy of the sources, build-mutants/, which is kept for the next time. With
 --build DIR they are put into these sources, whose build DIR is, and taken out again.
 
-Exit 0: every fault was noticed (or costs quality alone, as faults.py says).
+Exit 0: every fault was noticed (or only costs quality, as faults.py says).
 """
 
 import argparse
@@ -47,7 +47,7 @@ def tests_in(folder):
 
 
 def exists(pattern, tests):
-    """Whether a part of a gtest filter names a test, or where it has a * a suite."""
+    """Whether a part of a gtest filter names a test, or a suite if it has a *."""
     suite = pattern.partition(".")[0].strip("*")
     return any(t == pattern or ("*" in pattern and t.startswith(suite)) for t in tests)
 
@@ -107,7 +107,7 @@ def readme_with(results):
 
 
 def copy_sources(to):
-    """Those that git knows or would add; files that are the same keep their times, so that little is built again."""
+    """Copies the files that git knows or would add. Unchanged files keep their times, so that little is built again."""
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True,
                             capture_output=True, text=True).stdout.splitlines()
     names = {name for name in listed if (ROOT / name).is_file()}
@@ -123,8 +123,8 @@ def copy_sources(to):
 
 
 def run(command, cwd, seconds=None):
-    """The output, and the exit code: none where it did not end in time. Tests start renders, which hold the
-    pipe as well: what is stopped is the session of them all."""
+    """The output, and the exit code, which is None if the command did not end in time. Tests start renders, which
+    hold the pipe as well: so the session of them all is stopped."""
     process = subprocess.Popen([str(c) for c in command], cwd=cwd, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
     try:
@@ -226,7 +226,7 @@ def main():
     if not chosen:
         parser.error("expected --all, --list, --check or names")
 
-    # An interrupt takes the fault out again.
+    # SIGTERM takes the fault out again, as an interrupt does.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     build = Build(options.build, options.jobs, options.seconds)
     unnoticed = 0
