@@ -1,5 +1,5 @@
-// E(mu, alpha) against independent Monte Carlo, and the identities that energy conservation rests
-// on.
+// E(mu, alpha) compared with independent Monte Carlo, and the identities that conservation of
+// energy rests on.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,8 @@
 namespace lacuna::test {
 namespace {
 
-/// E by sampling normals from D cos (not the visible ones): [Walter07 eq 35, 41], textbook G2.
+/// E, estimated by sampling normals from D cos (not the visible ones): [Walter07 eq 35, 41] with
+/// the textbook's G2.
 Moments monteCarloAlbedo(double mu, double alpha, double ior, int samples, Random& random) {
     const auto lambda = [&](double c) {
         return (std::sqrt(1 + alpha * alpha * (1 / (c * c) - 1)) - 1) / 2;
@@ -42,7 +43,8 @@ void checkTable(float ior, int points, int samples, std::uint64_t seed, double s
     const AlbedoTable table(ior);
     Random random(seed);
     for (int i = 0; i < points; ++i) {
-        // Angles to 89.99 degrees where the estimator's variance allows (alpha not >> mu).
+        // Angles up to 89.99 degrees, as far as the estimator's variance allows (mu not much less
+        // than alpha).
         const float alpha = float(std::pow(1e-4, random.real()));
         const float low = std::max(2e-4f, 0.03f * alpha);
         const float mu = i % 2 == 0 ? float(low * std::pow(1 / double(low), random.real()))
@@ -75,7 +77,7 @@ TEST(AlbedoTables, AverageIsTheIntegralOfWhatIsLookedUp) {
             double sum = 0;
             constexpr int kSteps = 200000;
             for (int i = 0; i < kSteps; ++i) {
-                // mu = t^2 resolves the horizon
+                // mu = t^2 resolves the horizon.
                 const double t = (i + 0.5) / kSteps;
                 sum += double(table.directional(position, float(t * t))) * 4 * t * t * t / kSteps;
             }

@@ -1,4 +1,4 @@
-// What holds exactly, or to rounding, for every pair of directions (numerics.md, "BSDFs").
+// Identities that hold exactly, or up to rounding, for every pair of directions (numerics.md, "BSDFs").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,13 +47,13 @@ TEST(BsdfContract, SampleEvaluationIsEvaluateBitForBit) {
     stabilityCase("bsdf-contract", drawn, "samples, each as evaluated");
 }
 
-// What the base scatters and what is scattered where there is none make up everything.
+// f is the sum of the diffuse part and of what a Bsdf without diffuse lobes scatters.
 TEST(BsdfContract, DiffusePartIsWhatIsMissingWithoutTheBase) {
     Random random(13);
     int mixed = 0;
     for (const Case& c : grid()) {
         Bsdf::Parameters p = c.parameters;
-        // Without a sheen there is more of what is under it.
+        // Leaving out a sheen brightens the layers under it, so the sum would be larger.
         if (!isBlack(p.sheenColor)) continue;
         p.without.add(LobeKind::Diffuse);
         p.without.add(LobeKind::DiffuseTransmission);
@@ -80,8 +80,7 @@ TEST(BsdfContract, DiffusePartIsWhatIsMissingWithoutTheBase) {
     EXPECT_GT(mixed, 3000);
 }
 
-// Where ns = ng, f / eta_eye^2 is symmetric, and a density is the same number whichever role its
-// direction plays.
+// Where ns = ng, f / eta_eye^2 is symmetric. A density is the same number whichever role its direction plays.
 TEST(BsdfContract, ReciprocityAndSwappedRoles) {
     Random random(12);
     int compared = 0;
@@ -96,8 +95,7 @@ TEST(BsdfContract, ReciprocityAndSwappedRoles) {
             const BsdfEvaluation ab = c.bsdf.evaluate(a, b, event);
             const BsdfEvaluation ba = c.bsdf.evaluate(b, a, event);
             SCOPED_TRACE(c.name);
-            // A delta event evaluates Fresnel at toEye's cosine: it differs from toLight's by
-            // rounding.
+            // A delta event evaluates Fresnel at toEye's cosine, which differs from toLight's by rounding.
             const float tolerance =
                 isDelta(event) ? 1e-4f / std::min(1.0f, 100 * std::abs(dot(a, c.bsdf.ns())))
                                : 2e-6f;
@@ -116,17 +114,16 @@ TEST(BsdfContract, ReciprocityAndSwappedRoles) {
     stabilityCase("bsdf-contract", compared, "pairs of directions, each symmetric");
 }
 
-// With tilted normals: what lobes scatter is the mixture of that of two untilted ones, in value and
-// in the eye walk's density; the light walk's densities of both are picked with probabilities that
-// depend on toLight alone.
+// With tilted normals, f and the eye walk's density are mixtures of those of two untilted Bsdfs. The light walk picks
+// one of the two normals with probabilities that depend on toLight alone.
 TEST(BsdfContract, TiltedLobesAreAMixtureOfBothNormals) {
     Random random(17);
-    int pairs[3] = {0, 0, 0};  // about ns, about ng, about both
+    int pairs[3] = {0, 0, 0};  // lobes about ns, about ng, about both
     for (const Material& m : materials()) {
         for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
             Bsdf::Parameters p = m.parameters;
             p.roughness = roughness;
-            // These keep ns for the light; a clearcoat of its own is two mixtures.
+            // Diffuse lobes and sheen keep ns for the light. A clearcoat with its own normal is two mixtures.
             for (const LobeKind kind :
                  {LobeKind::Diffuse, LobeKind::DiffuseTransmission, LobeKind::Sheen}) {
                 p.without.add(kind);
@@ -139,18 +136,18 @@ TEST(BsdfContract, TiltedLobesAreAMixtureOfBothNormals) {
                 const Bsdf tilted(p, ng, ns, tables());
                 const Bsdf aboutNs = tilted.at(ns, ns), aboutNg = tilted.at(ng, ng);
                 const Vec3 l = uniformDirection(random);
-                // Cosines that rounding changes by more than the tolerance.
+                // Rounding changes such cosines by more than the tolerance.
                 const auto isGrazing = [&](Vec3 v) {
                     return std::min(std::abs(dot(v, ng)), std::abs(dot(v, ns))) < 0.01f;
                 };
                 if (isGrazing(l)) continue;
                 const bool seen = dot(l, ng) * dot(l, ns) > 0;
                 const double adjoint = seen ? double(dot(l, ns)) / double(dot(l, ng)) : 0;
-                double picked[2] = {-1, -1};  // by the light walk: ns, ng
+                double picked[2] = {-1, -1};  // probability of ns and of ng in the light walk
                 for (int i = 0; i < 40; ++i) {
                     const Vec3 e = uniformDirection(random);
                     const double w = shareOfNg(Vec3d(e), Vec3d(ng), Vec3d(ns));
-                    // Not within rounding of where a part begins.
+                    // Rounding may decide near w = 0 and w = 1 whether a part exists at all.
                     if ((w > 0 && w < 0.02) || (w < 1 && w > 0.98) || isGrazing(e)) continue;
                     const BsdfEvaluation all = tilted.evaluate(e, l);
                     const BsdfEvaluation s =
@@ -185,8 +182,7 @@ TEST(BsdfContract, TiltedLobesAreAMixtureOfBothNormals) {
     for (const int n : pairs) EXPECT_GT(n, 1000);
 }
 
-// Glass with the index of air lets light straight on, whichever normal it is taken about: rounding must
-// not choose one.
+// Glass with the index of air lets light pass straight, whichever normal is used. Rounding must not choose one.
 TEST(BsdfContract, GlassThatDoesNotBendHasOneEvent) {
     Bsdf::Parameters p;
     p.baseColor = Rgb(0.8f);
@@ -215,7 +211,7 @@ TEST(BsdfContract, GlassThatDoesNotBendHasOneEvent) {
     EXPECT_GT(mixed, 5);
 }
 
-// No eye above the surface finds a lit one black, nor does any find it brighter than a white one.
+// No eye above the surface sees a lit surface black, and none sees more than a white surface can reflect.
 TEST(BsdfContract, TiltedNormalsLeaveNoEyeInTheDark) {
     Random random(18);
     for (const Material& m : {materials()[0], materials()[1], materials()[5]}) {
@@ -240,9 +236,8 @@ TEST(BsdfContract, TiltedNormalsLeaveNoEyeInTheDark) {
     }
 }
 
-// Both walks estimate the same integral over pairs of directions (adjointness): what each
-// throughput step multiplies by is f |to.ng| / pdfW(to), with tilted normals, on both sides of
-// glass.
+// Both walks estimate the same integral over pairs of directions (adjointness), with tilted normals and on both sides
+// of glass. A step multiplies the throughput by f |to.ng| / pdfW(to).
 TEST(BsdfContract, BothWalksAgree) {
     constexpr int kSamples = 50000;
     const std::vector<Material> all = materials();
@@ -268,8 +263,7 @@ TEST(BsdfContract, BothWalksAgree) {
                         const Vec3 light = side == Side::Eye ? s->to : from;
                         const double pdfW = double(side == Side::Eye ? s->evaluation.pdfWToLight
                                                                      : s->evaluation.pdfWToEye);
-                        // |eye.ns| keeps the adjoint factor's variance finite; the rest is
-                        // arbitrary.
+                        // |eye.ns| keeps the adjoint factor's variance finite; the other factors are arbitrary.
                         const double test = std::abs(double(dot(eye, ns))) *
                                             (1.2 + double(dot(eye, Vec3{0.6f, 0, 0.8f}))) *
                                             (1.1 - double(dot(light, Vec3{0, 0.8f, 0.6f})));
@@ -314,8 +308,8 @@ TEST(BsdfContract, SpecularZeroIsExactlyLambert) {
     }
 }
 
-// Lossless smooth glass: both events together return everything; seen from inside, radiance is n^2
-// of what it is outside.
+// Smooth glass loses nothing: both events together return everything. Seen from inside, radiance is n^2 times that
+// outside.
 TEST(BsdfContract, SmoothGlassIsLossless) {
     for (const bool thin : {false, true}) {
         for (const float ior : {1.0f, 1.1f, 1.5f, 2.4f}) {
@@ -329,7 +323,7 @@ TEST(BsdfContract, SmoothGlassIsLossless) {
                     const Vec3 from = front ? up : -up;
                     double sum = 0, radiance = 0;
                     bool seen[3] = {false, false, false};
-                    // Both outcomes of the choice, each once, with its probability as weight.
+                    // Both outcomes of the choice once each, weighted by their probabilities.
                     for (const float u : {0.0f, 0x1.fffffep-1f}) {
                         const auto s = bsdf.sample(Side::Eye, from, u, 0.3f, 0.6f);
                         if (!s || seen[std::size_t(s->event)]) {
@@ -349,7 +343,7 @@ TEST(BsdfContract, SmoothGlassIsLossless) {
                         sum += pmf * weight * eta * eta / (etaEye * etaEye);
                     }
                     EXPECT_NEAR(sum, 1, 2e-6) << ior << " " << degrees << " " << front;
-                    // In a constant environment of 1 (the closed scene adds n^2 inside).
+                    // Radiance 1 arrives from everywhere, also from inside (in a closed scene it would be n^2 there).
                     if (!thin && !front && degrees < 20) {
                         const double f = std::pow((ior - 1) / (ior + 1), 2);
                         EXPECT_NEAR(radiance, f + (1 - f) * ior * ior, 1e-4);
@@ -366,7 +360,7 @@ TEST(BsdfContract, FuzzedInputsStayFinite) {
         const float u = random.next();
         return u < 0.2f ? 0.0f : u < 0.4f ? limit : random.next() * limit;
     };
-    // Sides, grazing angles around kMinCosine, exact tangents.
+    // Both sides, grazing angles around kMinCosine, exact tangents.
     const auto direction = [&](Vec3 n) {
         const Frame frame(n);
         const double cosine = std::exp(std::log(1e-9) * random.real()) *
@@ -457,13 +451,13 @@ TEST(BsdfContract, EmptyAndBlack) {
     EXPECT_FALSE(empty.sample(Side::Eye, Vec3{0, 0, 1}, 0.5f, 0.5f, 0.5f));
     const Bsdf black(makeParameters(Rgb(0.0f), 0, 0, 0), world().n, world().n, tables());
     EXPECT_TRUE(black.isBlack());
-    // A smooth coat keeps its base connectable; a mirror has nothing to connect to.
+    // A smooth coat leaves its base connectable; a mirror has no lobe to connect to.
     Bsdf::Parameters p = makeParameters(Rgb(0.5f), 0, 0);
     p.roughness = 0;
     EXPECT_TRUE(Bsdf(p, world().n, world().n, tables()).connectable());
     p.metallic = 1;
     EXPECT_FALSE(Bsdf(p, world().n, world().n, tables()).connectable());
-    // ior 1 lets a rough solid body through in a straight line.
+    // With ior 1, a rough solid body lets light pass in a straight line.
     p = makeParameters(Rgb(0.5f), 0, 1, 1, 1.0f);
     p.roughness = 0.7f;
     const Vec3 from = world().toWorld(polar(70, 20));

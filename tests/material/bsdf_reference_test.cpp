@@ -1,5 +1,5 @@
-// Against the textbook: the published formulas in double, local coordinates, separate from the
-// renderer's arrangement of them; and the delta events as limits of narrow lobes (numerics.md, "Deltas").
+// Compares with the textbook: the published formulas in double and local coordinates, independent of how the renderer
+// arranges them. Also, delta events are limits of narrow lobes (numerics.md, "Deltas").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ Vec3d randomDirection(Random& random) {
     const double r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
-/// One above the plane z = 0, not quite grazing.
+/// A direction above the plane z = 0, not quite grazing.
 Vec3d randomAbove(Random& random) {
     Vec3d d = randomDirection(random);
     d.z = std::abs(d.z) + 0.01;
@@ -99,7 +99,7 @@ TEST(BsdfReference, GlassFollowsWalter) {
                 const Reference r = glassReference(
                     Vec3d(e), Vec3d(l), double(p.roughness) * double(p.roughness), double(p.ior));
                 const BsdfEvaluation v = bsdf.evaluate(e, l);
-                // Where the microfacet is nearly grazing, 1 - F itself is small and rounded.
+                // Where the microfacet is nearly grazing, 1 - F itself is small and suffers from rounding.
                 const auto near = [](double x) { return 1e-3 * x + 1e-5; };
                 ASSERT_NEAR(double(v.f.r), r.f, near(r.f)) << ior << " " << roughness;
                 ASSERT_NEAR(double(v.pdfWToLight), r.pdfToLight, near(r.pdfToLight));
@@ -136,7 +136,7 @@ TEST(BsdfReference, MetalAndThinGlass) {
             const double fresnel = textbookFresnel(eh, 1.5);
             const BsdfEvaluation r = thin.evaluate(Vec3(e), Vec3(l));
             ASSERT_NEAR(double(r.f.b), lobe * fresnel, 1e-3 * lobe);
-            // Both ways through.
+            // Transmission from either side.
             const BsdfEvaluation t = thin.evaluate(Vec3(e), Vec3(Vec3d{l.x, l.y, -l.z}));
             const BsdfEvaluation u = thin.evaluate(Vec3(Vec3d{e.x, e.y, -e.z}), Vec3(l));
             ASSERT_NEAR(double(t.f.b), lobe * (1 - fresnel) * 0.1, 1e-3 * lobe);
@@ -146,12 +146,12 @@ TEST(BsdfReference, MetalAndThinGlass) {
     }
 }
 
-// The delta event is the limit of the narrowest rough lobe: the same ratio of the two densities and
-// the same f / pdfW; for refraction that ratio is (eta_l / eta_e)^2 |l.ns| / |e.ns|.
+// The delta event is the limit of the narrowest rough lobe: it has the same ratio of the two densities and the same f /
+// pdfW. For refraction the ratio of densities is (eta_l / eta_e)^2 |l.ns| / |e.ns|.
 TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
     int compared = 0;
     for (const Material& m : materials()) {
-        if (m.parameters.pane) continue;  // rough glass is none
+        if (m.parameters.pane) continue;  // rough glass is no pane
         for (const double degrees : {0.0, 25.0, 38.0, 55.0, 75.0}) {
             for (const bool tilted : {false, true}) {
                 for (const bool front : {true, false}) {
@@ -193,7 +193,7 @@ TEST(BsdfReference, DeltaEventsAreTheNarrowLimit) {
     EXPECT_GT(compared, 400);
 }
 
-/// [Heitz14 eq 85] and Smith's Lambda of a surface that is as rough as `along` in x and `across` in y.
+/// [Heitz14 eq 85] and Smith's Lambda of a surface with alpha `along` in x and `across` in y.
 double brushedD(Vec3d h, double along, double across) {
     const double q = std::pow(h.x / along, 2) + std::pow(h.y / across, 2) + h.z * h.z;
     return 1 / (kPiD * along * across * q * q);
@@ -210,7 +210,7 @@ TEST(BsdfReference, BrushedMetalIsRougherAlongItsGrain) {
             Bsdf::Parameters p = makeParameters(Rgb(1.0f), 1, 0);
             p.roughness = float(roughness);
             p.anisotropy = float(anisotropy);
-            p.tangent = {-2, 0, 5};  // what of it lies on the surface counts, either way
+            p.tangent = {-2, 0, 5};  // only its part in the surface counts, and its sign does not
             const Bsdf metal(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
             const double across = roughness * roughness;
             const double along = across + (1 - across) * anisotropy * anisotropy;
@@ -237,7 +237,7 @@ TEST(BsdfReference, SheenIsCharlies) {
         p.sheenRoughness = float(roughness);
         const Bsdf cloth(p, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
         const double alpha = roughness * roughness, k = std::pow(1 - alpha, 2);
-        // [Estevez17, table 1], exponents as they are printed.
+        // [Estevez17, table 1], exponents as printed.
         const double coefficients[5] = {
             k * 25.3245 + (1 - k) * 21.5473, k * 3.32435 + (1 - k) * 3.82987,
             k * 0.16801 + (1 - k) * 0.19823, k * -1.27393 + (1 - k) * -1.97760,
@@ -262,8 +262,8 @@ TEST(BsdfReference, SheenIsCharlies) {
     }
 }
 
-// A sheen leaves to what is under it what it does not return itself, and a white one on white returns no
-// more than arrives, however narrow it is.
+// A sheen leaves to the layers under it what it does not reflect. White sheen on white reflects no more than arrives,
+// however narrow it is.
 TEST(BsdfReference, SheenOnWhiteGainsNothing) {
     Random random(30);
     for (const float roughness : {0.0f, 0.1f, 0.2f, 0.5f, 1.0f}) {
@@ -300,8 +300,8 @@ TEST(BsdfReference, LeavesDivideTheirBase) {
     }
 }
 
-// Lacquer of weight 1 with a normal of its own: a smooth one mirrors about that normal what Fresnel says,
-// and the base keeps the rest, about its own.
+// A smooth clearcoat of weight 1 with its own normal mirrors about that normal as Fresnel says. The base keeps the
+// rest, about its own normal.
 TEST(BsdfReference, ClearcoatOfItsOwnMirrorsAboutItsNormal) {
     const Vec3 n = world().n, coat = world().toWorld(polar(15, 120));
     Bsdf::Parameters p = clearcoated(makeParameters(Rgb(0.5f), 0, 0, 0), 1, 0);
@@ -312,7 +312,7 @@ TEST(BsdfReference, ClearcoatOfItsOwnMirrorsAboutItsNormal) {
         const float cosine = dot(e, coat);
         const Vec3 mirrored = coat * (2 * cosine) - e;
         const BsdfEvaluation d = bsdf.evaluate(e, mirrored, ScatterEvent::DeltaReflection);
-        // f carries |to . coat| / |to . n| of a normal that is not the surface's.
+        // f contains |to . coat| / |to . n|, because the coat's normal is not the surface's.
         const double fresnel = fresnelDielectric(double(cosine), 1.5);
         EXPECT_NEAR(d.f.r, fresnel * double(cosine / dot(mirrored, n)), 1e-3 * double(d.f.r));
         EXPECT_EQ(bsdf.evaluate(e, n * (2 * dot(e, n)) - e, ScatterEvent::DeltaReflection).f,
@@ -325,7 +325,7 @@ TEST(BsdfReference, ClearcoatOfItsOwnMirrorsAboutItsNormal) {
 }
 
 TEST(BsdfReference, CoatOverDiffuse) {
-    // Smooth: rho/pi (1 - F)(1 - F)/(1 - F_avg), everything reflected where rho is 1.
+    // A smooth coat: rho/pi (1 - F)(1 - F)/(1 - F_avg), and everything is reflected where rho is 1.
     Random random(23);
     for (const double specular : {0.5, 1.0}) {
         Bsdf::Parameters p = makeParameters(Rgb(1.0f), 0, 0, float(specular));
@@ -350,8 +350,8 @@ TEST(BsdfReference, CoatOverDiffuse) {
     }
 }
 
-// A smooth clearcoat on a mirror: both reflect one way, F of the coat and (1 - F) of the mirror.
-// A rough one adds its lobe to what it leaves of any other.
+// A smooth clearcoat on a mirror: both reflect in one direction, with F of the coat and (1 - F) of the mirror. A rough
+// one adds its lobe to what it leaves of the lobes under it.
 TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
     Random random(27);
     for (const double weight : {0.5, 1.0}) {
@@ -377,7 +377,7 @@ TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
             const BsdfEvaluation m = mirror.evaluate(Vec3(e), Vec3(Vec3d{-e.x, -e.y, e.z}),
                                                      ScatterEvent::DeltaReflection);
             EXPECT_NEAR(double(m.f.g), f + (1 - f) * schlickF, 1e-4);
-            EXPECT_NEAR(double(m.pdfWToLight), e.z, 1e-5);  // nothing to choose
+            EXPECT_NEAR(double(m.pdfWToLight), e.z, 1e-5);  // there is only one event
             const Vec3d h = normalize(e + l);
             const double lobe = textbookD(alpha, h.z) /
                                 (1 + lambda(alpha, e.z) + lambda(alpha, l.z)) / (4 * e.z * l.z);
@@ -389,7 +389,7 @@ TEST(BsdfReference, ClearcoatOverMirrorAndMetal) {
     }
 }
 
-// F0 has the colour, cut at 1; towards grazing angles the coat becomes white, whatever it was.
+// F0 has the colour, limited to 1. Towards grazing angles every coat becomes white.
 TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
     Random random(26);
     const double ior = 1.5, f0 = 0.04;
@@ -406,7 +406,7 @@ TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
                                 (4 * e.z * l.z);
             const double fresnel = textbookFresnel(dot(e, h), brightest);
             const auto expected = [&](float c) {
-                // Of the channel's own F0 as much is left as of the brightest one's way to 1.
+                // A channel rises towards 1 by the same share of its way as the brightest channel does.
                 const double rise = (fresnel - most) / (1 - most), own = f0 * double(c);
                 return 0.8 * (own + (1 - own) * rise) * lobe;
             };
@@ -418,7 +418,7 @@ TEST(BsdfReference, CoatColourFadesTowardsGrazingAngles) {
     }
 }
 
-// White furnace: what the layer does not reflect, a white base does, at every roughness and angle.
+// White furnace: a white base reflects what the layer does not, at every roughness and angle.
 TEST(BsdfReference, WhitePlasticReturnsEverything) {
     Random random(25);
     struct Layer {
@@ -426,7 +426,7 @@ TEST(BsdfReference, WhitePlasticReturnsEverything) {
         Rgb color{1.0f};
         float clearcoat = 0;
     };
-    // Green, which is looked at, is always a brightest channel.
+    // The test reads green, which is one of the brightest channels in every colour here.
     const double significance = sidak(1e-3, 6 * 6 * 5);
     for (const auto& [specular, ior, color, clearcoat] : {Layer{1.0f, 1.5f},
                                                           {0.5f, 1.8f},
@@ -455,7 +455,7 @@ TEST(BsdfReference, WhitePlasticReturnsEverything) {
     }
 }
 
-// Roulette's estimate is an upper one for the mean over directions.
+// The estimate for Russian roulette is an upper bound of the mean albedo over directions.
 TEST(BsdfReference, SurvivalAlbedoBoundsTheMeanAlbedo) {
     Random random(24);
     for (const Material& m : materials()) {
@@ -481,7 +481,7 @@ TEST(BsdfReference, SurvivalAlbedoBoundsTheMeanAlbedo) {
     }
 }
 
-/// Two materials that must be one and the same.
+/// Expects two materials to be the same.
 void expectSame(const Bsdf::Parameters& a, const Bsdf::Parameters& b, const std::string& what) {
     SCOPED_TRACE(what);
     const Bsdf x(a, Vec3{0, 0, 1}, Vec3{0, 0, 1}, tables());
@@ -542,7 +542,7 @@ TEST(BsdfReference, LobesLeftOutAreNotThere) {
 }
 
 TEST(BsdfReference, WhatIsLeftOfAMixtureIsItsOtherPart) {
-    // Half plastic, half metal: the metal's share is absorbed, the plastic keeps its own.
+    // Half plastic, half metal: the metal's share is absorbed, and the plastic keeps its own.
     Bsdf::Parameters mixed = makeParameters(Rgb(0.8f, 0.4f, 0.2f), 0.5f, 0, 0);
     mixed.roughness = 0.5f;
     mixed.without.add(LobeKind::Glossy);
@@ -554,7 +554,7 @@ TEST(BsdfReference, WhatIsLeftOfAMixtureIsItsOtherPart) {
         EXPECT_NEAR(e.f.r, 0.5 * 0.8 / std::numbers::pi, 1e-6);
         EXPECT_NEAR(e.f.b, 0.5 * 0.2 / std::numbers::pi, 1e-6);
     }
-    // Coat, base and glass without the base: only lobes that are there are chosen.
+    // Coat, base and glass without the base: sampling chooses only from the lobes that are left.
     Bsdf::Parameters all = makeParameters(Rgb(0.8f), 0, 0.5f);
     all.roughness = 0.5f;
     all.without.add(LobeKind::Diffuse);

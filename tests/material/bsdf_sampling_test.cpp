@@ -1,9 +1,9 @@
-// Samples against densities and energies over the whole grid: chi-square of the
-// sampled directions against the integrated density, empty draws against what is missing to 1,
-// weights against quadrature, and no gain of energy.
+// Compares samples with densities and energies over the whole grid: chi-square of the sampled
+// directions against the integrated density, empty draws against what the density lacks to 1,
+// weights against quadrature. No case may gain energy.
 //
-// False alarms: kAlarm for each suite in all, whatever the number of cases (the seeds are fixed, so
-// a suite that passes once passes always).
+// False alarms: kAlarm for each suite as a whole, whatever the number of cases. The seeds are fixed,
+// so a suite that passes once always passes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,19 +23,19 @@ constexpr double kQuadrature = 0.004;  // bound of the quadrature's error in any
 
 struct Integrals {
     std::vector<double> mass;  // density per bin
-    double density = 0;        // all of it, delta events included
-    double energy = 0;         // ditto of f |to.ng| without eta^2
+    double density = 0;        // in all bins and delta events
+    double energy = 0;         // likewise, of f |to.ng| without eta^2
     std::vector<double> deltaPmf;
 };
 
-/// Where a delta event about one of the normals leads.
+/// The direction of a delta event about one of the normals.
 struct DeltaEvent {
     ScatterEvent event;
     Vec3 to;
-    double cosine;  ///< that its density is against: |to . n|
+    double cosine;  ///< |to . n| of that normal, a factor of the density
 };
 
-/// All that delta events may lead to, in double from the definition.
+/// All delta events of a case, computed in double from the definition.
 std::vector<DeltaEvent> deltaEvents(const Case& c) {
     std::vector<DeltaEvent> out;
     const Vec3d v = Vec3d(c.from), ng = Vec3d(c.bsdf.ng()), ns = Vec3d(c.bsdf.ns());
@@ -65,7 +65,7 @@ std::vector<DeltaEvent> deltaEvents(const Case& c) {
         add(ScatterEvent::DeltaTransmission,
             normalize(n * (cosine / eta - through) - v * (1 / eta)), through);
     }
-    if (straight) {  // one event, whatever the normal
+    if (straight) {  // one event for all normals
         out.push_back({ScatterEvent::DeltaTransmission, -c.from, std::abs(dot(v, ng))});
     }
     return out;
@@ -104,7 +104,7 @@ void check(const Case& c, std::uint64_t seed, int samples, double significance) 
     const Integrals expected = integrate(c, bins, deltas);
     EXPECT_LE(expected.density, 1 + kQuadrature);
     if (c.side == Side::Eye || !c.tilted) {
-        // The light walk's adjoint factor is not bounded.
+        // The light walk's adjoint factor is unbounded.
         EXPECT_LE(expected.energy, 1 + kQuadrature);
     }
 
@@ -123,7 +123,7 @@ void check(const Case& c, std::uint64_t seed, int samples, double significance) 
         ASSERT_GT(c.pdf(s->evaluation), 0);
         weight.add(c.energy(s->evaluation, s->to) / c.pdf(s->evaluation));
         if (isDelta(s->event)) {
-            // The sampled direction is that of one of the events.
+            // The sampled direction must be that of one of the events.
             std::size_t k = 0;
             while (k < deltas.size() &&
                    !(s->event == deltas[k].event && length(s->to - deltas[k].to) < 1e-3)) {
@@ -138,7 +138,8 @@ void check(const Case& c, std::uint64_t seed, int samples, double significance) 
         }
     }
 
-    // Chi-square; bins that expect little share one. The quadrature's own error widens each bin.
+    // Chi-square. Bins with a small expectation are pooled; the quadrature's own error adds to each
+    // bin's variance.
     double chi2 = 0, pooledExpected = 0, pooledCount = 0;
     int dof = -1;
     const auto compare = [&](double count, double expect, double quadratureError) {
@@ -174,7 +175,7 @@ void check(const Case& c, std::uint64_t seed, int samples, double significance) 
         << expected.energy;
 }
 
-/// Each `stride`th case from `first` on; kAlarm is for `tests` cases.
+/// Checks every `stride`th case from `first` on. kAlarm is for `tests` cases.
 void run(std::size_t first, std::size_t stride, std::size_t tests, int samples) {
     const std::vector<Case> cases = grid();
     for (std::size_t i = first; i < cases.size(); i += stride) {

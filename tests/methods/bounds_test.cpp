@@ -1,5 +1,5 @@
-// However many picks there are and however bright the vertex: a connection is never believed to
-// stand for more samples than there are light subpaths to pick from.
+// A connection never counts as more samples than there are light subpaths, however many picks there
+// are and however bright its light vertex is.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr int kManySubpaths = 80;  // more than picks
 constexpr double kLittle = 1e-3;
 
-/// A surface at the origin that all light vertices arrive at with their whole throughput.
+/// A surface at the origin that every light vertex reaches with its whole throughput.
 class SurfaceInSight final : public FixedEyePath {
   public:
     SurfaceInSight() {
@@ -32,8 +32,8 @@ class SurfaceInSight final : public FixedEyePath {
     }
 };
 
-/// The samples that connections with a y_1 of these throughputs are believed to stand for, with as
-/// many picks as can be asked for.
+/// The samples that the weights count for connections with a y_1 of these throughputs, with as many
+/// picks as the options allow.
 std::vector<double> believedSamples(const MethodRow& row, const std::vector<std::string>& more,
                                     const std::vector<float>& throughputs, Label light) {
     const LightPool pool = poolOfPairs(kManySubpaths, [](int i, PathVertex& y) {
@@ -90,11 +90,12 @@ TEST(Beliefs, neverExceedTheLightSubpaths) {
     }
 }
 
-/// Subspaces keep the vertices of W whole iterations: the bound is M W, and the brightest reach it
-/// but for Gamma: N picks of which a share goes to the subspace are N Gamma, each M W at most.
+/// Subspaces keep the vertices of W whole iterations, so the bound is M W. The brightest vertices
+/// fall short of it only by the factor N Gamma / (1 + (N - 1) Gamma).
 TEST(Beliefs, neverExceedTheLightSubpathsThatAreKept) {
     const MethodRow row = mappedSubspaceRow();
-    // Vertices per subpath: 0.1, 0.5, 0 and 0.01; M W reaches M_0 = 400, W 32 at most.
+    // W = M_0 / (M v), at most 32, with M_0 = 400 and v = 0.1, 0.5, 0 and 0.01 vertices per
+    // subpath.
     const double windows[] = {32, 10, 32, 32};
     for (Label i = 0; i < 4; ++i) {
         SCOPED_TRACE(i);

@@ -1,5 +1,5 @@
-// Acceptance 0: every row, and two that use more of the interfaces than any real one, reproduce the
-// completely enumerated truth.
+// Acceptance 0: every row of the tool, and rows of tests that use more of the interfaces, reproduce the completely
+// enumerated truth.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -12,10 +12,9 @@
 namespace lacuna::test {
 namespace {
 
-/// Two-sided 4.5 standard errors: a false alarm in 7e-6 of the comparisons, of which there are
-/// fewer than 250 here.
+/// Two-sided 4.5 standard errors: a false alarm in 7e-6 of the comparisons, of which there are fewer than 250 here.
 constexpr double kStandardErrors = 4.5;
-/// How well the mean is known: a bias of 0.65 % is seen in 98 of 100 cases, or one of 1.3 %.
+/// The relative standard error of the mean. A bias of 0.65 % fails in 98 of 100 cases, or one of 1.3 % if coarse.
 constexpr double kError = 1e-3, kCoarseError = 2e-3;
 
 std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
@@ -26,8 +25,8 @@ std::vector<std::string> settingsOf(const MethodRow& row, int candidates) {
     return settings;
 }
 
-/// Rows that merge between deltas alone do so where there are some; those that look through polished metal get
-/// some.
+/// Rows that merge only between deltas need some deltas to merge at, and rows that look through polished metal need
+/// polished metal.
 FiniteSpace spaceFor(const MethodRow& row, const std::vector<std::string>& settings) {
     const Merging merging = row.create(resolve(row, settings))->merging();
     if (merging.where == Merges::BetweenDeltas) return FiniteSpace::ofMirrors();
@@ -45,8 +44,7 @@ void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
     EXPECT_NEAR(e.mean / e.truth, 1.0, kStandardErrors * e.standardError / e.truth)
         << row.name << ": mean " << e.mean << ", truth " << e.truth << ", standard error "
         << e.standardError << ", " << e.iterations << " iterations";
-    // The weights' n_m is the number of photons that there are: a count that is wrong everywhere
-    // keeps every mean.
+    // A photon count n_m that is wrong everywhere leaves every mean right. The squares of merges show it.
     if (e.trueMergeSquares == 0.0) return;
     EXPECT_LT(e.mergeSquaresError, 0.0201 * e.trueMergeSquares)
         << row.name << ": too noisy to judge";
@@ -54,8 +52,7 @@ void expectTruth(const MethodRow& row, const std::vector<std::string>& settings,
         << row.name << ": squares of merges";
 }
 
-/// A row and the settings under which it meets the truth; one test each, so that they run in
-/// parallel.
+/// A row and the settings under which it must meet the truth. Each case is one test, so that they run in parallel.
 struct Case {
     MethodRow row;
     std::vector<std::string> settings;
@@ -77,17 +74,16 @@ TEST_P(FiniteSpacePoolsSlow, meetsTheEnumeratedTruth) {
     expectTruth(GetParam().row, GetParam().settings, GetParam().relativeError);
 }
 
-/// Every row as it is.
+/// Every row with its default settings.
 std::vector<Case> everyRow() {
     std::vector<Case> cases;
     for (const MethodRow& row : allRows()) cases.push_back({row, settingsOf(row, 4)});
     return cases;
 }
 
-/// Every row with next event switched where it can be, with every other choice that a parameter
-/// offers (where it has cache points that are weighted, also with several around an eye vertex, with
-/// and without a reserve), and where it has cache points with more of them than the space has states.
-/// Guides are left out: they are of walks, and the space's are its own.
+/// Every row with next event switched if possible, and with every other choice of its options. Rows with cache points
+/// also run with more points than the space has states. Where points may be weighted, several surround an eye vertex,
+/// with and without a reserve. Guides are left out: they guide a scene's walks, and the space has its own.
 std::vector<Case> everyChoice(Rows rows, double relativeError) {
     std::vector<Case> cases;
     for (const MethodRow& row : rowsOf(rows)) {
@@ -105,7 +101,7 @@ std::vector<Case> everyChoice(Rows rows, double relativeError) {
             for (const std::string& choice : p.choices) {
                 if (choice == p.standard) continue;
                 add(p.name + "=" + choice);
-                // Without next event lamps are never picked by what a vertex sees of them.
+                // Without next event, a lamp is never picked by its contribution at a vertex.
                 if (p.name == "lamps" && !nextEvent) {
                     cases.back().settings.push_back("next_event=on");
                 }
@@ -116,7 +112,7 @@ std::vector<Case> everyChoice(Rows rows, double relativeError) {
             if (p.name == "cache_points") add("cache_points=1");
             if (p.name == "second_candidates") add("second_candidates=3");
             if (p.name != "points") continue;
-            // Without next event and with r = 1, picks carry so much that one share too few shows.
+            // Without next event and with r = 1, picks carry so much light that a missing share shows.
             for (const char* defensive : {"defensive=0", "defensive=0.5"}) {
                 add("points=weighted");
                 for (const char* more : {"cache_points=3", "cache_density=2", "next_event=off",
@@ -129,7 +125,7 @@ std::vector<Case> everyChoice(Rows rows, double relativeError) {
     return cases;
 }
 
-/// Every row as it is, and with merging where it is a switch.
+/// Every row with its default settings, and with merging where it is an option.
 std::vector<Case> withMerging() {
     std::vector<Case> cases = everyRow();
     for (const MethodRow& row : allRows()) {
@@ -142,7 +138,7 @@ std::vector<Case> withMerging() {
     return cases;
 }
 
-/// Pools of one and two subpaths: there a density that reads the pool it weighs is off by percents.
+/// Pools of one and two subpaths: a density that reads the pool it weighs is wrong by several percent there.
 std::vector<Case> tinyPools(Rows rows) {
     std::vector<Case> cases;
     for (const MethodRow& row : rowsOf(rows)) {
@@ -172,9 +168,9 @@ INSTANTIATE_TEST_SUITE_P(All, FiniteSpacePoolsSlow, testing::ValuesIn(tinyPools(
 INSTANTIATE_TEST_SUITE_P(NightOfTests, FiniteSpacePoolsSlow,
                          testing::ValuesIn(tinyPools(Rows::OfTests)), nameOf);
 
-/// The counterexample [Nabata20a Fig. 3]: with the Q of the pool that is weighed, two subpaths lose
-/// 1.2 % of the picture (that of earlier pools loses nothing). The error asked for shows it in
-/// eight standard errors, and 4.5 are a false alarm in 7e-6.
+/// The counterexample of [Nabata20a Fig. 3]. With Q from the pool that is weighed, two subpaths lose 1.2 % of the
+/// picture; Q of earlier pools loses nothing. At the requested error this is eight standard errors, and the bound of
+/// 4.5 is a false alarm in 7e-6.
 TEST(FiniteSpaceBiased, qOfTheCurrentPoolIsSeen) {
     const MethodRow current = findMethod("risbpt-current");
     EXPECT_TRUE(current.biased);
@@ -189,7 +185,7 @@ TEST(FiniteSpaceBiased, qOfTheCurrentPoolIsSeen) {
     expectTruth(findMethod("risbpt"), settings, kEnough);
 }
 
-/// The method's density as it stands after its warm-up, on random paths of the space.
+/// The method's density before the first iteration, on random paths of the space.
 TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
     double worst = 0.0;
     for (const Case& c : withMerging()) {
@@ -220,7 +216,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
             space.fill(x, path);
             path.fillLightThroughputs(counts.rouletteDepth);
 
-            // n p r of every strategy by full products.
+            // n p r of every strategy, as full products.
             std::vector<double> product(std::size_t(k) + 2, 0.0);
             double sum = 0.0;
             for (int t = 1; t <= k + 1; ++t) {

@@ -1,5 +1,5 @@
-// Selectors alone. Over picks from a small fixed pool, the mean of sum weight g
-// equals (1/M) sum g, for a positive g and for one that is zero on half of the pool.
+// Tests selectors alone. Over picks from a small fixed pool, the mean of sum weight g equals (1/M)
+// sum g, for a positive g and for one that is zero on half of the pool.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
     IterationStatistics statistics;
     double worst = 0.0;
     IterationContext context{space, threads, 20, 0, 1000, statistics};
-    // A row may draw in prepare() what it picks from in select(), so the mean is over both.
+    // A row may draw in prepare() what it picks from in select(), so the mean is taken over both.
     constexpr int kSubpaths = 5, kPrepares = 1000, kDraws = 400;
     // 4.5 standard errors: 7e-6 false alarms per comparison, two comparisons per row.
     for (const MethodRow& row : allRows()) {
@@ -42,12 +42,12 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         do {
             space.traceEye(eyeRng, eye);
         } while (eye.size() < 4 || !eye[1].connectable() || !eye[3].connectable());
-        // A row may pick more for some t than for others.
+        // A row may make more picks for some t than for others.
         const Subpath ends[] = {{eye.data(), 2}, {eye.data(), 4}};
 
         const auto g = [](const PathVertex& v, bool halfZero) {
             const int state = FiniteSpace::stateOf(v);
-            // What carries nothing need not be picked.
+            // A vertex without throughput need not be picked.
             if ((halfZero && state % 2 == 0) || isBlack(v.throughput)) return 0.0;
             return 0.3 + 0.1 * state + 0.2 * v.index;
         };
@@ -55,7 +55,8 @@ TEST(Selector, meanOfWeightedPicksIsTheMeanOverThePool) {
         ProposalSink sink;
         RayTally tally;
         Rng rng(23, 0, StreamKind::Connection, 0);
-        // The first round's pool is the one that retaining rows keep: the same as all others.
+        // The first round only fills the pool that some rows retain. It is the same pool in all
+        // rounds.
         for (std::uint32_t round = 0; round <= kPrepares; ++round) {
             if (round > 0) method->freeze(round);
             method->prepare(pool, context);

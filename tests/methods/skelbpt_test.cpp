@@ -1,5 +1,5 @@
-// What skelbpt's weights believe of its picks: that a node sees what its map of distances says, and
-// that the pmfs are combined by the maximum heuristic.
+// What skelbpt's weights assume about its picks: a node sees what its map of distances says, and
+// the pmfs are combined by the maximum heuristic.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -37,7 +37,7 @@ class BehindAWall final : public PathSpace {
     FiniteSpace space_{3};
 };
 
-/// One node for everything.
+/// A skeleton with one node for all positions.
 std::shared_ptr<const Skeleton> oneNode() {
     const VoxelShape shape{{1, 1, 1}, {-8, -8, -8}, 16};
     auto skeleton = std::make_shared<Skeleton>();
@@ -46,17 +46,18 @@ std::shared_ptr<const Skeleton> oneNode() {
     return skeleton;
 }
 
-/// What is picked M times as often, of a belief of n r samples: R of 1 / (1/M + (1 - 1/M) / R).
+/// R of a connection that counts as n r = 1 / (1/M + (1 - 1/M) / R) samples: M times the
+/// probability of the pick.
 double oftenness(double samples, int subpaths) {
     const double perSubpath = 1.0 / double(subpaths);
     return (1.0 - perSubpath) / (1.0 / samples - perSubpath);
 }
 
-// Where every iteration has the same pool, the frozen means are this pool's, and the belief is
-// exact but for the choice among the pmfs: it takes each by the share m of the sum of maxima that
-// it owns (that sum is Z), and the selector takes each of k that own anything alike. So what a
-// vertex is believed to be picked is m k / Z = m k / sum m of what it is: alike for all that one
-// pmf owns, and k on average over the k pmfs.
+// Every iteration has the same pool, so the frozen means are those of this pool. Then the belief is
+// exact except for the choice among the pmfs. The belief takes a pmf by its share m of the sum of
+// maxima Z. The selector takes each of the k pmfs that own a vertex equally often. So the ratio of
+// belief to picks is m k / Z: the same for all vertices of one pmf, and 1 on average over the k
+// pmfs.
 void expectThePicks(const std::vector<Belief>& found, std::size_t leastOwners) {
     std::map<std::uint32_t, double> ratio;  // by the pmf that owns the vertex
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -73,8 +74,8 @@ void expectThePicks(const std::vector<Belief>& found, std::size_t leastOwners) {
     EXPECT_NEAR(sum / double(ratio.size()), 1.0, 1e-6);
 }
 
-/// An eye path that comes to a wall at z = 0 from above, and then to the same wall from below.
-/// Nothing is in anything's way.
+/// An eye path that meets a wall at z = 0 first from above and then from below. Nothing blocks any
+/// ray.
 class WallFromBothSides final : public FixedEyePath {
   public:
     WallFromBothSides() {
@@ -89,7 +90,7 @@ class WallFromBothSides final : public FixedEyePath {
     }
 };
 
-/// Five layers of voxels along z, the middle one the wall; a node above, a node below.
+/// Five layers of voxels along z, the middle one the wall, with one node above it and one below.
 std::shared_ptr<const Skeleton> nodeOnEitherSide() {
     auto skeleton = std::make_shared<Skeleton>();
     skeleton->nodes = {{{0, 0, 1.5}, 1}, {{0, 0, -1.5}, 1}};
@@ -106,7 +107,8 @@ TEST(SkeletonBeliefs, areThePicksButForTheEvenChoice) {
     constexpr int kSubpaths = 6;
     const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
         y.position = {i % 2 == 0 ? 0.9f : 2.0f + 0.3f * float(i), 0.4f * float(i), 0.1f};
-        // What is hidden is bright: taken for seen it would be believed to be picked often.
+        // Hidden vertices are bright. If the weights took them for visible, they would expect to
+        // pick them often.
         y.throughput = Rgb((i % 2 == 0 ? 1.0f : 20.0f) * float(1 + i * i));
     });
     const BehindAWall space;
@@ -131,7 +133,7 @@ TEST(SkeletonBeliefs, areThePicksButForTheEvenChoice) {
     expectThePicks(found, 2);
 }
 
-// The two nodes want other light vertices: what one is next to is far from the other.
+// The nodes prefer different light vertices: those next to one are far from the other.
 TEST(SkeletonBeliefs, areThoseOfThePathsSide) {
     constexpr int kSubpaths = 6;
     const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
@@ -148,7 +150,8 @@ TEST(SkeletonBeliefs, areThoseOfThePathsSide) {
     give(*method, nodeOnEitherSide());
     const ConnectionDensity& density = settle(*method, pool, context, 2);
 
-    // Without labels, when the node is looked up on the way, and with those of a walk.
+    // First without labels, so that the node is looked up on the way, then with the labels of a
+    // walk.
     std::vector<PathVertex> eye(space.eye().begin(), space.eye().end());
     for (const bool labelled : {false, true}) {
         if (labelled) density.labelWalk(eye);
@@ -160,7 +163,7 @@ TEST(SkeletonBeliefs, areThoseOfThePathsSide) {
             SCOPED_TRACE(t);
             expectThePicks(found[t - 2], 1);
         }
-        // The nodes disagree: believing the other one's could not pass.
+        // The nodes disagree, so the other node's belief would fail.
         EXPECT_GT(found[0][0].picked, 1.5 * found[0][1].picked);
         EXPECT_GT(found[1][1].picked, 1.5 * found[1][0].picked);
     }

@@ -1,4 +1,4 @@
-// Tables of options: what code may get wrong about an option and a compiler does not see.
+// Tables of options: mistakes in an option's row that a compiler does not see.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -18,11 +18,12 @@ void expectSound(const std::string& owner, const std::vector<Option>& options) {
         EXPECT_FALSE(o.help.empty());
         EXPECT_EQ(o.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_."),
                   std::string::npos);
-        // As it would be given, in its shortest form; of a choice one of its names.
+        // The default must be written in its shortest form; the default of a choice must be one of
+        // its names.
         EXPECT_NO_THROW(EXPECT_EQ(o.checked(o.standard, o.name), o.standard));
         const bool number = o.kind == Option::Kind::Integer || o.kind == Option::Kind::Real;
         EXPECT_EQ(o.low < o.high, number);
-        // Integers are read as doubles: beyond, two of them are one.
+        // Integers are read as doubles, which are not exact beyond this.
         EXPECT_LE(o.high, 0x1p53);
     }
 }
@@ -45,7 +46,7 @@ TEST(OptionTables, presetsAreValuesThatTheRowTakes) {
         for (const std::string& assignment : row.paper) {
             const std::string name = assignment.substr(0, assignment.find('='));
             EXPECT_EQ(name + "=" + paper.at(name), assignment) << "in its shortest form";
-            // Single parameters override it, wherever they stand.
+            // A single parameter overrides the preset, wherever it stands.
             const std::vector<std::string> both = {name + "=" + measured.at(name), preset[0]};
             EXPECT_EQ(resolve(row, both).at(name), measured.at(name));
         }

@@ -1,4 +1,4 @@
-// Two-stage resampling: that the weights believe what the second stage does.
+// Two-stage resampling: the weights know what the second stage does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,8 @@ namespace lacuna::test {
 namespace {
 
 /// One eye path from above to a surface at the origin. Light vertices arrive with a share of their
-/// throughput and one G, and are seen, or but for those next to the origin, or not at all.
+/// throughput and the same G. The surface sees all of them, or all except those next to the origin,
+/// or none.
 class OneSurface final : public FixedEyePath {
   public:
     static constexpr double kGeometry = 1e-3;  // less than any light vertex really has
@@ -37,10 +38,10 @@ class OneSurface final : public FixedEyePath {
     float scattered_;
 };
 
-// Where every iteration has the same pool and a cluster is a vertex, Q2 is this pool's, and what
-// the second stage gives a vertex beyond its reserve is what the belief is exact for:
-// n r = 1 / (1/M1 + (1 - 1/M1) w), w the weight of the pick. The reserve goes to the vertex next to
-// the surface: without its share 1 - d the belief would be 1 / (1 - d) times too high.
+// Every iteration has the same pool and every cluster is one vertex, so Q2 is that of this pool.
+// Then the belief is exact for what the second stage gives a vertex beyond its reserve: n r = 1 /
+// (1/M1 + (1 - 1/M1) w), w the weight of the pick. The reserve goes to the vertex next to the
+// surface. Without the share 1 - d, the belief would be 1 / (1 - d) times too high.
 TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
     constexpr int kSubpaths = 6;
     const LightPool pool = poolOfPairs(kSubpaths, [](int i, PathVertex& y) {
@@ -68,8 +69,8 @@ TEST(TwoStageWeights, believeWhatTheSecondStagePicks) {
     }
 }
 
-/// The samples that a connection of throughput 2 counts as with a scatter of 3/4, under a pool of
-/// four subpaths of throughputs 1 to 4 that arrive with a scatter of 1/4.
+/// The samples that the weights count for a connection of throughput 2 and scatter 3/4. The pool
+/// has four subpaths of throughputs 1 to 4 that arrive with scatter 1/4.
 double believed(OneSurface::Sees sees, const char* clusters) {
     const LightPool pool = poolOfPairs(4, [](int i, PathVertex& y) {
         y.position = {0.4f * float(i), 0, 1.5f};
@@ -95,9 +96,9 @@ double believed(OneSurface::Sees sees, const char* clusters) {
     return density.effectiveSamples(c);
 }
 
-// Two clusters: Q1 is G times 10/4 whatever they are, Q2 a quarter of that, so p/q1 = 2.5 / 2 and
-// p/q2 = 0.625 / 1.5. Of the two picks a half is in reserve, so the second stage leaves p/q2 as it
-// is; the first one has a share of 1/M2.
+// Q1 is G times 10/4, whatever the clusters are, and Q2 is a quarter of that, so p/q1 = 2.5 / 2 and
+// p/q2 = 0.625 / 1.5. The reserve takes half of the two picks: N (1 - d) = 1, so p/q2 stays as it
+// is. p/q1 has the share 1/M2.
 TEST(TwoStageWeights, knowHowManyClustersThereAre) {
     const double ratio1 = 1.25, ratio2 = 0.625 / 1.5;
     EXPECT_NEAR(believed(OneSurface::Sees::All, "second_candidates=2"),
@@ -106,7 +107,7 @@ TEST(TwoStageWeights, knowHowManyClustersThereAre) {
                 1.0 / (0.25 + 0.75 * (0.25 * ratio1 + 0.75 * ratio2)), 1e-5);
 }
 
-// Where the point sees nothing only the first stage helps.
+// Where the point sees nothing, only the first stage helps.
 TEST(TwoStageWeights, countOnTheFirstStageWhereNothingIsSeen) {
     EXPECT_NEAR(believed(OneSurface::Sees::Nothing, "second_candidates=2"),
                 1.0 / (0.25 + 0.75 * 1.25), 1e-5);

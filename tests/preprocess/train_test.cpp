@@ -1,4 +1,4 @@
-// What lacuna-train says, writes and returns, and what lacuna-render makes of its file.
+// Output, files and exit codes of lacuna-train, and how lacuna-render uses its files.
 #include <signal.h>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +13,7 @@
 namespace lacuna::test {
 namespace {
 
-/// An environment of one radiance.
+/// An environment of constant radiance.
 void writeSky(const std::string& path, float radiance) {
     LayeredImage sky(8, 4);
     for (const char* channel : {"R", "G", "B"}) std::ranges::fill(sky.channel(channel), radiance);
@@ -22,14 +22,14 @@ void writeSky(const std::string& path, float radiance) {
 
 class TrainTool : public RenderTool {
   protected:
-    /// With the shape of the picture, which training looks at.
+    /// Includes the shape of the picture, which is an input of training.
     static constexpr const char* kSmall =
         " --paths 5000 --subspaces 50 --light-paths 5000 --width 24 --height 16";
     static constexpr const char* kSameSmall =
         "--set train.paths=5000 --set train.subspaces=50 --set train.light_paths=5000";
 
     Outcome train(const std::string& arguments) const { return run(arguments, LACUNA_TRAIN); }
-    /// Of what training just wrote to --json @t.json.
+    /// The file that the last training reported in --json @t.json.
     std::string trainedFile() const { return json("t.json").at("file"); }
     std::string render() const {
         std::string arguments = "@room.gltf -o @out.exr --method spcbpt --width 24 --height 16 ";
@@ -74,7 +74,7 @@ TEST_F(TrainTool, ReportHasItsKeysAndTheRendererReadsTheFile) {
     EXPECT_EQ(gamma.at("train_loss_by_epoch").size(), gamma.at("held_out_loss_by_epoch").size());
     EXPECT_EQ(j.at("subspaces"), 50);
     EXPECT_LE(j.at("light_subspaces"), 50);
-    // About: iterations are as many as the first one's number of paths says.
+    // Approximate: the number of iterations is estimated from the paths of the first one.
     EXPECT_NEAR(j.at("paths").get<double>(), 5000, 500);
     EXPECT_GT(j.at("held_out_paths"), 0);
     EXPECT_GE(j.at("empty_light_subspaces"), 0.0);
@@ -93,8 +93,8 @@ TEST_F(TrainTool, ReportHasItsKeysAndTheRendererReadsTheFile) {
     EXPECT_LT(json("out.json").at("verify").at("max_difference"), 1e-6);
 }
 
-/// What columns borrow from their neighbours lowers the held-out loss and may raise that of the
-/// training paths. Without it steps only lower the latter.
+/// Columns that borrow from their neighbours lower the held-out loss, and may raise the loss of the
+/// training paths. Without borrowing, every step lowers the training loss.
 TEST_F(TrainTool, WithoutBorrowingTheTrainingLossOnlyFalls) {
     const Outcome o = train(
         std::string("@room.gltf --cache @cache --borrow off --json @t.json --quiet") + kSmall);
@@ -109,7 +109,7 @@ TEST_F(TrainTool, WithoutBorrowingTheTrainingLossOnlyFalls) {
     EXPECT_LE(gamma.at("held_out_loss"), gamma.at("held_out_loss_full"));
 }
 
-/// On the door, where emission is worth learning.
+/// In the door scene, where emission is worth learning.
 TEST_F(TrainTool, EmissionIsLearnedFirstAndFollowed) {
     const std::string scene = LACUNA_SCENES "/door.glb --cache @cache ";
     const std::string small = "--width 24 --height 16 --quiet ";
@@ -124,7 +124,7 @@ TEST_F(TrainTool, EmissionIsLearnedFirstAndFollowed) {
     EXPECT_TRUE(std::filesystem::exists(emission.at("file").get<std::string>()));
     EXPECT_NE(o.out.find("emission: second moment"), std::string::npos) << o.out;
 
-    // Found by the methods that ask for it, and by no other.
+    // Methods that ask for the guide find it; other methods do not use it.
     const std::string render = scene + small + "--iterations 2 -o @out.exr --json @out.json ";
     const std::string learned = "--set emission=learned --set emission_paths=10000 ";
     const auto hash = [&](const std::string& name) {
@@ -146,8 +146,8 @@ TEST_F(TrainTool, EmissionIsLearnedFirstAndFollowed) {
     expectFailure(render + "--method pt --set emission=learned", 2, "emission");
 }
 
-/// On the door as well, where eye walks find little by themselves: each row learns for its own
-/// techniques.
+/// Also in the door scene, where eye walks alone find little light. Each row learns a guide for its
+/// own techniques.
 TEST_F(TrainTool, WalksAreLearnedAndFollowed) {
     const std::string scene = LACUNA_SCENES "/door.glb --cache @cache ";
     const std::string small = "--width 24 --height 16 --quiet ";
@@ -179,7 +179,7 @@ TEST_F(TrainTool, WalksAreLearnedAndFollowed) {
     EXPECT_EQ(rendered("--method pt"), ofPt);
 }
 
-/// Subspaces are trained under one emission, and refused under another.
+/// Subspaces that were trained with one emission are refused with another.
 TEST_F(TrainTool, SubspacesBelongToTheirEmission) {
     const std::string scene = LACUNA_SCENES "/door.glb --quiet --cache @cache ";
     const std::string shape = "--width 24 --height 16 ";
@@ -208,7 +208,7 @@ TEST_F(TrainTool, ResultDoesNotDependOnThreads) {
     EXPECT_EQ(hashes[2], hashes[0]);
 }
 
-/// Another setting: another file with another content, which the renderer finds by the same
+/// Another setting gives another file with another content. The renderer finds it by the same
 /// setting.
 TEST_F(TrainTool, SettingsChangeFileAndContent) {
     const char* options[] = {"", " --epochs 3", " --borrow off"};
@@ -261,8 +261,8 @@ TEST_F(TrainTool, CachesThatAreNotThisScenesExitWith3) {
     EXPECT_EQ(run(render() + " --quiet").exitCode, 0);
 }
 
-/// A cache is of what training saw: the environment, what is simulated, the camera, its lens, the
-/// longest paths. Each is a case where a foreign one was taken before.
+/// A cache depends on all inputs of training: the environment, the effects, the camera, its lens,
+/// the longest paths.
 TEST_F(TrainTool, CachesOfOtherInputsAreRefusedByName) {
     ASSERT_EQ(run(render() + " --quiet --prepare").exitCode, 0);
     ASSERT_EQ(run(render() + " --quiet").exitCode, 0);
@@ -289,7 +289,7 @@ TEST_F(TrainTool, CachesOfOtherInputsAreRefusedByName) {
         EXPECT_EQ(run(render() + options + " --quiet --prepare").exitCode, 0);
         EXPECT_EQ(run(render() + options + " --quiet").exitCode, 0);
     }
-    // Another content under the same name, another scale of it.
+    // The same environment with another scale, and another content under the same name.
     ASSERT_EQ(run(render() + " --env @sky.exr --quiet").exitCode, 0);
     expectFailure(render() + " --env @sky.exr --env-scale 2 --quiet", 3, "environment scale");
     writeSky(path("sky.exr"), 2.0f);
@@ -316,8 +316,8 @@ TEST_F(TrainTool, SkeletonsOfOtherScenesAreRefusedByName) {
     }
 }
 
-/// The command that the refusal names makes what is missing. A picture's size in pixels is no
-/// input, its shape is.
+/// The command in the refusal makes the missing cache. The picture's aspect ratio is an input, its
+/// size in pixels is not.
 TEST_F(TrainTool, TheNamedCommandMakesTheCache) {
     const std::string small = " --paths 5000 --subspaces 50 --light-paths 5000";
     const Outcome refused = run(render() + " --max-depth 4 --quiet");
@@ -340,7 +340,7 @@ TEST_F(TrainTool, TheNamedCommandMakesTheCache) {
     expectFailure(twice, 3, "aspect");
 }
 
-/// Training looks through the camera that is rendered.
+/// Training uses the camera that is rendered.
 TEST_F(TrainTool, TrainingLooksThroughTheChosenCamera) {
     TinyScene two;
     nlohmann::json scene = nlohmann::json::parse(two.text());
@@ -367,14 +367,14 @@ TEST_F(TrainTool, TrainingLooksThroughTheChosenCamera) {
 
 using TrainToolInterrupt = TrainTool;
 
-/// What --prepare makes is not kept half made, and no picture is made without it.
+/// An interrupted --prepare leaves no half-made cache and makes no picture.
 TEST_F(TrainToolInterrupt, WhilePreparingPromisesNothing) {
     const Outcome o = runAndSignal(
         "@room.gltf -o @out.exr --method spcbpt --prepare --cache @cache "
         "--set train.light_paths=1000000000 --set train.paths=1000 --set train.subspaces=10",
         {SIGINT}, std::chrono::milliseconds(700));
     EXPECT_EQ(o.exitCode, 130) << o.err;
-    // Whether the line that answers at once comes first depends on who looks first.
+    // The immediate answer to the signal may precede this line or not.
     EXPECT_NE(o.err.find("nothing was written"), std::string::npos) << o.err;
     EXPECT_EQ(o.err.find("saved"), std::string::npos) << o.err;
     EXPECT_FALSE(exists("out.exr"));
@@ -393,7 +393,7 @@ TEST_F(TrainToolInterrupt, WritesNothing) {
     }
 }
 
-/// Little or nothing to learn from: training ends, and the picture is right all the same.
+/// With little or nothing to learn from, training ends, and the picture is right.
 TEST_F(TrainTool, DegenerateScenesAndSettings) {
     TinyScene dark;
     dark.lamp = false;
@@ -403,7 +403,7 @@ TEST_F(TrainTool, DegenerateScenesAndSettings) {
     EXPECT_NE(nothing.err.find("nothing was learned"), std::string::npos) << nothing.err;
     EXPECT_EQ(json("t.json").at("paths"), 0);
 
-    // The lamp's ceiling and a wall face each other: the mean is known from bpt.
+    // bpt gives the reference mean.
     const std::string size = " --quiet --width 8 --height 6 --max-depth 3 --json @out.json ";
     ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --iterations 2000" + size).exitCode, 0);
     const double mean = json("out.json")["mean_rgb"][1];

@@ -1,4 +1,4 @@
-// Pmfs of cache points against brute force.
+// Compares the pmfs of cache points with brute force.
 #include "libcore/resampling/cache_pmfs.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,8 @@ TEST(CachePmfs, areTheWeightsOverTheirSum) {
             }
             if (rows[r].empty()) continue;
             EXPECT_EQ(sum, 1.0);
-            // Picks at evenly spaced u: as many of each as its pmf says, with the same pmf.
+            // Picks at evenly spaced u meet each vertex as often as its pmf says, and return that
+            // pmf.
             constexpr int kPicks = 4000;
             std::vector<int> count(100);
             for (int i = 0; i < kPicks; ++i) {

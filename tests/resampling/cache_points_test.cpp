@@ -1,4 +1,5 @@
-// Cache points on the finite space: who serves whom, and what is carried over from set to set.
+// Cache points of the finite space: which point serves a vertex, and which values one set takes
+// over from earlier ones.
 #include "libcore/resampling/cache_points.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ TEST(CachePoints, areConnectableVerticesOfEyePaths) {
         EXPECT_EQ(eye[0].index + 1, eye[1].index);
         EXPECT_GE(eye[1].index, 1);
     }
-    // Other numbers make another set; the same ones the same.
+    // Another generation makes another set; the same one makes the same set.
     const CachePoints other(s.context, 4.0, 3, 1), again(s.context, 4.0, 3, 0);
     ASSERT_EQ(again.size(), points.size());
     bool different = other.size() != points.size();
@@ -94,7 +95,7 @@ TEST(CachePoints, areServedByTheNearestAndItsNeighbours) {
     EXPECT_TRUE(none.around(kNone).empty());
 }
 
-/// Lens, mirror, a surface that scatters.
+/// Lens, mirror, and a surface that scatters.
 class BehindAMirror final : public FixedEyePath {
   public:
     BehindAMirror() {
@@ -154,7 +155,7 @@ TEST(CachePoints, weightsDoNotCountOnWhatIsBehindASurface) {
     }
 }
 
-/// 1 / d^2 is limited by the distance to the neighbours, a cosine by nothing.
+/// The distance to the neighbours limits 1 / d^2. Cosines are not limited.
 TEST(CachePoints, limitLengthsAndNoCosines) {
     Space s;
     const CachePoints points(s.context, 4.0, 3, 0);
@@ -178,7 +179,7 @@ TEST(EarlierValues, areMeansOverSetsOfMeansOverNeighbours) {
     for (const double v : earlier.at(now, s.threads)) EXPECT_EQ(v, 0.0);
     earlier.add(CachePoints(), {});
 
-    // The value of a point is a function of its place, so that ties do not matter.
+    // The value of a point is a function of its position, so ties do not matter.
     const auto value = [](Vec3 p, int set) {
         return double(set) + double(p.x) + 2.0 * double(p.y);
     };

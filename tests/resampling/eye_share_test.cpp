@@ -1,4 +1,4 @@
-// What the weights make of picks that have their eye subpath in common.
+// How the weights count picks that share their eye subpath.
 #include <gtest/gtest.h>
 
 #include "libcore/resampling/picks.h"
@@ -9,7 +9,7 @@ namespace {
 TEST(EyeShare, oneSampleStaysOneAndNoNumberCountsAsMoreThanTheInverse) {
     for (const double share : {0.0, 0.125, 0.25, 1.0}) {
         EXPECT_DOUBLE_EQ(withEyeShare(1.0, 3, share), 1.0) << share;
-        EXPECT_EQ(withEyeShare(0.0, 3, share), 0.0) << share;  // nothing to pick stays so
+        EXPECT_EQ(withEyeShare(0.0, 3, share), 0.0) << share;  // no sample stays none
         double before = 0.0;
         for (const double samples : {1e-6, 0.5, 2.0, 40.0, 1e3, 1e9}) {
             const double counted = withEyeShare(samples, 5, share);

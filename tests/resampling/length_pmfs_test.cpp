@@ -1,4 +1,4 @@
-// Light vertices by length, and one pmf out of several.
+// Light vertices by length, and one pmf made of several.
 #include "libcore/resampling/length_pmfs.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace lacuna::test {
 namespace {
 
-/// One light subpath of so many vertices each.
+/// One light subpath of each length.
 LightPool poolOf(const std::vector<int>& lengths) {
     LightPool pool;
     pool.reset(lengths.size());
@@ -62,7 +62,7 @@ TEST(LengthPicks, everyLengthAlikeOrOneThatWasNeverSeen) {
     share.learn(vertices);
     EXPECT_EQ(share.at(4, 2), 2.0 * 2.0 / 8.0);
     EXPECT_EQ(share.at(5, 2), 2.0) << "never seen";
-    // A second iteration without long ones halves their share.
+    // A second iteration without long subpaths halves their share.
     vertices.assign(poolOf({2, 2, 2, 2, 2, 2, 2, 2}), false);
     share.learn(vertices);
     EXPECT_EQ(share.at(4, 2), 2.0 * 2.0 / 16.0);
@@ -73,8 +73,9 @@ CombinedPmf combined(const std::vector<std::vector<double>>& targets) {
     return CombinedPmf(std::vector<std::span<const double>>(targets.begin(), targets.end()));
 }
 
-// By probabilities .8 .1 .1 0 and .25 .25 .25 .25: the first outcome belongs to the first target,
-// where it is all that is left, the others to the second, a third each; either target by a half.
+// The targets' probabilities are .8 .1 .1 0 and .25 .25 .25 .25. The first target owns the first
+// outcome alone. The second target owns the others, a third each. Each target is chosen with
+// probability 1/2.
 TEST(CombinedPmf, outcomesBelongToWhoGivesThemMost) {
     const CombinedPmf pmf = combined({{8, 1, 1, 0}, {5, 5, 5, 5}});
     ASSERT_FALSE(pmf.empty());
@@ -90,7 +91,8 @@ TEST(CombinedPmf, outcomesBelongToWhoGivesThemMost) {
 }
 
 TEST(CombinedPmf, isChosenAllAlikeAndDrawsWhatItSays) {
-    // Three targets of one, one and two outcomes; the largest weight is what counts within them.
+    // The targets own one, one and two outcomes. Within a target's third, outcomes are proportional
+    // to its weights.
     const CombinedPmf pmf = combined({{9, 1, 1, 1}, {0, 6, 0, 0}, {1, 1, 3, 5}});
     const std::array<double, 4> expected = {1.0 / 3, 1.0 / 3, 1.0 / 8, 5.0 / 24};
     constexpr int kDraws = 12000;
@@ -102,7 +104,7 @@ TEST(CombinedPmf, isChosenAllAlikeAndDrawsWhatItSays) {
     }
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(pmf.pmf(i), expected[i], 1e-6) << i;
-        // Evenly spaced draws miss each of an alias table's columns by one at most.
+        // Evenly spaced draws miss each column of an alias table by at most one.
         EXPECT_NEAR(count[i], kDraws * expected[i], 4.01) << i;
     }
 }
@@ -129,7 +131,7 @@ TEST(CombinedPmf, tiesGoToTheFirstAndTargetsWithoutWeightAreLeftOut) {
     }
 }
 
-/// Targets without an outcome in common are together as many as they are.
+/// Targets without a common outcome: the sum of maxima is their number.
 TEST(CombinedPmf, maximaAreBetweenOneAndTheNumberOfTargets) {
     EXPECT_DOUBLE_EQ(combined({{1, 0, 0}, {0, 7, 0}, {0, 0, 1e-300}}).maxima(), 3.0);
 }

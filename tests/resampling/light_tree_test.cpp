@@ -1,4 +1,4 @@
-// The light tree's cuts and draws against brute force.
+// Compares the light tree's cuts and draws with brute force.
 #include "libcore/resampling/light_tree.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 namespace lacuna::test {
 namespace {
 
-/// `places` subpaths of one vertex in a unit cube, `directions` of one at infinity; powers over ten
-/// decades, every seventh without.
+/// `places` subpaths of one vertex in a unit cube and `directions` of one at infinity. Powers span
+/// ten decades, and every seventh vertex has none.
 LightPool somePool(int places, int directions) {
     LightPool pool;
     pool.reset(std::uint64_t(places + directions));
@@ -125,7 +125,7 @@ TEST(LightTree, threadsChangeNothing) {
     }
 }
 
-/// A bright cluster nearby is looked at more closely than a dim one far away.
+/// A near cluster is cut more finely than one of the same power far away.
 TEST(LightTree, cutsAreFineWhereLightIsNearAndBright) {
     const ThreadPool threads(1);
     LightPool pool;
@@ -149,8 +149,8 @@ TEST(LightTree, cutsAreFineWhereLightIsNearAndBright) {
     EXPECT_GE(near, 25u);
 }
 
-/// Two clusters of a hundred lamps each, and how many of a cut's parts hold lamps of the first.
-/// `describe` makes a lamp of its place in a unit cube around the origin.
+/// Makes two clusters of a hundred lamps each and returns how many parts of a cut hold lamps of the
+/// first. `describe` turns a position in a unit cube around the origin into a lamp.
 template <class Describe>
 std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe,
                             std::size_t parts = 30) {
@@ -177,13 +177,14 @@ std::size_t partsOfTheFirst(const PathVertex& eye, const Describe& describe,
     return first;
 }
 
-/// Lamps that turn their back carry nothing: those that face the point are told apart.
+/// Lamps that turn their back to the point send it nothing, so the cut is fine among those that
+/// face it.
 TEST(LightTree, cutsAreFineWhereLampsFaceThePoint) {
     const PathVertex eye = someEye({}, {});
     const auto facing = [](float turn) {
         return [turn](bool first, PathVertex& v) {
             v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
-            v.ng = {-turn, 0, 0};  // all the same way: towards the eye from one side alone
+            v.ng = {-turn, 0, 0};  // one cluster faces the eye, the other turns away
         };
     };
     EXPECT_GE(partsOfTheFirst(eye, facing(1.0f)), 25u);
@@ -201,7 +202,7 @@ TEST(LightTree, cutsAreFineWhereLampsFaceThePoint) {
     EXPECT_GE(partsOfTheFirst(eye, reflecting), 25u);
 }
 
-/// Lamps without a back shine both ways.
+/// Two-sided lamps shine both ways.
 TEST(LightTree, cutsAreAlikeForTwoSidedLampsThatFaceAndTurnAway) {
     const std::size_t facing = partsOfTheFirst(someEye({}, {}), [](bool first, PathVertex& v) {
         v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
@@ -212,7 +213,7 @@ TEST(LightTree, cutsAreAlikeForTwoSidedLampsThatFaceAndTurnAway) {
     EXPECT_LE(facing, 20u);
 }
 
-/// What transmits sends light to both sides, wherever it came from.
+/// Transmitting surfaces send light to both sides, wherever it came from.
 TEST(LightTree, cutsAreAlikeForTransmittersThatFaceAndTurnAway) {
     const AlbedoTables none;
     const Bsdf glass({.roughness = 0.5f, .transmission = 1.0f}, {1, 0, 0}, {1, 0, 0}, none);
@@ -227,7 +228,7 @@ TEST(LightTree, cutsAreAlikeForTransmittersThatFaceAndTurnAway) {
     EXPECT_LE(facing, 20u);
 }
 
-/// A long row of lamps is near where its end is, however far its middle is.
+/// The near end of a long row of lamps counts, however far its middle is.
 TEST(LightTree, cutsAreFineWhereTheEndOfARowIsNear) {
     const auto describe = [](bool first, PathVertex& v) {
         v.position =
@@ -236,7 +237,7 @@ TEST(LightTree, cutsAreFineWhereTheEndOfARowIsNear) {
     EXPECT_EQ(partsOfTheFirst(someEye({}, {}), describe, 3), 2u);
 }
 
-/// Nor does the point's surface see what is behind it, near or at infinity.
+/// The point's surface sees nothing behind it, near or at infinity.
 TEST(LightTree, cutsAreFineWhereThePointFacesTheLamps) {
     const auto around = [](bool first, PathVertex& v) {
         v.position = v.position + Vec3{first ? 4.0f : -4.0f, 0, 0};
@@ -247,7 +248,8 @@ TEST(LightTree, cutsAreFineWhereThePointFacesTheLamps) {
     };
     for (const float side : {1.0f, -1.0f}) {
         SCOPED_TRACE(side);
-        // On either side of its surface is the side that its path came from.
+        // The point lies on the side of its surface that its path came from, whichever way the
+        // normal points.
         PathVertex eye = someEye({}, {side, 0, 0});
         for (const float normal : {1.0f, -1.0f}) {
             eye.ng = {normal, 0, 0};

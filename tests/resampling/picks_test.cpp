@@ -1,4 +1,4 @@
-// How often an eye vertex is connected: what is picked, and what the weights believe of it.
+// How often an eye vertex is connected: the picks, and what the weights assume.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,8 @@ TEST(Picks, manyAtTheFirstEyeVertex) {
     EXPECT_EQ(picks.at(9), 1);
 }
 
-// x_0 .. x_5: what weights and selectors call the first eye vertex is what is seen through x_4.
+// In a path x_0 .. x_5, weights and selectors agree on the order of eye vertices: behind a mirror
+// at x_4, x_3 is the first.
 TEST(Picks, mirrorsAndGlassDoNotCount) {
     FullPath path;
     path.edges = 5;
@@ -43,7 +44,7 @@ TEST(Picks, mirrorsAndGlassDoNotCount) {
     eye[1].event = ScatterEvent::DeltaReflection;
     eye[2].event = ScatterEvent::Smooth;
     eye[3].event =
-        ScatterEvent::DeltaTransmission;  // of the walk that goes on: not of a connection
+        ScatterEvent::DeltaTransmission;  // belongs to the continued walk, not to a connection
     const auto orderOf = [&](std::size_t t) {
         return EyeContext{eye[t - 1], {eye.data(), t}, {}, 0, 0, lights, lights, tally}.order();
     };
@@ -73,7 +74,7 @@ TEST(Picks, countInTheDensity) {
     EXPECT_EQ(differing.effectiveSamples(connection(3, 2)), 0.25);
 }
 
-// Eight light subpaths, two of which go on to y_3: their share of an eye vertex's picks is a half.
+// Two of eight light subpaths go on to y_3, which therefore have half a pick per eye vertex.
 TEST(Picks, followTheShareOfALength) {
     LightPool pool;
     pool.reset(8);
@@ -114,9 +115,10 @@ TEST(Picks, followTheShareOfALength) {
             EXPECT_LE(std::abs(atOnce - picks.at(4, order)), 0.5);
             count += atOnce;
         }
-        // Both have a deviation of a half per draw: 4.5 standard errors, 7e-6 false alarms.
+        // In both orders, the count deviates by 1/2 per draw. 4.5 standard errors: 7e-6 false
+        // alarms.
         EXPECT_NEAR(count / kDraws, picks.at(4, order), 4.5 * 0.5 / std::sqrt(kDraws));
-        // Uniform numbers deviate by the root of a twelfth.
+        // Uniform numbers deviate by sqrt(1/12).
         EXPECT_NEAR(sumOfU / count, 0.5, 4.5 / std::sqrt(12.0 * count));
     }
 }

@@ -1,4 +1,4 @@
-// What skeleton nodes see.
+// What skeleton nodes can see.
 #include "libcore/resampling/sight_map.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace lacuna::test {
 namespace {
 
-/// Straight lines in a box about the origin without a lid (+z), with a ball in it.
+/// Straight lines in a box around the origin without a lid (+z), with a ball in it.
 class OpenBox final : public PathSpace {
   public:
     static constexpr float kHalf[3] = {1, 2, 3};
@@ -64,9 +64,9 @@ TEST(SightMap, seesAsFarAsRaysDo) {
         y.position = origin + direction * (1.5f * reach);
         through += map.sees(y);
     }
-    // A flat wall is no farther than the farthest of four points around; in the box's edges, which
-    // are, 27 points are lost. The ball's outline errs by a cell (0.03 to 0.06 rad), and only
-    // towards seeing too much.
+    // A flat wall is never farther than the farthest of the four samples around it. The edges of
+    // the box are, and 27 points are lost there. The ball's outline errs by a cell (0.03 to 0.06
+    // rad), and only towards seeing too much.
     EXPECT_LT(unseen, kPoints / 400);
     EXPECT_EQ(sky, 0);
     EXPECT_LT(through, kPoints / 50);

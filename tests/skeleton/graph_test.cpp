@@ -1,5 +1,5 @@
-// The maximal-ball filter on graphs of any kind: what it swallows, what it keeps, and that b0 and
-// b1 are those before.
+// The maximal-ball filter on any kind of graph: which nodes it removes and which it keeps. b0 and
+// b1 stay the same.
 #include "libcore/skeleton/graph.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ bool inBall(const Vec3d& p, const SkeletonNode& ball) {
     return length(p - ball.position) < ball.radius;
 }
 
-/// Raw nodes that a node's ball holds and that are connected to it there; the node itself as well.
+/// The raw nodes that are connected to a node within its ball, including the node itself.
 std::vector<bool> connectedInBall(const SkeletonGraph& graph, std::size_t node) {
     std::vector<bool> reached(graph.nodes.size(), false);
     reached[node] = true;
@@ -37,7 +37,7 @@ std::vector<bool> connectedInBall(const SkeletonGraph& graph, std::size_t node) 
     return reached;
 }
 
-/// The rule as it is stated: by falling radius, of equal ones the lower index first.
+/// The rule, literally: nodes by falling radius, equal ones by index.
 std::vector<std::size_t> keptNodes(const SkeletonGraph& graph) {
     std::vector<std::size_t> order(graph.nodes.size()), kept;
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -75,7 +75,7 @@ void expectFiltered(const SkeletonGraph& graph, const std::string& what) {
     }
 }
 
-/// A large ball at j that holds m; a smaller one at k that holds m too and y behind it.
+/// The large ball at j holds m. The smaller one at k also holds m, and y behind it.
 SkeletonGraph behindAnOwnedNode(const Edges& edges) {
     const SkeletonNode j{{0, 0, 0}, 2.2}, m{{2, 0, 0}, 1.5}, k{{2, 1.5, 0}, 2}, y{{3, -0.2, 0}, 1};
     return {{j, m, k, y}, edges};
@@ -90,12 +90,12 @@ TEST(MaximalBalls, reachThroughNodesOfOthers) {
     EXPECT_EQ(filtered.edges[0].nodes, (std::array<std::uint32_t, 2>{0, 1}));
     EXPECT_EQ(filtered.edges[0].leave, tree.nodes[1].position);
     EXPECT_EQ(filtered.edges[0].enter, tree.nodes[2].position);
-    // With a second way from k to y there is a loop, and it stays.
+    // With a second way from k to y there is a loop, which must stay.
     expectFiltered(behindAnOwnedNode({{0, 1}, {1, 2}, {1, 3}, {3, 2}}), "loop");
 }
 
 TEST(MaximalBalls, leaveWhatTheyHoldButDoNotReach) {
-    // Two ends of a horseshoe that meet in one ball: the way between them is outside of it.
+    // Two ends of a horseshoe lie in one ball, but the way between them leaves it.
     SkeletonGraph graph;
     for (const Vec3d& p :
          {Vec3d{0, 0, 0}, Vec3d{0, 3, 0}, Vec3d{1, 4, 0}, Vec3d{2, 3, 0}, Vec3d{1.2, 0, 0}}) {
@@ -112,13 +112,13 @@ TEST(MaximalBalls, equalOnesByTheLowerIndex) {
     const FilteredGraph filtered = filterByMaximalBalls(pair);
     ASSERT_EQ(filtered.nodes.size(), 1u);
     EXPECT_EQ(filtered.nodes[0].position, pair.nodes[0].position);
-    // On the sphere is not inside.
+    // A node on the sphere is not inside.
     const SkeletonGraph apart{{{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, {{0, 1}}};
     EXPECT_EQ(filterByMaximalBalls(apart).nodes.size(), 2u);
 }
 
-/// Nodes anywhere with balls of any size, edges between any of them, parallel ones and loops at a
-/// node as well.
+/// Nodes at random with balls of random size, and edges between any of them, including parallel
+/// edges and loops.
 TEST(MaximalBalls, keepComponentsAndLoopsOfAnyGraph) {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         Rng rng(seed, 2, StreamKind::User, 0);
@@ -126,7 +126,7 @@ TEST(MaximalBalls, keepComponentsAndLoopsOfAnyGraph) {
         const std::uint32_t nodes = 1 + rng.below(40), edges = rng.below(80);
         for (std::uint32_t n = 0; n < nodes; ++n) {
             const Vec3d p{rng.uniformDouble(), rng.uniformDouble(), rng.uniformDouble()};
-            // A few sizes, so that some are equal.
+            // Few different sizes, so that some are equal.
             graph.nodes.push_back({p * 4.0, 0.5 * double(rng.below(6))});
         }
         for (std::uint32_t e = 0; e < edges; ++e) {

@@ -1,4 +1,4 @@
-// Empty spaces that are hardly any: one voxel, none; and voxels of any size.
+// Degenerate empty spaces: one voxel, none, one flat layer. Also voxels of extreme sizes.
 #include <gtest/gtest.h>
 
 #include "libcore/base/parallel.h"
@@ -58,7 +58,7 @@ TEST(HardSpaces, noEmptySpaceAtAll) {
     stabilityCase("space-none", double(m.filtered.nodes.size()), "nodes");
 }
 
-/// A sheet of space one voxel high, as between two floors.
+/// A layer of space one voxel high, as between two floors.
 TEST(HardSpaces, flatSpace) {
     const VoxelSpace space =
         drawn({14, 12, 1}, [](int x, int y, int) { return x == 6 && y != 3 && y != 9; });
@@ -69,7 +69,7 @@ TEST(HardSpaces, flatSpace) {
     stabilityCase("space-flat", double(m.filtered.b1()), "loop, about one pillar");
 }
 
-/// Rooms of a thousandth and of a million units: the same skeleton, moved and scaled.
+/// Rooms of a thousandth and of a million units have the same skeleton, moved and scaled.
 TEST(HardSpaces, sizeOfTheVoxels) {
     const auto rooms = [](int x, int y, int z) { return x == 9 && !(y > 2 && y < 6 && z < 5); };
     const VoxelSpace unit = drawn({18, 11, 8}, rooms);

@@ -1,4 +1,4 @@
-// The node map against Dijkstra's algorithm, and what a point on a surface is mapped to.
+// Compares the node map with brute force, and checks which node a point on a surface is mapped to.
 #include "libcore/skeleton/node_map.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace lacuna::test {
 namespace {
 
-/// Distance in voxels and node, by repeated relaxation in real numbers.
+/// Distance in voxels and nearest node of each voxel, by repeated relaxation in real numbers.
 std::vector<std::pair<double, int>> bruteForce(const VoxelSpace& space,
                                                const std::vector<SkeletonNode>& nodes) {
     std::vector<std::pair<double, int>> best(space.state.size(), {1e9, -1});
@@ -75,7 +75,7 @@ TEST(NodeMap, meetsBruteForce) {
 }
 
 TEST(NodeMap, tellsTheSidesOfAThinWallApart) {
-    // Negative coordinates: a lookup that truncates would fold two voxels into one.
+    // Coordinates are negative too: a lookup that truncates would merge two voxels.
     const VoxelSpace space =
         drawn({11, 5, 5}, [](int x, int, int) { return x == 5; }, {-5.5, -2.5, -2.5});
     const std::vector<SkeletonNode> nodes = {{{-3.5, -0.5, -0.5}, 1}, {{3.5, -0.5, -0.5}, 1}};
@@ -102,8 +102,8 @@ TEST(NodeMap, everyEmptyVoxelOfAPartWithANodeIsMapped) {
     }
 }
 
-/// Floor (y = 0) of two rooms behind a wall of one voxel at x = 5: in the wall's column only the
-/// place within it tells which room is nearer.
+/// The floor (y = 0) of two rooms with a wall of one voxel between them at x = 5. In the wall's
+/// column, only the position within the voxel tells which room is nearer.
 TEST(NodeMap, findsTheNearerRoomAtTheFootOfAWall) {
     const VoxelSpace space = drawn({11, 6, 5}, [](int x, int y, int) { return x == 5 || y == 0; });
     const std::vector<SkeletonNode> nodes = {{{2, 3, 2}, 1}, {{9, 3, 2}, 1}};
@@ -113,7 +113,7 @@ TEST(NodeMap, findsTheNearerRoomAtTheFootOfAWall) {
 }
 
 TEST(NodeMap, goesThroughAThicketAndNoFarther) {
-    // Space at x < 3 and x >= 8, five solid voxels between them.
+    // Empty space at x < 3 and x >= 8, and five solid voxels between.
     const VoxelSpace space = drawn({12, 5, 5}, [](int x, int, int) { return x >= 3 && x < 8; });
     const std::vector<SkeletonNode> nodes = {{{1, 2, 2}, 1}, {{10, 2, 2}, 1}};
     const NodeMap map = mapNodes(space, nodes, ThreadPool(1), kNever);
@@ -121,7 +121,7 @@ TEST(NodeMap, goesThroughAThicketAndNoFarther) {
     EXPECT_EQ(map.at({5.2, 2.5, 2.5}, {-1, 0, 0}), 0) << "at 2.5";
     EXPECT_EQ(map.at({4.9, 2.5, 2.5}, {1, 0, 0}), NodeMap::kNone) << "at 3.1";
     EXPECT_EQ(map.at({3.2, 2.5, 2.5}, {1, 0, 0}), 0) << "what its voxel took over";
-    // Outside of the grid, but in front of it.
+    // Outside the grid, but in front of it.
     EXPECT_EQ(map.at({-0.3, 2.5, 2.5}, {1, 0, 0}), 0);
     EXPECT_EQ(map.at({-0.3, 2.5, 2.5}, {-1, 0, 0}), NodeMap::kNone);
 }
@@ -134,8 +134,9 @@ Vec3d randomUnit(Rng& rng) {
     }
 }
 
-/// Walls right through a cube of 22^3 voxels about the origin: each the space between two planes
-/// whose normal points from the first to the second. The rooms are what they divide the cube into.
+/// Walls that pass straight through a cube of 22^3 voxels around the origin. Each is the space
+/// between two planes, and its normal points from the first to the second. The walls divide the
+/// cube into rooms.
 class Walls {
   public:
     static constexpr int kSide = 22;
@@ -157,7 +158,7 @@ class Walls {
         addNodes();
     }
 
-    /// The room on one side of a wall's point, as bits, one per wall; -1 inside of another wall.
+    /// The room on one side of a point on wall `own`, as one bit per wall; -1 inside another wall.
     int roomAt(const Vec3d& p, std::size_t own, bool beyond) const {
         int room = 0;
         for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -167,11 +168,11 @@ class Walls {
         }
         return room;
     }
-    /// That of the node; -1 where there is no node.
+    /// The room of a node; -1 if there is no such node.
     int roomOf(std::uint16_t node) const {
         return node < nodes_.size() ? roomAt(nodes_[node].position, walls_.size(), false) : -1;
     }
-    /// Whether one of the 27 voxels about the point is an empty one of that room.
+    /// Whether one of the 27 voxels around the point is empty and belongs to that room.
     bool hasVoxelNear(const Vec3d& p, int room) const {
         const VoxelIndex v = space_.shape.voxelOf(p);
         for (int n = 0; n < 27; ++n) {
@@ -202,7 +203,7 @@ class Walls {
         triangles.push_back({corner(1, 1), corner(-1, 1), corner(-1, -1)});
         triangles.push_back({corner(1, 1), corner(-1, -1), corner(1, -1)});
     }
-    /// In every room that has voxels, at the first one.
+    /// Adds a node to every room that has voxels, at the first of them.
     void addNodes() {
         std::vector<bool> has(std::size_t(1) << walls_.size(), false);
         for (std::size_t i = 0; i < space_.state.size(); ++i) {
@@ -222,13 +223,14 @@ class Walls {
     NodeMap map_;
 };
 
-/// One wall, thinner than a voxel or a single sheet: never the other side, wherever it lies.
+/// One wall, thinner than a voxel or a single sheet. The map never returns a node on the other
+/// side.
 TEST(NodeMap, keepsToTheSideOfASlantedWall) {
     std::size_t points = 0, wrong = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Rng rng(seed, 3, StreamKind::User, 0);
         Vec3d normal = randomUnit(rng);
-        if (seed % 4 == 0) normal[rng.below(3)] = 0;  // along an axis
+        if (seed % 4 == 0) normal[rng.below(3)] = 0;  // parallel to an axis
         const double thickness = seed % 3 == 0 ? 0.0 : 0.9 * rng.uniformDouble();
         const Walls walls({{normalize(normal), 8 * rng.uniformDouble() - 4, thickness}});
         for (int i = 0; i < 200; ++i) {
@@ -245,9 +247,9 @@ TEST(NodeMap, keepsToTheSideOfASlantedWall) {
     stabilityCase("node-sides", double(wrong), "points on the other side");
 }
 
-/// Two or three walls through each other, at any angle: in the wedges between them a room's voxels
-/// end before the room does. Where there is one about the point, its node is found but for few
-/// points, whose voxel holds two walls.
+/// Two or three walls intersect at any angle. In the wedges between them, a room's voxels end
+/// before the room does. If a voxel of the room is around a point, the map finds the room's node,
+/// except for a few points whose voxel holds two walls.
 TEST(NodeMap, hardlyEverLeavesTheRoomInAWedge) {
     std::size_t points = 0, wrong = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -1,5 +1,5 @@
-// Components, loops and cavities of known shapes; the skeleton and the filtered graph have the same
-// components and loops, whatever the shape.
+// Components, loops and cavities of known shapes. For every shape, the skeleton and the filtered
+// graph have the same components and loops as the empty space.
 #include "libcore/skeleton/topology.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Graphs skeletonOf(const VoxelSpace& space, int threads = 2) {
     return g;
 }
 
-/// Whether some Empty voxel holds the point (closed).
+/// Whether the point lies in a closed Empty voxel.
 bool inEmptySpace(const VoxelSpace& space, const Vec3d& p) {
     for (int n = 0; n < 8; ++n) {
         const Vec3d shift{n & 1 ? 1e-7 : -1e-7, n & 2 ? 1e-7 : -1e-7, n & 4 ? 1e-7 : -1e-7};
@@ -71,7 +71,7 @@ void expectSkeleton(const VoxelSpace& space, const Betti& expected, const std::s
     }
 }
 
-/// Ball of radius 7 in the middle of 18^3.
+/// Distance from the middle of a grid of 18^3 voxels.
 double fromMiddle(int x, int y, int z) {
     return std::sqrt((x - 8.5) * (x - 8.5) + (y - 8.5) * (y - 8.5) + (z - 8.5) * (z - 8.5));
 }
@@ -114,7 +114,7 @@ TEST(Topology, hollowBallPartsTheSpace) {
     expectSkeleton(drawn({18, 18, 18}, solid), {2, 0, 1}, "hollow ball");
 }
 
-/// Two rooms behind a wall of one voxel at x = 10 with so many doors.
+/// Two rooms with a wall of one voxel between them at x = 10, and this many doors.
 VoxelSpace twoRooms(int doors) {
     return drawn({21, 15, 8}, [doors](int x, int y, int z) {
         if (x != 10) return false;
@@ -134,7 +134,7 @@ TEST(Topology, slantedWallsOfOneVoxelDoNotLeak) {
     // The voxels that the plane x + y + z = 14.5 passes through.
     const auto slanted = [](int x, int y, int z) { return x + y + z <= 14 && x + y + z + 3 >= 15; };
     expectSkeleton(drawn({10, 10, 10}, slanted), {2, 0, 0}, "slanted wall");
-    // Thinner than that, corners touch and the space is one.
+    // Voxels of a thinner wall touch only along edges, and the space stays connected.
     const auto diagonal = [](int x, int y, int) { return x == y; };
     EXPECT_EQ(emptySpaceBetti(drawn({6, 6, 4}, diagonal)).b0, 1);
 }
@@ -147,7 +147,7 @@ TEST(Topology, pillars) {
 }
 
 TEST(Topology, openHall) {
-    // Floor and four walls; where there is no roof, the outside of the grid closes it.
+    // Floor and four walls without a roof: the outside of the grid closes the hall.
     const auto hall = [](int x, int y, int z) {
         return y == 0 || x == 0 || x == 15 || z == 0 || z == 23;
     };
@@ -161,12 +161,12 @@ TEST(Topology, floatingSolids) {
     expectSkeleton(drawn({15, 14, 15}, lamp), {1, 0, 1}, "lamp");
     const auto many = [](int x, int y, int z) { return x % 6 == 3 && y % 5 == 2 && z % 7 == 3; };
     expectSkeleton(drawn({18, 10, 14}, many), {1, 0, 12}, "twelve crumbs");
-    // A ring that floats has a cavity about it and a loop through it.
+    // A floating ring makes a cavity around it and a loop through it.
     const auto ring = [](int x, int y, int z) {
         return z >= 5 && z <= 6 && inRing(x, y, 9.5, 9.5, 3, 5.5);
     };
     expectSkeleton(drawn({20, 20, 12}, ring), {1, 1, 1}, "floating ring");
-    // One within the other: each has a sheet of its own.
+    // A ball within a hollow ball: each makes a cavity.
     const auto nested = [](int x, int y, int z) {
         const double r = fromMiddle(x, y, z);
         return r < 1.5 || (r > 5 && r < 7);
@@ -183,7 +183,8 @@ TEST(Topology, corridorLoops) {
 }
 
 TEST(Topology, deadEndRoomsHaveABranch) {
-    // A hall with three long side chapels: no loop, and thinning alone would leave one point.
+    // A hall with three long side chapels: there is no loop, and thinning alone would leave one
+    // point.
     const auto solid = [](int x, int y, int z) {
         const bool hall = y < 6, chapel = x % 10 >= 2 && x % 10 <= 6;
         return z == 0 || z == 6 || !(hall || chapel);
@@ -211,8 +212,8 @@ bool inMenger(int x, int y, int z) {
 }
 
 TEST(Topology, mengerSponge) {
-    // As empty space: genus 5 and 81. Its holes, with the outside of the cube taken for solid, are
-    // the tunnels themselves.
+    // As empty space, the sponges have 5 and 81 loops. The last shape is the tunnels of sponge 1
+    // alone: the outside of the grid is solid.
     expectSkeleton(drawn({3, 3, 3}, [](int x, int y, int z) { return !inMenger(x, y, z); }),
                    {1, 5, 0}, "sponge 1");
     expectSkeleton(drawn({9, 9, 9}, [](int x, int y, int z) { return !inMenger(x, y, z); }),
@@ -242,7 +243,7 @@ std::size_t rankOf(std::vector<std::vector<std::size_t>> columns, std::size_t ro
     return rank;
 }
 
-/// Betti numbers by the ranks of the boundary maps: nothing in common with how the library counts.
+/// Betti numbers from the ranks of the boundary maps, independent of how the library counts.
 Betti byHomology(const VoxelSpace& space) {
     const CubicalComplex complex(space);
     const std::size_t n = complex.corners();
@@ -284,8 +285,8 @@ TEST(Topology, randomShapes) {
 }
 
 TEST(Skeleton, isCentred) {
-    // In a corridor of square section the line runs along the middle. Of 28 voxels collapse leaves
-    // the medial line of 21; its ends must outlive the opening, 4, and lose so much each.
+    // In a corridor of square section, the skeleton runs along the middle. Collapse leaves a medial
+    // line of 21 of the 28 voxels, and the opening removes 4 at each end.
     const VoxelSpace space = drawn({30, 9, 9}, [](int x, int y, int z) {
         return x == 0 || x == 29 || y == 0 || y == 8 || z == 0 || z == 8;
     });
@@ -296,8 +297,7 @@ TEST(Skeleton, isCentred) {
         EXPECT_NEAR(n.position.z, 4.5, 1.0);
         EXPECT_DOUBLE_EQ(n.radius, distanceToSolid(space, n.position));
     }
-    // A slanted tunnel: no place within a voxel across the axis is farther from the walls by more
-    // than a voxel.
+    // In a slanted tunnel, nodes are near the axis, as exactly as voxels allow.
     const Vec3d axis = normalize(Vec3d{2, 1, 1});
     const VoxelSpace slanted = drawn({32, 20, 20}, [&](int x, int y, int z) {
         const Vec3d p = Vec3d{x + 0.5, y + 0.5, z + 0.5} - Vec3d{16, 10, 10};
@@ -325,7 +325,7 @@ TEST(Skeleton, isTheSameForAnyThreadsAndMovesWithTheShape) {
         }
         ASSERT_EQ(more.filtered.nodes.size(), one.filtered.nodes.size());
     }
-    // In a larger grid, walled in, three voxels on.
+    // The same shape three voxels on in a larger grid, enclosed by solid voxels.
     const VoxelSpace moved = drawn({25, 22, 20}, [&](int x, int y, int z) {
         x -= 3;
         y -= 3;
@@ -345,7 +345,7 @@ TEST(Skeleton, isTheSameForAnyThreadsAndMovesWithTheShape) {
 }
 
 TEST(Skeleton, movesWithTheShapeAcrossWordsOfCorners) {
-    // A room of 10 x 7 x 6 voxels in solid, about the 64th corner along x.
+    // A room of 10 x 7 x 6 voxels in solid, moved along x across the 64th corner.
     const VoxelIndex size{10, 7, 6};
     const auto at = [&](int offset) {
         return drawn({76, 9, 8}, [&](int x, int y, int z) {

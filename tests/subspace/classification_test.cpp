@@ -1,4 +1,4 @@
-// Subspaces: nearest centroids, the trees that stand in for them, cells on lights.
+// Subspaces: nearest centroids, the decision trees that replace them, cells of lights.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ Vec3 randomUnit(Rng& rng) {
     }
 }
 
-/// On the walls of a box, with its normals: what subpaths look like.
+/// An end on the walls of a box, with the wall's normal, as subpaths have them.
 SubpathEnd onBox(Rng& rng) {
     Vec3 p{rng.uniform(), rng.uniform(), rng.uniform()}, n;
     const std::size_t axis = rng.below(3);
@@ -81,7 +81,8 @@ TEST(Centroids, nearestIsTheLeastByEquation18) {
         EXPECT_EQ(std::set<std::uint32_t>(all.begin(), all.end()).size(), centres.size());
     }
     EXPECT_EQ(Centroids().nearest(asked[0]), 0u);
-    // Directions count for more where they are said to.
+    // A larger weight of directions adds to the distance in proportion, and changes many nearest
+    // centroids.
     const Centroids directed(centres, float(kSigma2), 3.0f);
     std::size_t moved = 0;
     for (const SubpathEnd& e : asked) {
@@ -125,7 +126,8 @@ TEST(Centroids, varianceIsTheLargestOfTheThree) {
     EXPECT_EQ(spatialVariance({}), 0.0f);
 }
 
-/// Accuracy against brute-force nearest centroids, on samples used to grow and on others.
+/// Accuracy relative to the nearest centroids by brute force, on the samples that the tree is grown
+/// from and on others.
 TEST(DecisionTree, standsInForTheNearestCentroid) {
     const Centroids centroids(ends(100, 4), 1.3f);
     const std::vector<SubpathEnd> train = ends(100000, 5), heldOut = ends(20000, 6);
@@ -135,12 +137,12 @@ TEST(DecisionTree, standsInForTheNearestCentroid) {
     EXPECT_GT(treeAccuracy(tree, heldOut, truth), 0.85);
     EXPECT_LE(tree.depth(), DecisionTree::kMaxDepth);
     EXPECT_EQ(tree.leaves() * 2, tree.nodes().size() + 1);
-    // What is read from a file goes through the constructor that checks.
+    // Trees from files go through the constructor that checks.
     const DecisionTree again({tree.nodes().begin(), tree.nodes().end()}, 100);
     for (const SubpathEnd& e : heldOut) EXPECT_EQ(again(e), tree(e));
 }
 
-/// By the nodes as they are stored in files.
+/// The leaf's label, by a descent through the nodes as files store them.
 std::uint32_t leafOf(const DecisionTree& tree, const SubpathEnd& end) {
     DecisionTree::Node n = tree.nodes()[0];
     while (!n.isLeaf()) {
@@ -175,18 +177,18 @@ TEST(DecisionTree, descentsInTurnEndWhereEachEndsAlone) {
 
 TEST(DecisionTree, endsOnDegenerateSamples) {
     EXPECT_EQ(growTree({}, {}, 1)(SubpathEnd{}), 0u);
-    // All equal, labels not: the most frequent one.
+    // The ends are all equal, but their labels are not: the most frequent label wins.
     const std::vector<SubpathEnd> equal(5, ends(1, 7)[0]);
     const DecisionTree tree = growTree(equal, std::vector<std::uint32_t>{2, 1, 2, 0, 2}, 3);
     EXPECT_EQ(tree.nodes().size(), 1u);
     EXPECT_EQ(tree(equal[0]), 2u);
-    // Neighbouring floats.
+    // Two values that are neighbouring floats.
     std::vector<SubpathEnd> close(2, equal[0]);
     close[1].value[0] = std::nextafter(close[0].value[0], 10.0f);
     const DecisionTree parted = growTree(close, std::vector<std::uint32_t>{0, 1}, 2);
     EXPECT_EQ(parted(close[0]), 0u);
     EXPECT_EQ(parted(close[1]), 1u);
-    // NaN: a tree comes out, and a look-up ends.
+    // With NaN, the tree still grows, and every look-up ends.
     std::vector<SubpathEnd> bad = ends(1000, 8);
     std::vector<std::uint32_t> labels;
     for (std::size_t i = 0; i < bad.size(); ++i) {
@@ -207,7 +209,7 @@ TEST(DecisionTree, refusesNodesThatLeadNowhere) {
     refuses({{0, 1u << 4 | DecisionTree::kLeaf}});                    // a label too large
     refuses({{0, 0u << 4}, leaf, leaf});                              // its own child
     refuses({{0, 2u << 4}, leaf, leaf});                              // a child outside
-    refuses({{0, 1u << 4 | 9u}, leaf, leaf});                         // an attribute that is none
+    refuses({{0, 1u << 4 | 9u}, leaf, leaf});                         // not an attribute
     refuses({{0, 1u << 4}, {0, 3u << 4}, {0, 3u << 4}, leaf, leaf});  // children of two
     refuses({{0, 0xffffffffu}});
 }
@@ -243,7 +245,8 @@ TEST(LightCells, areSharedOutByPower) {
         }
         for (const double w : worth) EXPECT_GT(w, 0.0);
     }
-    // At 20 cells all but the strong lamp are worth less than one, and share.
+    // With 20 cells, every light but the strong lamp is worth less than a cell, and such lights
+    // share cells.
     EXPECT_LT(LightCells(scene->lights(), 20).count(), 21u);
 }
 
@@ -262,7 +265,7 @@ TEST(LightCells, areEvenOnATriangle) {
         y.lightUv = {u, v};
         ++hits[cells.cellOf(y)];
     }
-    // 24 cells, 5 standard deviations of a count.
+    // 24 cells; 500 is 5 standard deviations of a count.
     for (int c = 0; c < 24; ++c) EXPECT_NEAR(hits[std::size_t(c)], 10000, 500) << c;
     PathVertex other;
     other.light = 1;
@@ -280,7 +283,7 @@ TEST(LightCells, areEvenOnTheSky) {
         PathVertex y;
         y.kind = VertexKind::Infinite;
         y.light = 0;
-        // Not randomUnit: exactly even on the sphere.
+        // Uniform height and azimuth are uniform on the sphere.
         const double height = 2.0 * rng.uniformDouble() - 1.0;
         const double turn = 6.283185307179586 * rng.uniformDouble();
         const double r = std::sqrt(1.0 - height * height);

@@ -1,4 +1,4 @@
-// The loss that Gamma minimises: its derivative, its convexity, what the optimiser makes of it.
+// The loss that Gamma minimises: its derivative, its convexity, and what the optimiser reaches.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ const ThreadPool& threads() {
 }
 const std::atomic<bool> kNever{false};
 
-/// Paths that prefer subspaces near the diagonal; heavy-tailed contributions.
+/// Paths that prefer the diagonal, with heavy-tailed contributions.
 GammaData randomData(std::size_t paths, std::uint32_t n, std::uint64_t seed) {
     Rng rng(seed, 0, StreamKind::User, 0);
     GammaData data;
@@ -69,7 +69,7 @@ TEST(Gamma, columnsSumToOneAndHoldTheUniformShare) {
         optimiseGamma(train, heldOut, fullGamma(train), {.epochs = 10}, threads(), kNever);
     expectColumns(fullGamma(train).q, train.lightCount, 1e-7);
     expectColumns(r.gamma, train.lightCount, 0.999 * kUniformShare / train.lightCount);
-    // A column of which nothing is known is uniform.
+    // A column without any data is uniform.
     const GammaResult alone =
         optimiseGamma(train, {}, fullGamma(train), {.epochs = 10}, threads(), kNever);
     EXPECT_EQ(alone.virtualPaths, 0.0);
@@ -80,7 +80,7 @@ TEST(Gamma, columnsSumToOneAndHoldTheUniformShare) {
 
 TEST(Gamma, stepsNeverRaiseTheLossAndTheKeptOneIsNoWorseThanTheStart) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        // Few paths: optimised long enough, they are fitted too closely.
+        // With so few paths, a long optimisation overfits.
         const GammaData train = randomData(60, 6, 10 + seed),
                         heldOut = randomData(60, 6, 50 + seed);
         const FullGamma full = fullGamma(train);
@@ -96,7 +96,7 @@ TEST(Gamma, stepsNeverRaiseTheLossAndTheKeptOneIsNoWorseThanTheStart) {
     }
 }
 
-/// Convex: from two starts to the same loss.
+/// The loss is convex: two starts reach the same value.
 TEST(Gamma, twoStartsReachOneLoss) {
     const GammaData data = randomData(1000, 6, 4);
     const std::size_t size = std::size_t(data.lightCount) * data.eyeCount;
@@ -118,7 +118,8 @@ TEST(Gamma, twoStartsReachOneLoss) {
     EXPECT_EQ(a.kept, a.trainLoss.size() - 1);
 }
 
-/// Subspaces on a line; paths prefer what lies near in both, and there are fewer than entries.
+/// Subspaces on a line. A path's light subspace is a smooth function of its eye subspace, up to
+/// noise.
 GammaData smoothData(std::size_t paths, std::uint32_t n, std::uint64_t seed) {
     Rng rng(seed, 0, StreamKind::User, 0);
     GammaData data;
@@ -133,7 +134,8 @@ GammaData smoothData(std::size_t paths, std::uint32_t n, std::uint64_t seed) {
     return data;
 }
 
-/// On a line; `shuffled`: some ones or others, and itself.
+/// Each subspace itself and its neighbours on a line; if `shuffled`, random subspaces in their
+/// place.
 SubspaceNeighbours neighboursOnALine(std::uint32_t n, bool shuffled) {
     Rng rng(77, 0, StreamKind::User, 0);
     SubspaceNeighbours near;
@@ -169,10 +171,10 @@ TEST(Gamma, columnsBorrowFromTheirNeighbours) {
         heldOutLoss(train, fullGamma(train, neighboursOnALine(n, true), threads()));
     EXPECT_LT(best, borrowed);
     EXPECT_LT(borrowed, 0.5 * alone);
-    EXPECT_LT(misled, 1.2 * alone);  // neighbours that have nothing in common cost little
+    EXPECT_LT(misled, 1.2 * alone);  // unrelated neighbours cost little
 }
 
-/// Three subspaces by hand.
+/// Three eye subspaces, computed by hand.
 TEST(Gamma, aNeighbourhoodIsItsSubspacesTogether) {
     GammaData data;
     data.lightCount = 2;
@@ -195,7 +197,7 @@ TEST(Gamma, aNeighbourhoodIsItsSubspacesTogether) {
         EXPECT_NEAR(around.q[2], 4.0 / 6.0, 1e-5);
         EXPECT_NEAR(around.q[4], 0.0, 1e-5);
     }
-    // Light subspaces that are each other's neighbours have shares as in m^0: 4/10, 6/10.
+    // If the two light subspaces are neighbours, all columns have the shares of m^0: 4/10, 6/10.
     const FullGamma one = fullGamma(data, {{{0, 1}, {1, 0}}, {{0}, {1}, {2}}}, threads());
     for (const GammaColumns& around : one.around) {
         for (const std::size_t j : {0, 1, 2}) EXPECT_NEAR(around.q[2 * j], 0.4, 1e-5);
@@ -203,14 +205,14 @@ TEST(Gamma, aNeighbourhoodIsItsSubspacesTogether) {
 }
 
 TEST(Gamma, degenerateDataIsHandled) {
-    // Nothing at all.
+    // No data.
     GammaData none;
     none.lightCount = 3;
     none.eyeCount = 2;
     const GammaResult empty =
         optimiseGamma(none, none, fullGamma(none), {.epochs = 5}, threads(), kNever);
     for (const double g : empty.gamma) EXPECT_NEAR(g, 1.0 / 3.0, 1e-15);
-    // One path, one subspace.
+    // One path and one subspace.
     GammaData one;
     one.entries.push_back({0, 0, 2.0f});
     one.endPath(3.0f, 0.0f);

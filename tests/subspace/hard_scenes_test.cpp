@@ -1,5 +1,5 @@
-// Training in scenes that are hard for it: of any size and brightness, with lamps that differ by
-// thirty decades.
+// Training in difficult scenes: of any size and brightness, and with lamps that differ by thirty
+// decades.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Trained trained(const Scene& scene) {
     return train(scene, view, settings, {}, pool(), never, phases);
 }
 
-/// A room with a block, as large as asked for; one lamp of each radiance.
+/// A room with a block, scaled by `scale`, with one lamp of each radiance.
 std::unique_ptr<Scene> room(double scale, const std::vector<float>& radiances) {
     const Affine place = scaling({scale, scale, scale});
     SceneBuilder b;
@@ -40,8 +40,8 @@ std::unique_ptr<Scene> room(double scale, const std::vector<float>& radiances) {
     return b.build();
 }
 
-/// Powers of two in size and brightness: the same subspaces, Gamma to the last bit, Q in
-/// proportion.
+/// Scaling size and brightness by powers of two gives the same subspaces, Gamma to the last bit,
+/// and Q in proportion.
 TEST(HardTraining, sizeAndBrightnessChangeNothing) {
     const Subspaces unit = trained(*room(1, {2})).file.subspaces;
     ASSERT_GT(unit.gamma.size(), 200u);

@@ -1,4 +1,4 @@
-// Numbers of very different sizes: positions, weights, powers, contributions and densities over
+// Values of very different sizes: positions, weights, powers, contributions and densities over
 // thirty decades and more.
 #include <gtest/gtest.h>
 
@@ -21,13 +21,13 @@ namespace {
 
 const std::atomic<bool> kNever{false};
 
-/// From 1e-d to 1e+d, every decade as often as any other.
+/// A number between 1e-d and 1e+d; every decade is equally likely.
 float anyDecade(Rng& rng, double d) {
     return float(std::pow(10.0, d * (2 * rng.uniformDouble() - 1)));
 }
 
-/// Two labels a factor of 1e30 apart in each coordinate that is known: one split tells them apart;
-/// and labels by decade, more of them than splits at the centre of what is left can reach.
+/// One split tells two labels apart whose attributes differ by a factor of 1e30. Labels by decade
+/// are more than halving a range 32 times can separate.
 TEST(Ranges, treesOverSixtyDecades) {
     Rng rng(1, 0, StreamKind::User, 0);
     std::vector<SubpathEnd> parted(400), decades(3000);
@@ -47,10 +47,10 @@ TEST(Ranges, treesOverSixtyDecades) {
     const DecisionTree tree = growTree(decades, decade, 60);
     EXPECT_LE(tree.depth(), DecisionTree::kMaxDepth);
     EXPECT_NO_THROW(DecisionTree({tree.nodes().begin(), tree.nodes().end()}, 60));
-    // The decades that splits reach, 32 halvings of a range, are told apart.
+    // The tree tells apart the decades that 32 halvings of a range reach.
     EXPECT_GT(treeAccuracy(tree, decades, decade), 0.1);
 
-    // Bounds whose difference is more than a float holds.
+    // The difference of these bounds overflows a float.
     std::vector<SubpathEnd> whole(2);
     whole[0].value[0] = -std::numeric_limits<float>::max();
     whole[1].value[0] = std::numeric_limits<float>::max();
@@ -132,7 +132,7 @@ TEST(Ranges, gammaOverThirtyDecades) {
             for (std::size_t n = 1; n < r.trainLoss.size() && !heldOut; ++n) {
                 EXPECT_LE(r.trainLoss[n], r.trainLoss[n - 1] * (1 + 1e-12)) << seed;
             }
-            Subspaces result;  // what a file would hold, and what reading it demands
+            Subspaces result;  // as in a file, with the checks of reading
             result.lightCount = parts[0].lightCount;
             result.eyeCount = parts[0].eyeCount;
             result.gamma.assign(r.gamma.begin(), r.gamma.end());
