@@ -74,7 +74,7 @@ TEST(Picks, countInTheDensity) {
     EXPECT_EQ(differing.effectiveSamples(connection(3, 2)), 0.25);
 }
 
-// Two of eight light subpaths go on to y_3, which therefore have half a pick per eye vertex.
+// Two of eight light subpaths go on to y_3: this length has half of an eye vertex's picks.
 TEST(Picks, followTheShareOfALength) {
     LightPool pool;
     pool.reset(8);

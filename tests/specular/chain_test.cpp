@@ -1,4 +1,4 @@
-// Chains of mirrors and smooth glass: how they move with their first ray, and how many a search finds.
+// Chains of mirrors and smooth glass: their derivatives by the first ray, and how many a search finds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kFew = 12;  // columns of a ball
 
-/// A ball of triangles, mostly of few so that normals change much within each.
+/// A ball of triangles; by default of few, so that normals change much within each.
 Mesh ball(Vec3 centre, float radius, std::uint32_t material, int columns = kFew) {
     const int rows = columns / 2;
     Mesh m;
@@ -46,7 +46,7 @@ Mesh ball(Vec3 centre, float radius, std::uint32_t material, int columns = kFew)
     return m;
 }
 
-/// The same chain along another first ray: hits on the same triangles, wherever they are met.
+/// The same chain along another first ray; empty if a vertex leaves its triangle.
 std::optional<Chain> again(const Scene& scene, const Chain& chain, const Vec3d& direction) {
     RayTally tally;
     Chain moved(MovingRay::from(chain.first().origin, direction));
@@ -63,8 +63,8 @@ std::optional<Chain> again(const Scene& scene, const Chain& chain, const Vec3d& 
     return moved;
 }
 
-/// Rays through the ball by random events: the change of where each leads against a difference, which
-/// may be another one for `kinks` of the comparisons.
+/// Follows rays through the ball by random events and compares the derivatives of the last ray with differences. A
+/// share `kinks` of the comparisons may disagree.
 void expectDerivatives(const Scene& scene, double step, double tolerance, double kinks = 0) {
     RayTally tally;
     Rng rng(1, 0, StreamKind::User, 0);
@@ -127,7 +127,7 @@ TEST(Chain, movesAsItsDerivativesSayByFacets) {
     expectDerivatives(*sheet.build(), 1e-8, 1e-4);
 }
 
-/// What refracts there is found again, and drawn as often as it says.
+/// A facet is found again from the directions that it refracts between, and is drawn with the density that it states.
 void expectFacetsKnown(const lacuna::Material& material, double alpha) {
     Rng rng(1, 0, StreamKind::User, 0);
     SceneBuilder b;
@@ -140,7 +140,7 @@ void expectFacetsKnown(const lacuna::Material& material, double alpha) {
     int found = 0;
     for (int n = 0; n < 2000; ++n) {
         const FacetSlope facet = sampleFacet(rng.uniformDouble(), rng.uniformDouble());
-        // The sum of 1 / p over directions that are not too steep: their solid angle.
+        // The mean of 1 / p is the solid angle of all directions that are not too steep.
         whole += 1 / pdfOfFacet(facet, alpha) / 2000;
         EXPECT_LT(std::hypot(facet.s, facet.t), kSteepest);
         const Vec3d target{rng.uniform() * 1.6 - 0.8, rng.uniform() * 1.6 - 0.8, 0};
@@ -154,7 +154,7 @@ void expectFacetsKnown(const lacuna::Material& material, double alpha) {
         ASSERT_TRUE(again);
         EXPECT_NEAR(again->s, facet.s, 1e-4 * (1 + std::fabs(facet.s)));
         EXPECT_NEAR(again->t, facet.t, 1e-4 * (1 + std::fabs(facet.t)));
-        // An eye walk draws what it sees of the same facets, and goes through with what they transmit.
+        // An eye walk draws from the facets that it sees, and is transmitted by 1 - F of them.
         const double pdfW =
             double(v.bsdf.evaluate(v.toEye, v.toLight, ScatterEvent::Smooth).pdfWToLight);
         const Vec3d normal(v.bsdf.ns());
@@ -187,7 +187,7 @@ TEST(Chain, movesAsItsDerivativesSayUnderANormalMap) {
     lacuna::Material bumpy = glass(1.4f);
     bumpy.normalTexture = b.add(waves());
     b.add(ball({0, 0, 0}, 1, b.add(bumpy)));
-    // Bilinear texels, in float.
+    // Bilinear texels in float are less exact.
     expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
 }
 
@@ -204,16 +204,16 @@ TEST(Chain, movesAsItsDerivativesSayUnderLacquerOfItsOwn) {
     expectDerivatives(*b.build(), 1e-4, 0.05, 0.02);
 }
 
-/// From the file's origin, which looks up.
+/// A start at the file's origin that looks up.
 ChainStart floorOf(const Scene& scene) {
     return {-Vec3(scene.centre()), {0, 1, 0}, {0, 1, 0}};
 }
-/// By its place in the file.
+/// A lamp at a position of the file.
 ChainTarget lampAt(const Scene& scene, Vec3d position) {
     return {Vec3(position - scene.centre())};
 }
 
-/// What one search finds is worth, all together.
+/// The total worth of the chains that one search finds.
 double worthOf(const ChainSearch& search, const ChainQuery& query, const WaysNearby& ways,
                Rng& rng) {
     RayTally tally;
@@ -223,7 +223,7 @@ double worthOf(const ChainSearch& search, const ChainQuery& query, const WaysNea
     return all;
 }
 
-/// What one search finds that knows of no ways.
+/// The chain that one search without known ways finds.
 std::optional<FoundChain> oneOf(const ChainSearch& search, const ChainQuery& query, Rng& rng) {
     RayTally tally;
     std::optional<FoundChain> one;
@@ -232,8 +232,7 @@ std::optional<FoundChain> oneOf(const ChainSearch& search, const ChainQuery& que
     return one;
 }
 
-/// What a chain is worth is one over its probability, and the mean of what a search finds therefore the number
-/// of chains.
+/// A chain is worth one over its probability, so the mean of the total worth is the number of chains.
 void expectChains(const Scene& scene, const ChainTarget& target, std::size_t most, double chains,
                   int searches, const WaysNearby& ways = {}) {
     const ChainSearch search(scene);
@@ -246,7 +245,7 @@ void expectChains(const Scene& scene, const ChainTarget& target, std::size_t mos
     EXPECT_LT(worth.standardError(), 0.1 * chains);
 }
 
-/// One image of the lamp in either mirror, and two of both, one for each order.
+/// Each mirror shows one image of the lamp. Both together show two, one for each order.
 TEST(ChainSearch, findsEachImageInTwoMirrorsOnce) {
     SceneBuilder b;
     const auto silver = b.add(mirror());
@@ -258,8 +257,8 @@ TEST(ChainSearch, findsEachImageInTwoMirrorsOnce) {
     expectChains(*scene, lamp, 2, 4, 8000);
 }
 
-/// A slab between: straight through, and with two reflections inside it; and either of them as if its
-/// upper face were not there behind the last vertex, since searches do not ask for visibility.
+/// A slab between start and target: the straight chain, and one with two reflections inside. Each also counts without
+/// its last vertex, because searches do not ask for visibility.
 TEST(ChainSearch, findsTheWayThroughASlab) {
     SceneBuilder b;
     const auto clear = b.add(glass());
@@ -275,8 +274,8 @@ TEST(ChainSearch, findsTheWayThroughASlab) {
     }
 }
 
-/// A floor under a block of glass, a sun and a lamp above; and a thin sheet under a pane of solid glass,
-/// with a lamp on either side of both.
+/// A floor under a block of glass, with a sun and a lamp above. Beside them a thin sheet between two panes of solid
+/// glass, with a lamp beyond each pane.
 SceneBuilder litThroughGlass() {
     SceneBuilder b;
     const auto clear = b.add(glass(1.5f)), white = b.add(matte(Rgb(0.5f)));
@@ -292,8 +291,8 @@ SceneBuilder litThroughGlass() {
     return b;
 }
 
-/// What is known only says where searches begin: the way through the block, reflections inside it, and
-/// nonsense.
+/// Known ways only say where searches begin. They may be ways through the block, reflections inside it, or nonsense:
+/// searches find the same.
 TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     const auto scene = litThroughGlass().build();
     const ChainTarget lamp = lampAt(*scene, {0.3, 2, 0.2});
@@ -302,7 +301,7 @@ TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     const WaysNearby known = seeds.near(1, floorOf(*scene).position, {0, 1, 0});
     EXPECT_FALSE(known.usual.empty());
     EXPECT_FALSE(known.others.empty());
-    // What is usual is found by chance as well, and other ways are taken for usual ones.
+    // Usual ways are left to chance, other ways are left out, or the two are exchanged.
     const WaysNearby noneUsual{known.all, {}, known.usual}, noneOthers{known.all, known.usual, {}};
     const WaysNearby exchanged{known.all, known.others, known.usual};
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -314,20 +313,20 @@ TEST(ChainSearch, findsWhatItFindsWhateverIsKnown) {
     wrong[2].turn = {{{1e9f, 0}, {0, 0.1f}}};
     constexpr std::array<std::uint32_t, 3> kWrong{0, 1, 2};
     const WaysNearby nonsense{wrong, {}, kWrong}, usualNonsense{wrong, kWrong, kWrong};
-    // Through two faces, through the upper one or the lower one as if the other were not there, and one by
-    // a side.
+    // Four chains: through two faces, through the upper or the lower one as if the other were not there, and one
+    // through a side.
     for (const WaysNearby& ways :
          {WaysNearby{}, known, noneUsual, noneOthers, exchanged, nonsense, usualNonsense}) {
         expectChains(*scene, lamp, 2, 4, 20000, ways);
     }
-    // A way that is there twice leads to a chain that is there once.
+    // The same way twice leads to one chain.
     RayTally tally;
     const std::array<std::uint32_t, 2> twice{known.usual[0], known.usual[0]};
     const ChainQuery query{floorOf(*scene), lamp, 2};
     EXPECT_EQ(WayFollower(*scene).usual(query, {known.all, twice, {}}, tally).size(), 1u);
 }
 
-/// Searches that know where light comes from find as much, and are sure of one chain at least nearly everywhere.
+/// Searches that know ways find as much as others. Almost everywhere, usual ways give at least one chain for certain.
 TEST(ChainSeeds, areWaysThatLightComes) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(2);
@@ -356,8 +355,8 @@ TEST(ChainSeeds, areWaysThatLightComes) {
     }
 }
 
-/// A way to a place nearby begins where the way that is known would have been turned to: over curved glass and
-/// flat glass, from lamps and the sun.
+/// The direction of a known way, turned for a place nearby, is close to the exact one: with curved and flat glass, for
+/// lamps and the sun.
 TEST(ChainSeeds, turnWithThePlace) {
     SceneBuilder b = litThroughGlass();
     lacuna::Material clear = glass(1.5f);
@@ -399,9 +398,9 @@ bool areAlike(const ChainSeed& a, const ChainSeed& b) {
     return a.size == b.size && a.events == b.events && dot(a.direction, b.direction) > 0.98f;
 }
 
-constexpr std::size_t kHere = 16;  // the first ones of others: what came here
+constexpr std::size_t kHere = 16;  // the first of `others`: ways that came here
 
-/// A usual kind came here, and no way is there twice.
+/// Ways like every usual one came here, and no way is listed twice.
 TEST(ChainSeeds, comeInKinds) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(2);
@@ -430,7 +429,7 @@ TEST(ChainSeeds, comeInKinds) {
     EXPECT_GT(fromAround, 100);
 }
 
-/// Ways to lamps are usual where they came twice, since each sample goes them all.
+/// Ways to lamps are usual only if they came twice, because each sample follows all of them.
 TEST(ChainSeeds, comeMoreThanOnceToLamps) {
     SceneBuilder b = litThroughGlass();
     b.add(quad({0.3f, 2, 0.2f}, {0.02f, 0, 0}, {0, 0, 0.02f}, b.add(emitter(Rgb(1)))));
@@ -454,23 +453,23 @@ TEST(ChainSeeds, comeMoreThanOnceToLamps) {
     EXPECT_GT(kinds, 200);
 }
 
-/// Under a slab, what comes is what two faces let through, in terms of what the whole power brings to the sphere around
-/// the scene: the sun's power falls on a disk, the lamp's goes all around, and the spot's into a cone.
+/// Under a slab, the strength is what two faces transmit, relative to the whole power over the sphere around the scene.
+/// The sun's power falls on a disk, the lamp's goes in all directions, and the spot's into a cone.
 TEST(ChainSeeds, areAsStrongAsTheLightThatComes) {
     SceneBuilder b;
     b.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, b.add(matte(Rgb(0.5f)))));
     b.add(box({-2, 0.5f, -2}, {2, 0.6f, 2}, b.add(glass(1.5f))));
     b.add(directionalLight({0, -1, 0}, Rgb(1)));
     b.add(pointLight({0, 3, 0}, Rgb(1)));
-    // Of the lamp's power, so that as many rays leave it.
+    // The spot has the lamp's power, so that as many rays leave it.
     b.add(spotLight({0, 3, 0}, {0, -1, 0}, Rgb(100), 0.199, 0.2));
     const auto scene = b.build();
     const ThreadPool threads(2);
     const ChainSeeds seeds(*scene, threads);
     Rng rng(8, 0, StreamKind::User, 0);
-    const double faces = 0.96 / 1.04;  // all that goes to and fro within the slab as well
+    const double faces = 0.96 / 1.04;  // with all reflections within the slab
     const double radius = scene->radius();
-    const double ofAllDirections = 0.5 * (1 - std::cos(0.2));  // that the spot shines into
+    const double ofAllDirections = 0.5 * (1 - std::cos(0.2));  // share that the spot's cone has
     const double ofLamp = faces * radius * radius / 9;
     const double expected[] = {4 * faces, ofLamp, ofLamp / ofAllDirections};
     for (const std::uint32_t light : {0u, 1u, 2u}) {
@@ -479,13 +478,13 @@ TEST(ChainSeeds, areAsStrongAsTheLightThatComes) {
             const Vec3 beside{0.3f * (rng.uniform() - 0.5f), 0, 0.3f * (rng.uniform() - 0.5f)};
             strength.add(seeds.near(light, floorOf(*scene).position + beside, {0, 1, 0}).strength);
         }
-        // A window's ways fill a part of its disk: of a square patch 2 / pi, and less where it is of two patches.
+        // The ways of a window fill a part of its disk: 2 / pi for a square patch, and less for two patches.
         EXPECT_GT(strength.mean() / expected[light], 0.4) << "light " << light;
         EXPECT_LT(strength.mean() / expected[light], 1.0) << "light " << light;
     }
 }
 
-/// They are those of the light that is asked for, and of one side of a thin sheet.
+/// Ways belong to the light that is asked for, and to one side of a thin sheet.
 TEST(ChainSeeds, knowSidesAndLights) {
     const auto scene = litThroughGlass().build();
     const ThreadPool threads(1);
@@ -521,8 +520,8 @@ TEST(ChainSearch, findsTheImageInABall) {
     expectChains(*scene, lampAt(*scene, {2, 2.5, 0.5}), 1, 1, 6000);
 }
 
-/// Newton's method takes a chain's vertices from one face of a block to the next. A ray that leaves a
-/// flat face does not meet it again: two reflections there would let it pass as if there were no glass.
+/// Newton's method moves a chain's vertices from one face of a block to the next. A ray that leaves a flat face does
+/// not meet it again: two reflections there would let it pass as if there were no glass.
 TEST(ChainSearch, leavesEachFaceItMeets) {
     SceneBuilder b;
     b.add(box({-0.4f, 0.01f, -0.4f}, {0.4f, 2, 0.4f}, b.add(glass(1.5f))), rotation({0, 1, 0}, 24));
@@ -542,7 +541,7 @@ TEST(ChainSearch, leavesEachFaceItMeets) {
     EXPECT_GT(edges, 1000);
 }
 
-/// The spread of a plane mirror is that of the straight way to the image.
+/// A plane mirror's spread is that of the straight way to the lamp's image.
 TEST(ChainSearch, knowsTheDistanceToAnImage) {
     SceneBuilder b;
     b.add(quad({-1, -50, 50}, {0, 0, -100}, {0, 100, 0}, b.add(mirror())));
@@ -568,7 +567,7 @@ std::optional<FoundChain> throughGlass(const ChainSolver& solver, const ChainQue
     return solver.throughGlass(query, straight, tally);
 }
 
-/// Through both faces of a slab, as Snell's law has it: where the ray comes out, and how it spreads.
+/// A chain through both faces of a slab obeys Snell's law: where the ray leaves, and how it spreads.
 TEST(ChainSolver, goesThroughASlabByItself) {
     SceneBuilder b;
     b.add(box({-50, 1, -50}, {50, 1.5f, 50}, b.add(glass(1.5f))));
@@ -588,7 +587,7 @@ TEST(ChainSolver, goesThroughASlabByItself) {
         EXPECT_EQ(found->chain.size(), 2u);
         const Vec3d along = found->chain.firstDirection();
         EXPECT_NEAR(sideways(along.x), x, 1e-4 * x);
-        // sin d(sin) / cos over the ring at the lamp, seen along the ray.
+        // sin d(sin) / cos over the ring's area at the lamp, as seen along the ray.
         const double sine = along.x, cosine = along.y, by = 1e-5;
         const double ring = (sideways(sine + by) - sideways(sine - by)) / (2 * by);
         EXPECT_NEAR(found->spread * x * ring * cosine * cosine / sine, 1.0, 1e-3);
@@ -596,13 +595,13 @@ TEST(ChainSolver, goesThroughASlabByItself) {
         const Vec3d straight = normalize(Vec3d{x, 2.5, 0});
         EXPECT_FALSE(solver.isAlong(*found, {start, lamp, Chain::kMost}, straight, 1e-4, tally));
     }
-    // What lies at infinity is seen in the direction that it is in.
+    // A target at infinity is seen in its own direction.
     const ChainTarget sky{normalize(Vec3{0.3f, 0.8f, 0.2f}), true};
     const auto found = throughGlass(solver, {start, sky, Chain::kMost}, tally);
     ASSERT_TRUE(found);
     EXPECT_LT(length(found->chain.firstDirection() - Vec3d(sky.position)), 1e-6);
     EXPECT_NEAR(found->spread, 1.0, 1e-6);
-    // Nothing bends the way to a lamp below it, and no way leads through a mirror.
+    // No glass is on the way to a lamp below the slab, and no way leads through a mirror.
     EXPECT_FALSE(throughGlass(solver, {start, lampAt(*scene, {1, 0.5, 0}), Chain::kMost}, tally));
     SceneBuilder shut;
     shut.add(box({-50, 1, -50}, {50, 1.5f, 50}, shut.add(mirror())));
@@ -610,8 +609,8 @@ TEST(ChainSolver, goesThroughASlabByItself) {
     EXPECT_FALSE(throughGlass(ChainSolver(*closed), {floorOf(*closed), sky, Chain::kMost}, tally));
 }
 
-/// Along the axis of a ball of glass nothing bends, and a ray near it is moved and turned in proportion to
-/// how far off it is. What reaches the lamp, or the sky, follows from the ball's two faces in turn.
+/// A ray along the axis of a glass ball is not bent. Rays near it are moved and turned in proportion to their distance
+/// from it. The two faces in turn give the spread at the lamp, or in the sky.
 TEST(ChainSolver, knowsTheLensThatABallIs) {
     constexpr double kIndex = 1.5, kRadius = 0.5, kBefore = 1.5;  // from the start to the centre
     constexpr double kPower = (kIndex - 1) / kRadius;             // of either face
@@ -621,7 +620,7 @@ TEST(ChainSolver, knowsTheLensThatABallIs) {
     const auto scene = b.build();
     const ChainSolver solver(*scene);
     const ChainStart start = floorOf(*scene);
-    // Of a ray that leaves the start with an angle of one to the axis.
+    // For a ray that leaves the start at an angle of one to the axis.
     const double meets = kBefore - kRadius;
     const double inside = (1 - kPower * meets) / kIndex;
     const double leaves = meets + 2 * kRadius * inside;
@@ -637,7 +636,7 @@ TEST(ChainSolver, knowsTheLensThatABallIs) {
         const Rgb through = found->chain[0].through * found->chain[1].through;
         EXPECT_NEAR(double(mean(through)), (1 - reflected) * (1 - reflected), 1e-4);
     };
-    // Before, near and behind where the ball brings the start's rays together, 1.5 behind its centre.
+    // Lamps before, near and behind the point where the ball focuses the start's rays, 1.5 behind its centre.
     for (const double behind : {0.6, 1.0, 1.4, 1.6, 2.0, 4.0, 20.0}) {
         const Vec3d lamp = axis * (kBefore + behind);
         expectOnAxis(lampAt(*scene, lamp), leaves + (behind - kRadius) * turned);
@@ -645,7 +644,7 @@ TEST(ChainSolver, knowsTheLensThatABallIs) {
     expectOnAxis({Vec3(axis), true}, turned);
 }
 
-/// From under water the straight way to a low sun would be reflected back; the one that is found obeys Snell's law.
+/// From under water, the straight way to a low sun would be reflected back. The chain found obeys Snell's law.
 TEST(ChainSolver, turnsWhatWouldBeReflectedBack) {
     SceneBuilder b;
     b.add(box({-50, -0.5f, -50}, {50, 1, 50}, b.add(glass(1.33f))));
@@ -659,8 +658,8 @@ TEST(ChainSolver, turnsWhatWouldBeReflectedBack) {
     EXPECT_NEAR(found->chain.firstDirection().x, double(sun.position.x) / 1.33, 1e-6);
 }
 
-/// Glass with alpha is left out, also where only Newton's method comes to it: the straight way to the
-/// lamp meets the slab at x = 1, the way that is found beyond 1.05, where alpha begins.
+/// Glass with alpha is left out, even if only Newton's method reaches it. The straight way to the lamp meets the slab
+/// at x = 1, and the solution lies beyond 1.05, where alpha begins.
 TEST(ChainSolver, goesThroughNoAlphaThatItComesTo) {
     for (const bool veiled : {false, true}) {
         SceneBuilder b;
@@ -680,8 +679,8 @@ TEST(ChainSolver, goesThroughNoAlphaThatItComesTo) {
     }
 }
 
-/// A ball of glass shows a lamp near its focus several times: which of two images a path belongs to shows
-/// in the sign of their spread, however near the two are.
+/// A glass ball shows a lamp near its focus several times. The sign of the spread tells two images apart, however near
+/// they are.
 TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
     SceneBuilder b;
     b.add(ball({0, 1.5f, 0}, 0.5f, b.add(glass(1.5f))));
@@ -717,7 +716,7 @@ TEST(ChainSolver, tellsImagesOnEitherSideOfAFoldApart) {
     EXPECT_GT(different, 0);
 }
 
-/// Rays that meet glass lie in the boxes, and most others do not.
+/// Rays that meet glass pass through the boxes, and most others do not.
 TEST(GlassBoxes, holdAllGlass) {
     SceneBuilder b;
     const auto mesh = b.add(ball({0, 0, 0}, 1, b.add(glass(1.4f))));

@@ -1,4 +1,4 @@
-// Bodies of glass with flat faces, and the ways out of them.
+// Glass bodies with flat faces, and the ways out of them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace lacuna::test {
 namespace {
 
-/// In the scene's coordinates, for one around the origin.
+/// A lamp, in the coordinates of a scene around the origin.
 ChainTarget lampAtPlace(Vec3 place) {
     return {place, false};
 }
 
-/// Upright and closed, one high and wide to each side.
+/// An upright closed prism of radius 1 between y = -1 and 1.
 Mesh prism(int sides, std::uint32_t material) {
     Mesh m;
     m.material = material;
@@ -38,7 +38,7 @@ Mesh prism(int sides, std::uint32_t material) {
     return m;
 }
 
-/// Refracted by the plane, the way leads to the target.
+/// The way, refracted by the plane, leads to the target.
 TEST(Snell, leadsToTheTarget) {
     const Interface plane{normalize(Vec3d{0.2, 1, -0.3}), 0.7, 1.33};
     const Vec3d from{0.1, -0.4, 0.2};
@@ -65,8 +65,7 @@ TEST(Snell, leadsToTheTarget) {
     EXPECT_FALSE(refractedWay(from, plane, {Vec3{0, -1, 0}, true}));
 }
 
-/// A block turned, mirrored, and around the origin: the lamp is seen through the three faces that look towards
-/// it, each time along a chain of its own.
+/// A rotated and mirrored block around the origin shows the lamp through each of the three faces towards it.
 TEST(GlassBodies, showALampThroughEachFaceTowardsIt) {
     SceneBuilder b;
     const Affine turn = rotation({1, 2, 3}, 30);
@@ -88,14 +87,14 @@ TEST(GlassBodies, showALampThroughEachFaceTowardsIt) {
         ASSERT_TRUE(found);
         EXPECT_EQ(found->chain.size(), 1u);
         EXPECT_GT(std::fabs(dot(found->chain[0].point.ng, ways[i].normal)), 0.9999f);
-        // The face alone bends this chain: its first guess is the chain.
+        // Only this face bends the chain, so the first guess is exact.
         EXPECT_LT(length(found->chain.firstDirection() - ways[i].direction), 1e-5);
     }
     EXPECT_EQ(bodies.waysOut({0, 3, 0}, target).size(), 0u);                  // from outside
     EXPECT_EQ(bodies.waysOut(inside, lampAtPlace({0, 0.1f, 0})).size(), 0u);  // to a lamp within
 }
 
-/// Of bodies in each other the inner one counts; what is open, hollow, round or thin is none.
+/// Of nested bodies the inner one counts. Open, round and thin bodies do not count.
 TEST(GlassBodies, areConvexAndClosed) {
     const auto waysIn = [](void (*add)(SceneBuilder&, std::uint32_t)) {
         SceneBuilder b;
@@ -126,11 +125,11 @@ TEST(GlassBodies, areConvexAndClosed) {
               1u);
 }
 
-/// From within what is round, guesses lead to where the way out is: also where the straight way is shut.
+/// From inside a round body, guesses lead to the way out, even if the straight way is blocked.
 TEST(GlassBodies, guessWaysOutOfWhatIsRound) {
     SceneBuilder b;
     b.add(prism(30, b.add(glass(1.5f))), scaling({2, 2, 2}));
-    b.add(quad({0.3f, 0.2f, -0.5f}, {0, 0.8f, 0}, {0, 0, 1}));  // where the straight way is
+    b.add(quad({0.3f, 0.2f, -0.5f}, {0, 0.8f, 0}, {0, 0, 1}));  // blocks the straight way
     b.add(box({-20, -20, -20}, {20, 20, 20}));
     const auto scene = b.build();
     const GlassBodies bodies(*scene);
@@ -140,7 +139,7 @@ TEST(GlassBodies, guessWaysOutOfWhatIsRound) {
     EXPECT_EQ(bodies.roughWaysOut({0, 5, 0}, target).size(), 0u);  // from outside
     const GlassBodies::WaysOut guesses = bodies.roughWaysOut({}, target);
     ASSERT_EQ(guesses.size(),
-              2u);  // the top, and the side in the middle of those that look along x
+              2u);  // the top, and the middle one of the sides towards x
     const ChainQuery query{{}, target, Chain::kMost};
     RayTally tally;
     EXPECT_FALSE(solver.throughGlass(query, normalize(Vec3d(target.position)), tally));

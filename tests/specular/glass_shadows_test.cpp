@@ -14,7 +14,8 @@ Vec3 random(Rng& rng, const Vec3& low, const Vec3& high) {
             low.z + z * (high.z - low.z)};
 }
 
-/// From anywhere to any lamp: what a way meets, its beginning lies in the shadow of.
+/// A point lies in the shadow of the glass if a straight line from it to a lamp may meet that
+/// glass.
 TEST(GlassShadows, lieBehindAllGlass) {
     SceneBuilder b;
     b.add(quad({-9, 0, 5}, {18, 0, 0}, {0, 0, -10}));
@@ -33,7 +34,7 @@ TEST(GlassShadows, lieBehindAllGlass) {
     const Vec3 half = scene->halfSize();
     int behind = 0, free = 0;
     for (int n = 0; n < 60000; ++n) {
-        // All of the scene's space, its very rim as well.
+        // Everywhere in the scene's space, including its border.
         Vec3 place = random(rng, -half, half);
         if (n % 9 == 0) place.y = -half.y;
         if (n % 9 == 1) place.x = half.x;
@@ -77,7 +78,7 @@ TEST(GlassShadows, areDeepWhereTheGlassIsLit) {
     EXPECT_FALSE(shadows.reach(Vec3{-5, 2, 0} - middle));
 }
 
-/// A sky is on all sides.
+/// A sky shines from all sides.
 TEST(GlassShadows, areEverywhereUnderASky) {
     SceneBuilder b;
     b.add(quad({-9, 0, 5}, {18, 0, 0}, {0, 0, -10}));

@@ -18,7 +18,7 @@ class Handled {
     void (*before_)(int);
 };
 
-// An interrupt may come while the child is still a copy of us, with our handlers.
+// An interrupt may come while the child is still a copy of this process, with its handlers.
 TEST(Child, hearsAnInterruptThatComesBeforeItBegins) {
     const Handled handled;
     const std::atomic<bool> cancel = true;

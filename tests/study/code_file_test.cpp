@@ -1,4 +1,4 @@
-// What tells builds of the renderer apart.
+// The file that tells builds of the renderer apart.
 #include "render/code_file.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace lacuna::test {
 namespace {
 
-// Programs stay the same when the code that renders changes: runs of an older library are not kept.
+// Programs may stay the same when the library changes. Runs of an older library must not be kept.
 TEST(CodeFile, isTheLibrary) {
     const std::filesystem::path file = codeFile();
     EXPECT_EQ(file.filename().string().substr(0, 12), "liblacuna.so") << file;

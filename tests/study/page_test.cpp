@@ -1,4 +1,4 @@
-// index.html in a real browser: headless Chromium, with a script of the test's own in the page.
+// index.html in a real browser: headless Chromium, with a script of the test in the page.
 #include <cstdlib>
 
 #include "render/study/embed.h"
@@ -35,14 +35,14 @@ TEST(StudyPictures, PixelsAreHalvesTimesAPowerOfTwo) {
 
 class StudyPageSlow : public StudyTool {
   protected:
-    /// Before everything else: whatever goes wrong is remembered.
+    /// Comes first in the page and records all faults.
     static constexpr const char* kBefore = R"(<script>
         const faults = [];
         addEventListener('error', e => faults.push('error: ' + e.message));
         addEventListener('securitypolicyviolation', e => faults.push('asked for ' + e.blockedURI));
         </script>)";
 
-    /// After everything: uses the page as a reader would and says what it found wrong.
+    /// Comes last in the page: uses it as a reader would, and reports the faults.
     static constexpr const char* kAfter = R"(<script>
         try {
         const expect = (truth, text) => { if (!truth) faults.push(text); };
@@ -213,7 +213,7 @@ TEST_F(StudyPageSlow, WorksInChromiumWithoutNetwork) {
     page.insert(page.find("<meta charset"), kBefore);
     page.insert(page.rfind("</body>"), kAfter);
     write("tried.html", page);
-    // Its own profile, and no sandbox: that needs rights that a container does not give to root.
+    // Own profile, and no sandbox, because that needs rights that root lacks in a container.
     const std::string command =
         browser() + " --headless --no-sandbox --disable-gpu --user-data-dir=" + path("profile") +
         " --window-size=1400,4000 --dump-dom file://" + path("tried.html") + " > " +

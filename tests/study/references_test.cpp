@@ -1,5 +1,5 @@
-// The references that lie beside the studies show what this program renders: of the scenes as they
-// are now, on the machine that runs the test.
+// The reference pictures of the studies show what this program renders, with the present scenes and
+// on the machine that runs the test.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -20,8 +20,8 @@ constexpr int kIterations = 128;
 
 class ShippedReferences : public RenderTool {};
 
-/// Scenes of ours whose reference is a file, by that file, with the options of the first study (by
-/// name) that has it: others only differ in how they render the same.
+/// Our scenes whose reference is a file, by that file. The options are those of the first study (by
+/// name) that uses it; other studies only render the same picture in other ways.
 std::map<std::string, StudyScene> shippedReferences() {
     setenv("LACUNA_SHARED_SCENES", "/nowhere", 0);
     std::set<std::string> studies;

@@ -1,5 +1,6 @@
-// Every file of tests/studies/ can be read as it is and with --quick; quick ones use our scenes
-// only and are done within two minutes. Those of papers' figures have nothing that papers lack.
+// Every file of tests/studies/ can be read as it is and with --quick. Quick studies use only our
+// scenes, and their runs take at most two minutes. Studies of papers' figures use no techniques
+// that the papers lack.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ TEST_P(ShippedStudies, CanBeRead) {
     EXPECT_GE(study.seeds.size(), 3u) << "medians with ranges";
 }
 
-/// As a word of its own: "bpt" is not in "lvcbpt".
+/// Whether `word` occurs as a word of its own: "bpt" is not in "lvcbpt".
 bool names(const std::string& text, const std::string& word) {
     const auto inWord = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_';

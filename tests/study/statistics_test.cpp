@@ -1,4 +1,4 @@
-// What is read off curves, and how runs are summed up.
+// Values that are read off curves, and summaries of runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(StudyCurve, ReadsOnTheLineInLogLogAndNowhereElse) {
 
     EXPECT_NEAR(*timeToError(curve.points, Measure::Mape, 0.2, Axis::Seconds), 25.0, 1e-9);
     EXPECT_EQ(timeToError(curve.points, Measure::Mape, 0.0999, Axis::Seconds), std::nullopt);
-    // Below from the first row on: reached by then.
+    // The error is below the bound from the first row on, whose time counts.
     EXPECT_EQ(timeToError(curve.points, Measure::Mape, 2.0, Axis::Seconds), 1.0);
     EXPECT_EQ(timeToError(curve.points, Measure::Mape, 2.0, Axis::SecondsWithSetup), 4.0);
 }

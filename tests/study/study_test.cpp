@@ -1,4 +1,5 @@
-// lacuna-study from its file to its tables: what is run again and what is not, and what is refused.
+// lacuna-study from its file to its tables: which runs are rendered again, and which files are
+// refused.
 #include <signal.h>
 
 #include <algorithm>
@@ -48,7 +49,7 @@ TEST_F(StudyRun, WritesTablesAndGoesOnWhereItStopped) {
     EXPECT_NE(changed.out.find("6 runs, 2 of them rendered now"), std::string::npos)
         << changed.out << changed.err;
 
-    // A larger reference continues the one that is there, and every error is measured again.
+    // A larger reference continues the existing one, and every error is measured again.
     writeStudy(R"({"seeds": [1],
         "scenes": [{"file": "room.gltf",
                     "options": {"width": 24, "height": 16, "max-depth": 5},
@@ -98,7 +99,7 @@ TEST_F(StudyRun, SummarySaysHowItWasMade) {
     EXPECT_EQ(row("each run"), "`--iterations 6`");
     EXPECT_EQ(row("lvcbpt candidates=50"), "lvcbpt | `candidates=50` | ");
 
-    // The scene's row adds up what its runs took.
+    // The scene's row has the sum of its runs' seconds.
     double seconds = 0.0;
     for (const auto& run : std::filesystem::directory_iterator(path("out/runs"))) {
         seconds += json("out/runs/" + run.path().filename().string() + "/run.json")
@@ -125,7 +126,7 @@ TEST_F(StudyRun, AReferenceIsKeptWhereTheStudyWantsIt) {
     EXPECT_NE(read("out/references.csv").find("spcbpt, 8 iterations"), std::string::npos);
     const std::string kept = read("kept.exr");
 
-    // It is there: nothing is rendered for it, whatever the folder of results holds.
+    // The reference exists, so nothing is rendered for it, whatever the folder of results holds.
     std::filesystem::remove_all(path("out"));
     ASSERT_EQ(study().exitCode, 0);
     EXPECT_FALSE(exists("out/references"));
@@ -152,7 +153,7 @@ TEST_F(StudyRun, MethodsFollowEachOtherWithinASeed) {
                                                "lvcbpt candidates=200", "pt"}));
 }
 
-/// `options` of the study are those of its scenes, which may have their own, as may the methods.
+/// `options` of the study are defaults for its scenes and methods, which may have their own.
 TEST_F(StudyRun, OptionsOfTheStudyAreDefaults) {
     writeStudy(R"({"options": {"width": 20, "height": 10, "max-depth": 3}, "seeds": [1],
         "scenes": [{"file": "room.gltf", "name": "plain",
@@ -253,7 +254,7 @@ TEST_F(StudyRun, RefusesWhatDoesNotFit) {
     expectFailure("@study.json -o @out --quiet", 3, "LACUNA_SHARED_SCENES");
 }
 
-/// The tests' scene with these crops.
+/// The scene of the tests with these crops.
 std::string withCrops(const std::string& crops) {
     return R"({"scenes": [{"file": "room.gltf",
                            "options": {"width": 24, "height": 16, "max-depth": 5},
@@ -278,7 +279,8 @@ TEST_F(StudyRun, CropsHaveErrorsOfTheirOwn) {
         if (row[1] == "mape" && row[3] == "pt") columns[row[2]] = row;
     }
     ASSERT_EQ(columns.size(), 2u);
-    // The crop that is the whole picture has the run's own error: lowest and highest over seeds.
+    // The crop that is the whole picture has the run's own errors: the lowest and the highest over
+    // seeds.
     std::vector<double> errors;
     for (const nlohmann::json& run : page.at("runs")) {
         if (run.at("method") == 0) errors.push_back(run.at("error").at("mape"));

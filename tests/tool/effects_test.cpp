@@ -1,5 +1,5 @@
-// --effect NAME=on|off: what is forced on changes no picture, what is forced off is missing
-// and said to be.
+// --effect NAME=on|off: an effect that is forced on changes no picture. One that is forced off is missing, and a
+// warning says so.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -27,7 +27,7 @@ TEST(EffectSwitches, LaterOnesWin) {
     }
 }
 
-/// Triangles that have all there is.
+/// A scene that uses every effect.
 SceneDescription everything() {
     SceneDescription scene;
     Texture texel;
@@ -91,7 +91,7 @@ TEST(EffectSwitches, OffIsGoneAndSaid) {
         const auto warnings = forceEffects(off, {scene, lens, &techniques}, effects);
         ASSERT_EQ(warnings.size(), 1u) << name;
         EXPECT_NE(warnings[0].find(name), std::string::npos);
-        // What is left does not call for it any more.
+        // The rest of the scene does not call for the effect any more.
         MethodRow rest = row;
         rest.techniques = techniques;
         for (const Effect& e : effectsOf(scene, lens, &rest)) {
@@ -104,7 +104,7 @@ TEST(EffectSwitches, OffIsGoneAndSaid) {
             EXPECT_FALSE(e.simulated);
             EXPECT_TRUE(e.reason.starts_with("off by --effect")) << e.reason;
         }
-        // Once more is no news.
+        // Forcing it off once more warns of nothing.
         EXPECT_TRUE(forceEffects(off, {scene, lens, &techniques}, effects).empty());
     }
 }
@@ -122,7 +122,7 @@ TEST(EffectSwitches, WhatCannotBeForcedIsRefused) {
     EXPECT_THROW(force("environment", true), UsageError);
     EXPECT_THROW(force("thin_lens", true), UsageError);
     EXPECT_THROW(force("hits", false), UsageError);  // no method, no techniques
-    EXPECT_TRUE(force("glossy", true).empty());      // as it is
+    EXPECT_TRUE(force("glossy", true).empty());      // is on already
 }
 
 using RenderEffects = RenderTool;
@@ -133,7 +133,7 @@ TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
         for (const char* name : names) text += std::string(" --effect ") + name + "=on";
         return text;
     };
-    // Where iterations share light paths an error is known from two blocks on.
+    // If iterations share light paths, the standard error needs at least two blocks.
     const std::string apart = " --block-iterations 1";
     for (const MethodRow& row : methods()) {
         ASSERT_EQ(run(quick(row.name, "--quiet" + apart)).exitCode, 0);
@@ -148,8 +148,8 @@ TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
             {"alpha_mask", "emissive_textures", "vertex_colors", "normal_maps", "attenuation"});
         const auto simulated = json("o.json")["effects"]["simulated"];
         EXPECT_NE(std::find(simulated.begin(), simulated.end(), "normal_maps"), simulated.end());
-        // The same random numbers, so the same paths but for rounding; only where rounding decides
-        // which of two equal probabilities is the larger one, other light vertices are picked.
+        // The same random numbers give the same paths, except for rounding. If rounding decides which of two equal
+        // probabilities is larger (in icbpt), other light vertices are picked.
         double difference = 0.0, sum = 0.0, forcedSum = 0.0;
         for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
             difference += std::fabs(mean(plain.pixels[i]) - mean(forced.pixels[i]));
@@ -159,7 +159,7 @@ TEST_F(RenderEffects, ForcedOnThePictureStaysTheSame) {
         if (row.name != "icbpt") {
             EXPECT_LT(difference, 1e-3 * sum) << row.name;
         }
-        // Whatever has a texture may be smooth somewhere: ways over it are looked for, and other samples drawn.
+        // Textured surfaces may be smooth somewhere, so ways over them are searched for, and other samples are drawn.
         double texturedSum = 0.0;
         for (const Rgb& p : forcedBy({"textures"}).pixels) texturedSum += double(mean(p));
         const auto error = json("o.json")["mean_rgb_stderr"].get<std::vector<double>>();
@@ -177,14 +177,14 @@ TEST_F(RenderEffects, ForcedOffThePictureAndItsHeaderLackIt) {
     for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
     EXPECT_TRUE(json("o.json")["effects"]["reasons"]["area_lights"].get<std::string>().starts_with(
         "off by --effect"));
-    // Without its connections bpt still has hits and splats.
+    // Without connections, bpt still has hits and splats.
     ASSERT_EQ(run(quick("bpt", "--quiet --effect connections=off")).exitCode, 0);
     double sum = 0.0;
     for (const Rgb& p : readImage(path("out.exr")).pixels) sum += mean(p);
     EXPECT_GT(sum, 0.0);
     expectFailure(quick("bpt", "--effect fog=off"), 2, "--effect fog");
     expectFailure(quick("bpt", "--effect hits=maybe"), 2, "NAME=on or NAME=off");
-    // The spelling of before.
+    // The former spelling.
     expectFailure(quick("bpt", "--set effects.hits=off"), 2, "--effect hits=off");
     expectFailure(quick("pt", "--effect splats=on"), 2, "t = 1");
 }

@@ -1,4 +1,4 @@
-// --help-as: manual pages and completion say what --help says, and shells take them.
+// --help-as: manual pages and completion agree with --help, and shells accept them.
 #include <sstream>
 
 #include "libcore/methods/registry.h"
@@ -9,7 +9,8 @@ namespace {
 
 class HelpForms : public RenderTool {
   protected:
-    /// What bash offers behind `words`, the last of which is being typed; parted as readline does.
+    /// What bash offers after `words`, the last of which is being typed. They are split as readline
+    /// does.
     std::string offered(const std::string& words) const {
         std::ostringstream script;
         script << "COMP_WORDS=(lacuna-render " << words << ")\n"
@@ -83,7 +84,7 @@ TEST_F(HelpForms, BashCompletesOptionsMethodsAndTheirSettings) {
     EXPECT_EQ(offered("--replay ''"), "");
     EXPECT_EQ(offered("--effect thin"), "thin_lens=");
     EXPECT_EQ(offered("--effect thin_lens = ''"), "on off");
-    // Keys are the method's; a key's values come once it is there.
+    // Keys belong to the method. A key's values are offered after the key.
     EXPECT_EQ(offered("--set ''"), "");
     for (const MethodRow& row : methods()) {
         std::string keys;

@@ -1,4 +1,4 @@
-// Machines that give less than is asked for: memory, threads, room in files.
+// Machines that give less than a render asks for: memory, threads, room in files.
 #include <sys/sysinfo.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 class RenderResources : public RenderTool {
   protected:
-    /// The tool with a limit of the system's: "--as=BYTES", "--fsize=BYTES".
+    /// The tool under a limit of the system: "--as=BYTES", "--fsize=BYTES".
     static std::string limited(const std::string& limit, const std::string& tool = LACUNA_RENDER) {
         return "prlimit " + limit + " " + tool;
     }
@@ -38,7 +38,7 @@ TEST_F(RenderResources, threadsBeyondUseAreNotStarted) {
     EXPECT_LE(json("o.json")["threads"].get<int>(), std::max(64, 4 * get_nprocs()));
 }
 
-/// Whatever is being done when memory ends, in whichever thread.
+/// Memory may end in any step and in any thread.
 TEST_F(RenderResources, memoryThatEndsIsOneLine) {
     if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer maps more than any limit";
     for (const int megabytes : {168, 175, 182, 190, 210, 230, 250, 270, 290}) {
@@ -56,12 +56,12 @@ TEST_F(RenderResources, memoryThatEndsIsOneLine) {
     }
 }
 
-/// ulimit -f: a signal by default.
+/// By default, ulimit -f ends a process by a signal.
 TEST_F(RenderResources, filesThatMayNotGrowAreAnErrorOfWriting) {
     const std::string tool = limited("--fsize=2000");
     expectOneLine(quick("pt", "--quiet"), tool, "out.exr: expected to write");
     EXPECT_FALSE(exists("out.exr"));
-    // The picture is too small for the limit, the log and the JSON are not.
+    // The picture is small enough for the limit; the JSON is not.
     expectOneLine(
         "@room.gltf -o @out.png --method pt --width 2 --height 2 --iterations 1 --quiet "
         "--json @o.json",
@@ -70,7 +70,7 @@ TEST_F(RenderResources, filesThatMayNotGrowAreAnErrorOfWriting) {
     EXPECT_FALSE(exists("o.json"));
 }
 
-/// Embree takes no ray from beyond 1.8e18, and leaves out what is there: a picture without it.
+/// Embree accepts no ray from beyond 1.8e18, so geometry there would be missing from the picture.
 TEST_F(RenderResources, scenesThatAreTooLargeForFloatsAreRefused) {
     TinyScene scene;
     const auto withRoot = [&](const char* key, const nlohmann::json& value) {
@@ -97,7 +97,7 @@ TEST_F(RenderResources, scenesThatAreTooLargeForFloatsAreRefused) {
     }
     withRoot("scale", {1e16, 1e16, 1e16});
     EXPECT_EQ(run(arguments).exitCode, 0);
-    withRoot("translation", {1e19, 0, 0});  // all of it: nothing is far from its middle
+    withRoot("translation", {1e19, 0, 0});  // moves everything: nothing is far from the middle
     expectFailure("@room.gltf -o @out.exr --method pt --aperture 1e20 --focus 1", 2, "--aperture");
     expectFailure("@room.gltf -o @out.exr --method pt --aperture 1 --focus 1e20", 2, "--focus");
 }

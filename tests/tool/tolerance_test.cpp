@@ -1,4 +1,4 @@
-// --tolerance: what is left out, that it is said, and that the bounds hold that it promises.
+// --tolerance: what is left out, that a warning says so, and that the promised bounds hold.
 #include "libcore/tool/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ int dark(const SceneDescription& scene) {
                              [](const PunctualLight& l) { return isBlack(l.intensity); }));
 }
 
-/// Adds a square of this side that emits, as a material of its own.
+/// Adds an emitting square of this side with its own material.
 void addEmitter(SceneDescription& scene, float side, Rgb radiance) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
@@ -106,7 +106,8 @@ TEST(Tolerance, PowersAreBoundedByShapeAndTexture) {
     EXPECT_EQ(leaveOutWithin(1e-3, scene).size(), 1u);
     EXPECT_TRUE(isBlack(scene.materials[1].emission));
 
-    // A textured lamp may be black: it is no reason to leave the other one out, however large.
+    // A textured lamp may be black, so it does not justify leaving out the other one, however large
+    // it is.
     addEmitter(textured, 100.0f, Rgb(1.0f));
     textured.materials[2].emissiveTexture.value = 0;
     textured.lights.clear();

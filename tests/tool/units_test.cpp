@@ -1,4 +1,4 @@
-// Parts of what all tools share by themselves.
+// Parts that all tools share, each tested alone.
 #include <gtest/gtest.h>
 
 #include "libcore/tool/effects.h"
@@ -41,13 +41,13 @@ TEST(ToolUnits, EffectsFollowWhatInstancesUse) {
         ADD_FAILURE() << name;
         return false;
     };
-    // Nothing is placed: nothing is called for.
+    // Without instances, the scene calls for no effect.
     for (const Effect& e : effectsOf(scene, 0.0, nullptr)) EXPECT_FALSE(e.simulated) << e.name;
     scene.instances = {{1, {}}};
     EXPECT_TRUE(simulated("smooth_refraction"));
     EXPECT_TRUE(!simulated("rough_refraction") && !simulated("area_lights"));
     EXPECT_TRUE(!simulated("diffuse"));
-    // Of any roughness it is rendered as smooth where its index is 1: light goes straight on.
+    // With index 1, light goes straight on, so glass of any roughness is rendered as smooth.
     scene.materials[1].roughness = 0.5f;
     EXPECT_TRUE(!simulated("smooth_refraction") && simulated("rough_refraction"));
     scene.materials[1].ior = 1.0f;

@@ -1,5 +1,5 @@
 // Geometry that is hard to voxelize: scenes of any size, walls thinner than a voxel, faces on the
-// lattice, faces that lie twice, needles, meshes that are no surface.
+// lattice, duplicate faces, needles, meshes that are no surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ std::size_t solidVoxels(const std::vector<VoxelState>& state) {
     return std::size_t(std::count(state.begin(), state.end(), VoxelState::Solid));
 }
 
-/// Voxels that are not what CGAL's exact predicate says of every triangle and voxel.
+/// The number of voxels that differ from CGAL's exact predicate over all triangles.
 std::size_t wrongVoxels(const std::vector<Triangle>& triangles, const VoxelShape& shape) {
     const std::vector<VoxelState> state = statesOf(triangles, shape);
     std::size_t wrong = 0;
@@ -54,7 +54,7 @@ std::size_t wrongVoxels(const std::vector<Triangle>& triangles, const VoxelShape
     return wrong;
 }
 
-/// A lattice of 10^3 voxels of size 1 about the origin.
+/// A lattice of 10^3 voxels of size 1 around the origin.
 VoxelShape unitLattice() {
     return latticeExactlyOver({{-5, -5, -5}, {5, 5, 5}}, 10);
 }
@@ -84,7 +84,7 @@ TEST(HardGeometry, sizeOfTheScene) {
     stabilityCase("voxel-scale", double(wrong), "voxels wrong");
 }
 
-/// Two sides of a closed wall, however thin, stay two parts.
+/// The two sides of a closed wall stay two parts, however thin it is.
 TEST(HardGeometry, wallsThinnerThanAVoxel) {
     std::size_t leaks = 0;
     for (const float thickness : {0.3f, 1e-3f, 1e-6f}) {
@@ -105,15 +105,15 @@ TEST(HardGeometry, wallsThinnerThanAVoxel) {
 
 TEST(HardGeometry, facesOnTheLattice) {
     const VoxelShape shape = unitLattice();
-    // A sheet on a lattice plane touches the voxels on both sides; a corner on a lattice corner
-    // those about it; an edge along a lattice line those around the line.
+    // A sheet on a lattice plane touches the voxels on both sides. A corner on a lattice corner
+    // touches those around it. An edge along a lattice line touches those around the line.
     const auto sheet = statesOf(trianglesOf(quad({-9, 2, -9}, {0, 0, 18}, {18, 0, 0})), shape);
     EXPECT_EQ(solidVoxels(sheet), 200u);
     const std::vector<Triangle> corner = {
         {Vec3{0, 0, 0}, Vec3{-0.5f, 0.25f, 0.125f}, Vec3{-0.25f, 0.5f, 0.25f}}};
     EXPECT_EQ(solidVoxels(statesOf(corner, shape)), 8u);
     const std::vector<Triangle> edge = {{Vec3{-2, 1, 1}, Vec3{2, 1, 1}, Vec3{0, 1.5f, 1.5f}}};
-    // Four voxels along the line, around it four, and one beyond each end of it.
+    // Four voxels along the line and one beyond each end, times four around it.
     EXPECT_EQ(solidVoxels(statesOf(edge, shape)), 24u);
     const std::size_t wrong = wrongVoxels(trianglesOf(box({-3, -2, -1}, {1, 2, 3})), shape) +
                               wrongVoxels(corner, shape) + wrongVoxels(edge, shape);
@@ -125,7 +125,7 @@ TEST(HardGeometry, coplanarAndDuplicateFaces) {
     const VoxelShape shape = unitLattice();
     const Affine turn = rotation({3, 1, 2}, 40);
     const auto once = trianglesOf(box({-3, -2, -1}, {1, 2, 3}), turn);
-    // The same faces again, the other way round, and parts of one of them.
+    // The same faces again, reversed, and a part of one of them.
     auto again = once;
     for (const Triangle& t : once) again.push_back({t[2], t[1], t[0]});
     const Triangle& whole = once[0];
@@ -144,7 +144,7 @@ TEST(HardGeometry, coplanarAndDuplicateFaces) {
     stabilityCase("voxel-duplicates", double(different), "voxels differ");
 }
 
-/// Edges of three and more faces, faces through each other, holes: triangles are all that counts.
+/// Edges with three or more faces, faces through each other, holes: only the triangles count.
 TEST(HardGeometry, meshesThatAreNoSurface) {
     std::size_t wrong = 0;
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
@@ -169,8 +169,8 @@ double distanceToSegment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
     return length(p - a - ab * t);
 }
 
-/// Triangles of a width of 1e-7 of their length down to none at all, which instances far from their
-/// origin become: as good as the segment, for the voxels that they touch and for distances.
+/// Triangles whose width is 1e-7 of their length or zero, as in instances far from their origin.
+/// They count as the segment, for the voxels that they touch and for distances.
 TEST(HardGeometry, needles) {
     const VoxelShape shape = unitLattice();
     const double unbounded = std::numeric_limits<double>::infinity();
@@ -182,12 +182,12 @@ TEST(HardGeometry, needles) {
             if (n % 5 > 0) {
                 return Vec3{8 * rng.uniform() - 4, 8 * rng.uniform() - 4, 8 * rng.uniform() - 4};
             }
-            // Halves, so that a third point between two is exactly on their line.
+            // Multiples of 1/2, so that a third point between two is exactly on their line.
             return Vec3{0.5f * float(rng.below(17)) - 4, 0.5f * float(rng.below(17)) - 4,
                         0.5f * float(rng.below(17)) - 4};
         };
         const Vec3 a = point(), b = n % 3 == 2 ? a : point();
-        // Third corners beside the second, between the two, or all three in one point.
+        // The third corner is next to the second, between the two, or all three are one point.
         const float width = n % 2 == 0 ? 8e-7f : 0.0f;
         const Vec3 c = (n % 3 == 1 ? (a + b) * 0.5f : b) + Vec3{0, width, 0};
         const std::vector<Triangle> needle = {{a, b, c}};
@@ -198,7 +198,7 @@ TEST(HardGeometry, needles) {
             const Vec3d centre = shape.centre(v);
             const double d = distanceToSegment(centre, Vec3d(a), Vec3d(b));
             const bool solid = state[i] == VoxelState::Solid;
-            // A voxel's ball of radius 1/2 lies in it, it lies in that of sqrt(3)/2.
+            // A voxel contains its ball of radius 1/2, and lies in its ball of radius sqrt(3)/2.
             wrong += (d < 0.5 - 1e-5 && !solid) || (d > 0.5 * std::sqrt(3.0) + 1e-5 && solid);
             const double found = surface(centre, unbounded);
             if (!(std::fabs(found - d) <= worst)) worst = std::fabs(found - d);

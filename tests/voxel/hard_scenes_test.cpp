@@ -1,5 +1,5 @@
-// What lacuna-voxelize and lacuna-skeletonize make of scenes that are hard for them: of any size,
-// flat, with hardly any room.
+// lacuna-voxelize and lacuna-skeletonize on difficult scenes: of any size, flat, with hardly any
+// room.
 #include <gtest/gtest.h>
 
 #include "libcore/base/error.h"
@@ -85,7 +85,7 @@ TEST(HardScenes, hardlyAnyRoom) {
         skeletonOf(*scene, voxelized(*scene, 1, "-1.05,-0.05,0.45,-0.95,0.05,0.55"));
     EXPECT_EQ(found.empty, (Betti{1, 0, 0}));
     EXPECT_EQ(found.file.skeleton.nodes.size(), 1u);
-    // A box inside of the pillar, and voxels as large as the rooms.
+    // A box inside the pillar, and voxels as large as the rooms.
     EXPECT_THROW(voxelized(*scene, 4, "1.1,-0.1,-0.1,1.2,0,0"), UsageError);
     try {
         voxelized(*scene, 3);

@@ -25,8 +25,8 @@ TEST(Overlap, isExact) {
     Rng rng(1, 0, StreamKind::User, 0);
     int together = 0;
     for (int n = 0; n < 200000; ++n) {
-        // On a coarse lattice most triangles touch box faces, edges and corners exactly; the small
-        // shifts are just off them.
+        // On a coarse lattice, most triangles touch the box's faces, edges and corners exactly. The
+        // small shifts move them just off these.
         const bool shifted = n % 2 == 0;
         const auto coordinate = [&] {
             const double shift = shifted ? (rng.uniformDouble() - 0.5) * 1e-15 : 0.0;
@@ -36,7 +36,7 @@ TEST(Overlap, isExact) {
                           Vec3d{coordinate(), coordinate(), coordinate()},
                           Vec3d{coordinate(), coordinate(), coordinate()}};
         const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
-        if (lengthSquared(normal) < 1e-6) continue;  // CGAL wants a plane
+        if (lengthSquared(normal) < 1e-6) continue;  // CGAL needs a plane
         const Vec3d low{-1, -1, -1}, high{1, 1, 1};
         const bool expected = overlapsByCgal(t, low, high);
         ASSERT_EQ(overlaps(t, low, high), expected) << n;
@@ -61,7 +61,7 @@ TEST(Voxelize, everyVoxelThatATriangleTouches) {
         }
         ASSERT_EQ(state[i] == VoxelState::Solid, touched) << i;
     }
-    // Closed boxes: inside and outside do not even share a corner.
+    // A closed box: inside and outside do not even share a corner.
     EXPECT_EQ(Components(shape, state, {}, Connectivity::Corners).count(), 2u);
 }
 
@@ -144,7 +144,7 @@ TEST(Domain, aLargeGroundDoesNotEatTheResolution) {
     EXPECT_LT(domain.high.x - domain.low.x, 4.5);
     EXPECT_GT(domain.high.x - domain.low.x, 3.9);
     EXPECT_LT(domain.high.z - domain.low.z, 4.5);
-    // The outside of the closed room is empty, and nothing walks into it.
+    // The empty space outside the closed room is another part, which no path reaches.
     const VoxelShape shape = latticeOver(domain, 48);
     std::vector<VoxelState> state(shape.count(), VoxelState::Empty);
     voxelize(triangles, shape, state, pool, kNever);
