@@ -1,5 +1,5 @@
-// Alpha: MASK lets rays pass exactly where alpha < cutoff, BLEND lets a share of them pass; closest
-// hits and shadow rays alike.
+// Alpha: MASK lets rays pass exactly where alpha < cutoff, BLEND lets a share of them pass. This
+// holds for closest hits and shadow rays alike.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ TEST(AlphaMask, HolesInHitsAndShadows) {
             m.baseColorTexture = b.add(leaf());
             const Affine turned = rotation({1, 2, 3}, 40) * scaling({mirror, 1, 1});
             place(b, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, b.add(m)), turned, placement);
-            // Behind it a solid wall.
+            // A solid wall behind it.
             b.add(quad({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}), rotation({1, 2, 3}, 40));
             const auto scene = b.build();
             RayTally tally;
@@ -119,8 +119,8 @@ TEST(AlphaBlend, AShareOfTheRaysPasses) {
             shadows += shadow;
             both += met && shadow;
         }
-        // Five standard deviations: 6e-7 false alarms each. Two rays along one line that are not
-        // the same ray decide for themselves.
+        // Five standard deviations: 6e-7 false alarms each. Two different rays along one line
+        // decide independently.
         const double sigma = std::sqrt(kAlpha * (1 - kAlpha) / kRays);
         EXPECT_NEAR(double(hits) / kRays, kAlpha, 5 * sigma);
         EXPECT_NEAR(double(shadows) / kRays, kAlpha, 5 * sigma);

@@ -1,5 +1,5 @@
-// Lamps that are drawn as balls: which are, and that their points come by the density that is said.
-// False alarms: 1e-3 over all comparisons of this file.
+// Lamps that are sampled as balls: which lamps are, and that their points have the stated density. False alarms: 1e-3
+// over all comparisons of this file.
 #include "libcore/scene/ball_lamp.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Vec3 someDirection(Rng& rng) {
     return normalize(Vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f});
 }
 
-/// One ball in the middle of nowhere.
+/// A ball on its own.
 class Ball {
   public:
     explicit Ball(Vec3 middle = {0.3f, -0.2f, 0.1f}, float radius = 0.5f, int rings = 12)
@@ -40,7 +40,7 @@ class Ball {
         const auto& [a, b, c] = triangles[light].corners;
         return triangleNormal(a, b, c);
     }
-    /// By the midpoints of 256 equal parts.
+    /// Numerically, at the midpoints of 256 equal parts.
     double probability(std::uint32_t light, const Vec3& from) const {
         constexpr int kSteps = 16;
         const auto& [a, b, c] = triangles[light].corners;
@@ -149,7 +149,7 @@ TEST(BallLamp, pointsComeByTheirDensityAndMissesByTheRest) {
     }
 }
 
-// A point is where its own direction meets the lamp first: no other face is in front of it.
+// A sampled point is where its direction first meets the lamp: no other face is in front of it.
 TEST(BallLamp, pointsAreThoseThatAreSeen) {
     const Ball ball;
     Rng rng = someNumbers(42);
@@ -171,8 +171,8 @@ TEST(BallLamp, pointsAreThoseThatAreSeen) {
     }
 }
 
-// What next event from here brings would be the same for every point if there were no cosine at this
-// end. By triangles its relative variance is .2.
+// The contribution of next event is the same for every point, except for the cosine at this end. If triangles were
+// sampled instead, its relative variance would be .2.
 TEST(BallLamp, everyPointBringsTheSame) {
     const std::vector<EmissiveTriangle> triangles = emissiveBall({}, 0.1f, 12);
     const Lights lights(triangles, {}, {}, nullptr, 2.0f);

@@ -1,4 +1,4 @@
-// Rays from the camera and back onto its film (numerics.md, "Camera").
+// Rays from the camera, and their projection back onto the film (numerics.md, "Camera").
 #include "libcore/scene/camera.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,8 @@ TEST(Camera, RoundTrip) {
     double worst = 0;
     for (const View& v : views()) {
         SCOPED_TRACE(v.name);
-        // Or the rounding of a unit direction, where a pixel is seen under less than 2e-4.
+        // If a pixel subtends less than 2e-4, the rounding of a unit direction is larger than 1e-3
+        // pixels.
         const double pixelAngle = 2 * std::tan(v.description.yfov / 2) / v.film.height;
         const double tolerance = std::max(1e-3, 2e-7 / pixelAngle);
         for (const float radius : {0.0f, 0.05f}) {
@@ -88,7 +89,7 @@ TEST(Camera, RoundTrip) {
             for (int i = 0; i < 5000; ++i) {
                 const Vec2 raster{random.next() * float(v.film.width),
                                   random.next() * float(v.film.height)};
-                // Within rounding of the border both answers are right.
+                // At the border within rounding, either answer is right.
                 if (raster.x < 1e-3f || raster.y < 1e-3f ||
                     raster.x > float(v.film.width) - 1e-3f ||
                     raster.y > float(v.film.height) - 1e-3f) {
@@ -181,7 +182,8 @@ TEST(Camera, ThinLensInFocusIsSharp) {
         ASSERT_NEAR(dot(onLens, exact.forward), 0, 1e-6);
         farthest = std::max(farthest, length(onLens));
         ASSERT_LE(length(onLens), 0.3 * (1 + 1e-5));
-        // In focus: the same place from everywhere. Elsewhere: off by the circle of confusion.
+        // In focus, every point of the lens sees the same position. Elsewhere it is off by the
+        // circle of confusion.
         const double x = random.real() * 333, y = random.real() * 222;
         for (const double depth : {1.0, 4.0, 1.0, 30.0}) {
             const Vec3d p = exact.onImagePlane(x, y) * (depth * focus);
@@ -237,7 +239,7 @@ TEST(Camera, NothingBehindOrOutside) {
         }
         EXPECT_FALSE(camera.project(lens, Vec3(exact.right)));
         EXPECT_FALSE(camera.project(lens, Vec3(exact.up)));
-        // What is on the film has a pixel: never raster.x == width.
+        // A direction on the film has a pixel: raster.x is never the width.
         for (int i = 0; i < 2000; ++i) {
             const Vec3 d = camera.directionAt(lens, {640, random.next() * 480}).direction;
             const auto p = camera.project(lens, d);

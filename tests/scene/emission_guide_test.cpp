@@ -1,5 +1,5 @@
-// Guided emission: whatever the guide says, points and rays have the densities that are told of them.
-// False alarms: 1e-6 for each comparison.
+// Guided emission: points and rays have the densities that emission() returns, for any guide. False alarms: 1e-6 for
+// each comparison.
 #include "libcore/scene/emission_guide.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct AllKinds {
     }
 };
 
-/// Where rays at infinity arrive: any point that they pass.
+/// A point where rays at infinity arrive: any that they pass.
 Vec3 arrival(const Lights::EmissionRay& ray) {
     return ray.origin + ray.direction * 3.0f;
 }
@@ -87,8 +87,8 @@ TEST(EmissionGuide, SquaresAreThoseThatPlainEmissionFillsEvenly) {
     }
 }
 
-/// Guided draws that are weighted by plain over guided density fall as plain ones do: all of them
-/// together, and in each quarter of the rays' square.
+/// Guided draws, weighted by plain over guided density, are distributed as plain ones: all of them together, and in
+/// each quarter of the rays' square.
 TEST(EmissionGuide, DensitiesAreOnesThatDrawsHave) {
     const AllKinds all;
     const Lights& plain = all.lights;
@@ -127,7 +127,7 @@ TEST(EmissionGuide, DensitiesAreOnesThatDrawsHave) {
     }
 }
 
-/// A hit asks for the density of a point that some light walk may have drawn.
+/// A hit asks for the density of a point that a light walk may have drawn.
 TEST(EmissionGuide, AHitFindsTheDensityOfTheDraw) {
     const AllKinds all;
     const Lights guided = all.lights.guidedBy(randomGuide(all.lights, 5));

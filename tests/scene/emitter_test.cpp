@@ -1,5 +1,6 @@
-// Area lights of a scene: sides, barycentrics and densities where light paths start and where eye
-// paths end must be the same, under every transform, baked and instanced (numerics.md, "Lights").
+// Area lights of a scene. Sides, barycentrics and densities must be the same where light paths
+// start and where eye paths end, under every transform, baked and instanced (numerics.md,
+// "Lights").
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ Texture gradient() {
     return t;
 }
 
-/// A glowing, textured box under `toWorld`, twice.
+/// Two copies of a glowing, textured box under `toWorld`.
 SceneBuilder glowingBox(const Affine& toWorld, Placement placement, bool twoSided) {
     SceneBuilder b;
     lacuna::Material m = emitter({5, 4, 3}, twoSided);
@@ -53,7 +54,7 @@ TEST(AreaLights, LightAndEyePathsAgree) {
                 const auto& k = y.uv;
                 if (std::min({k.x, k.y, 1 - k.x - k.y}) < 0.02f) continue;  // too near an edge
                 ++asked;
-                // The mesh's front is outside, so is the image's: whatever the transform does.
+                // The mesh's front faces outwards, and so does its image under every transform.
                 const Vec3d middle = t.toWorld.m[3] - scene->centre();
                 const Vec3d other = middle + Vec3d{0, -20, 0};
                 const Vec3d p(y.position);
@@ -76,7 +77,7 @@ TEST(AreaLights, LightAndEyePathsAgree) {
                 ASSERT_EQ(z.pdf, y.pdf);
                 ASSERT_NEAR(z.exitance.r, y.exitance.r, 2e-3f * y.exitance.r);
                 ASSERT_NEAR(z.exitance.b, y.exitance.b, 2e-3f * y.exitance.b);
-                // ... and that is the texture where the surface says it is.
+                // The exitance is the texture at the surface's coordinates.
                 const Rgb texel = sampleTexture(b.d.textures[0], hit->uv).rgb;
                 ASSERT_NEAR(z.exitance.r, texel.r * 5 * kPi, 1e-4f * z.exitance.r);
                 ASSERT_NEAR(z.exitance.g, texel.g * 4 * kPi, 1e-4f * z.exitance.g);
@@ -93,7 +94,7 @@ TEST(AreaLights, LightAndEyePathsAgree) {
     }
 }
 
-/// A lamp's points are there as often as rays find them, wherever it stands.
+/// The mean opacity of a lamp's points is the share that rays find, under every transform.
 TEST(AreaLights, PointsAreThereAsOftenAsRaysFindThem) {
     using Alpha = lacuna::Material::Alpha;
     for (const NamedTransform& t : transforms()) {
@@ -138,8 +139,8 @@ TEST(AreaLights, PointsAreThereAsOftenAsRaysFindThem) {
                     ASSERT_NEAR(z.opacity, y.opacity, 2e-3f);
                     ASSERT_EQ(z.opacity, lights.opacity(hit->light, hit->barycentric));
                 }
-                // Five standard deviations of as many draws, 6e-7 false alarms each; a mask's edge
-                // may fall between the two points.
+                // Five standard deviations of so many draws, 6e-7 false alarms each. A mask's edge
+                // may fall between the drawn and the hit point.
                 const double slack = mode == Alpha::Mask ? 3 : 5 * std::sqrt(0.25 * asked);
                 EXPECT_NEAR(found, expected, slack);
                 EXPECT_GT(expected, 0.1 * asked);
@@ -162,8 +163,8 @@ TEST(AreaLights, SidesFollowTheWindingAndTheDeterminant) {
             const auto scene = b.build();
             Rng rng(2, 0, StreamKind::User, 0);
             const LightPoint y = scene->lights().samplePoint(rng);
-            // Corner order a, b, c seen from the front, reversed by a mirror: the front moves to
-            // where +z of the mesh goes.
+            // A mirroring transform reverses the order of corners, but the front still follows the
+            // mesh's +z.
             EXPECT_LT(length(y.ng - Vec3{0, 0, s.z > 0 ? 1.0f : -1.0f}), 1e-6f) << signs;
             RayTally tally;
             const auto hit = scene->intersect(y.position + Vec3{0, 0, 1}, {}, {0, 0, -1},
@@ -217,7 +218,7 @@ TEST(AreaLights, DegenerateTrianglesAreNoLights) {
 }
 
 TEST(AreaLights, DiskOfLightsAtInfinityCoversTheScene) {
-    // radius() must hold all there is, however it got there.
+    // radius() must include all geometry, baked or instanced.
     Rng rng(5, 0, StreamKind::User, 0);
     for (const NamedTransform& t : transforms()) {
         for (const Placement placement : {Placement::Baked, Placement::Instanced}) {

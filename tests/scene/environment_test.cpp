@@ -1,4 +1,4 @@
-// The latitude-longitude map by itself (densities against draws: light_points_test.cpp).
+// The latitude-longitude map alone (light_points_test.cpp compares densities with draws).
 #include "libcore/scene/environment.h"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ void expectNear(const Rgb& a, const Rgb& b, float tolerance) {
     EXPECT_NEAR(a.b, b.b, tolerance);
 }
 
-/// Sides of a sky with a small sun and of one without, however it is turned: by the cosine to the sun, and all
-/// alike.
+/// The sides of a sky with a small sun follow the cosine to it, however the sky is turned. The sides of an even sky are
+/// all alike.
 TEST(Environment, SidesGetWhatIsBeforeThem) {
     const double kOff = std::sin(8 * kPiD / 180);  // from a cell's middle to its corner
     Image image(64, 32, Rgb(0.01f));
@@ -67,7 +67,7 @@ TEST(Environment, SidesGetWhatIsBeforeThem) {
     }
 }
 
-/// At the borders of texels above all, where rounding leads into the next one.
+/// Especially at the borders of texels, where rounding leads into the next one.
 TEST(Environment, SamplesHaveTheDensityOfTheirDirections) {
     constexpr float kLast = 1.0f - 0x1p-24f;
     int different = 0;
@@ -93,7 +93,7 @@ TEST(Environment, CentreIsMinusZRightIsPlusXTopIsPlusY) {
     expectNear(e.radiance({1, 0, 0}), mid(8, 9, 3), 1e-5f);
     expectNear(e.radiance({0, 0, 1}), mid(11, 0, 3), 1e-5f);
     expectNear(e.radiance({-1, 0, 0}), mid(2, 3, 3), 1e-5f);
-    // Any length of direction: the poles look at the first and the last row.
+    // Directions may have any length. The poles see the first and the last row.
     const Image rows = [] {
         Image i(4, 3);
         for (int x = 0; x < 4; ++x) i.at(x, 0) = Rgb(1.0f), i.at(x, 2) = Rgb(3.0f);
@@ -142,7 +142,7 @@ TEST(Environment, PositiveRotationTurnsFromMinusZTowardsPlusX) {
     Rng rng(1, 0, StreamKind::User, 0);
     for (const double degrees : {90.0, -90.0, 360.0, 765.0, -1e-9, 12.5}) {
         const Environment turned(image, 1, degrees, "noise");
-        // About +Y by the right hand, -Z goes to -X: the other way round.
+        // A right-handed rotation about +Y takes -Z to -X, so the sign is the opposite.
         const Affine turn = rotation({0, 1, 0}, -degrees);
         int differentTexel = 0;
         for (int i = 0; i < 500; ++i) {
@@ -174,7 +174,8 @@ TEST(Environment, DensityWhereverThereIsLight) {
 }
 
 TEST(Environment, IntegralIsThatOfTheRadiance) {
-    // By texel means against a fine grid: the tent is not flat in solid angle, a small difference.
+    // The integral adds texel means; the sum uses a fine grid. A bilinear tent is not flat in solid angle, a small
+    // difference.
     const Environment e(noise(32, 16), 3, 10, "noise");
     const SphereBins bins(Vec3{0, 1, 0}, 64, 64);
     double sum = 0;
@@ -185,7 +186,7 @@ TEST(Environment, IntegralIsThatOfTheRadiance) {
     EXPECT_NEAR(grey.pdfW({0, 1, 0}), 0.25 / kPiD, 1e-7);
 }
 
-/// Texels near the poles are small: no direction of an even sky is likelier than another.
+/// Texels near the poles are small, but all directions of an even sky are equally likely.
 TEST(Environment, DirectionsOfAnEvenSkyAreAllAlike) {
     const Environment e(Image(16, 9, Rgb(0.5f, 3.0f, 1.0f)), 1, 40, "even");
     Rng rng(4, 0, StreamKind::User, 0);
@@ -196,8 +197,7 @@ TEST(Environment, DirectionsOfAnEvenSkyAreAllAlike) {
     }
 }
 
-/// Integrals of 1, x^2, y and z by both ways to draw directions. False alarms: 8 comparisons at 5
-/// errors, 5e-6.
+/// Both ways to draw directions give the integrals of 1, x^2, y and z. False alarms: 8 comparisons at 5 errors, 5e-6.
 TEST(Environment, DrawsTheSameFromASquare) {
     Image image(8, 5);
     Rng rng(5, 0, StreamKind::User, 0);
@@ -231,8 +231,8 @@ TEST(Environment, DrawsTheSameFromASquare) {
     }
 }
 
-/// What is drawn above the mean has the density that is said of it. Integrals of 1, x^2, y and z over
-/// where that is not zero. False alarms: 8 comparisons at 5 errors, 5e-6.
+/// Directions that are drawn from the part above the mean have the stated density. Compares integrals of 1, x^2, y and
+/// z over all directions where it is not zero. False alarms: 8 comparisons at 5 errors, 5e-6.
 TEST(Environment, WhatIsAboveTheMeanIsDrawnAsItSays) {
     Image image(8, 5);
     Rng rng(10, 0, StreamKind::User, 0);
@@ -272,9 +272,9 @@ TEST(Environment, WhatIsAboveTheMeanIsDrawnAsItSays) {
     }
 }
 
-/// A disc of half a degree, 10^5 times as bright as the sky around it: a few texels, and the rim of it
-/// between them. Its light is as good as that of a lamp: a direction's radiance over its density is the
-/// same for all, but for how far the cosine of the angle to +Y is from linear in a row.
+/// A disc of half a degree, 10^5 times as bright as the sky around it: a few texels and a rim. It is sampled as well as
+/// a lamp: radiance over density is the same for all its directions, except that the cosine to +Y is not linear within
+/// a row.
 TEST(Environment, ASunIsDrawnAsItShines) {
     for (const int height : {256, 1024}) {
         Image image(2 * height, height, Rgb(1.0f));
@@ -284,7 +284,7 @@ TEST(Environment, ASunIsDrawnAsItShines) {
                 const double longitude = 360.0 * (x + 0.5) / (2 * height) - 180;
                 const Vec3 d = towards(longitude, 90 - 180.0 * (y + 0.5) / height);
                 const double cosine = dot(Vec3d(d), sun);
-                // At its rim by halves, as renders and photographs have it.
+                // The rim has half the brightness, as in renders and photographs.
                 if (cosine > std::cos(0.0046))
                     image.at(x, y) = Rgb(1e5f, 0.9e5f, 0.8e5f);
                 else if (cosine > std::cos(0.0046 + 3.0 / height))
@@ -311,7 +311,7 @@ TEST(Environment, ASunIsDrawnAsItShines) {
     }
 }
 
-/// The point of the square that a direction is of gives it again, wherever texels differ.
+/// A direction's point of the square gives that direction again, however texels differ.
 TEST(Environment, SquaresAndDirectionsAreEachOthersInverse) {
     Image image(12, 7);
     Random random(8);
@@ -329,7 +329,7 @@ TEST(Environment, SquaresAndDirectionsAreEachOthersInverse) {
     }
 }
 
-/// What is quicker of one texel than of many is the same.
+/// The short cut for one texel gives the same as the way for many.
 TEST(Environment, ATexelIsAsGoodAsTwoOfIt) {
     const Rgb grey(0.5f, 3.0f, 1.0f);
     const Environment one(Image(1, 1, grey), 2, -70, "one"), two(Image(1, 2, grey), 2, -70, "two");

@@ -1,5 +1,5 @@
-// Lights picked by what a point sees of them: what is never picked sends nothing, probabilities are
-// those of the picks. False alarms: 1e-3 over all comparisons of this file.
+// Lights that are picked by what a point gets from them: a light that is never picked sends nothing, and pmfs match the
+// picks. False alarms: 1e-3 over all comparisons of this file.
 #include "libcore/scene/lamp_tree.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ class SomeLights {
             triangles.push_back(t);
         }
     }
-    /// Flat lamps in two triangles each, of which one may be the brighter.
+    /// Flat lamps of two triangles each, one of which may be brighter.
     void addQuads(int count) {
         for (int i = 0; i < count; ++i) {
             addTriangles(1, i % 2 == 0);
@@ -65,7 +65,7 @@ class SomeLights {
         sky_ = std::make_unique<Environment>(image, 1.0, 0.0, "sky");
         punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.3f)));
         punctual.push_back(directionalLight(Vec3d(direction()), Rgb(0.2f)));
-        // A sun of a size, which the tree knows as one.
+        // A sun with an extent: directional lights around one direction, which the tree treats as one.
         const Vec3 middle = direction();
         for (int i = 0; i < 20; ++i) {
             punctual.push_back(directionalLight(Vec3d(normalize(middle + direction() * 0.1f)),
@@ -82,7 +82,7 @@ class SomeLights {
     std::unique_ptr<Environment> sky_;
 };
 
-/// Of everything: surfaces of one side and of two, large and small, punctual lights, infinity.
+/// Lights of all kinds: one- and two-sided surfaces, large and small, punctual lights, lights at infinity.
 SomeLights allKinds(std::uint64_t seed) {
     SomeLights lamps(seed);
     lamps.addTriangles(40, false);
@@ -94,7 +94,7 @@ SomeLights allKinds(std::uint64_t seed) {
     return lamps;
 }
 
-/// Of the points of next event, those on a light. In a sky they follow what is above its mean.
+/// Share of next event's points that lie on this light. In a sky, they follow the part above its mean.
 double shareOf(const Lights& lights, std::uint32_t l, const Viewpoint& from) {
     if (l != lights.environmentIndex()) return lights.seenSamples({l}, from) * lights.pmf(l);
     const Environment& sky = *lights.environment();
@@ -199,8 +199,8 @@ TEST(LampTree, nearLampsComeFirst) {
     EXPECT_GT(near, 0.7) << "by power 0.011";
 }
 
-// What a triangle sends over its probability would be the same for all, were picks perfect. Bounds in
-// place of means give .48. A triangle is missing: the tree sees no ball as one.
+// With perfect picks, what a triangle sends over its probability would be the same for all. Bounds in place of means
+// give .48. One triangle is missing, so that the tree does not sample a ball.
 TEST(LampTree, trianglesOfABallArePickedByWhatTheySend) {
     std::vector<EmissiveTriangle> ball = emissiveBall({}, 0.1f, 12);
     ball.pop_back();
@@ -225,8 +225,8 @@ TEST(LampTree, trianglesOfABallArePickedByWhatTheySend) {
     EXPECT_LT(squares / (sum * sum) - 1.0, 0.2);
 }
 
-// Those that lie about one direction are picked by what they send wherever all of them are above the
-// side, and each is picked where it alone is.
+// Suns around one direction are picked by power if all of them are above the side. If only some are, each still has a
+// probability.
 TEST(LampTree, sunsAboutOneDirectionArePickedByWhatTheySend) {
     std::vector<PunctualLight> suns;
     for (int i = 0; i < 64; ++i) {
@@ -245,7 +245,7 @@ TEST(LampTree, sunsAboutOneDirectionArePickedByWhatTheySend) {
     }
 }
 
-// Walks that go on by a BSDF find a sky that is the same everywhere as well as next event does.
+// Walks that are continued by the BSDF find an even sky as well as next event does.
 TEST(LampTree, anEvenSkyLeavesTheChoiceToTheSun) {
     const auto shareOfSky = [](float sunOfSky) {
         Image image(64, 32);
@@ -261,7 +261,7 @@ TEST(LampTree, anEvenSkyLeavesTheChoiceToTheSun) {
     EXPECT_GT(shareOfSky(1000.0f), 0.4) << "of which hits find next to nothing";
 }
 
-// A sky whose sun is low, and a lamp above: walls that face the sun get light from the sky, the floor from the
+// A sky with a low sun, and a lamp above. Walls that face the sun get their light from the sky, and the floor from the
 // lamp.
 TEST(LampTree, aSkyIsPickedByWhatASideGetsOfIt) {
     Image image(64, 32, Rgb(1e-3f));
@@ -279,8 +279,8 @@ TEST(LampTree, aSkyIsPickedByWhatASideGetsOfIt) {
     EXPECT_NEAR(share(toSun + Vec3{0, 1, 0}), 0.5, 0.05);
 }
 
-// Where no hits find the rest, next event draws all of a sky; else what is above its mean, which is nothing of
-// an even one.
+// Without hits, next event draws the whole sky. Otherwise it draws only the part above the mean, and an even sky has
+// none.
 TEST(LampTree, ofASkyThatIsAloneIsDrawnWhatHitsDoNotFind) {
     const Environment even(Image(4, 2, Rgb(1.0f)), 1.0, 0.0, "even");
     const Lights lights({}, {}, {}, &even, 1.0f), all = lights.withoutHits();
@@ -295,8 +295,8 @@ TEST(LampTree, ofASkyThatIsAloneIsDrawnWhatHitsDoNotFind) {
     }
 }
 
-// A point over its samples stands for what light walks draw, wherever there are samples: means of functions
-// of a sky's direction, by next event and by light walks. False alarms: 12 comparisons at 5 errors, 7e-6.
+// A point of next event over its samples has the expectation of light walks' points, wherever it has samples. Compares
+// means of functions of the sky's direction. False alarms: 12 comparisons at 5 errors, 7e-6.
 TEST(LampTree, pointsInASkyCountAsTheyAreDrawn) {
     for (const std::uint64_t seed : {24u, 25u}) {
         SomeLights lamps = allKinds(seed);
@@ -397,7 +397,7 @@ TEST(LampTree, powersOfTwoInSizeChangeNoBit) {
         }
         for (PunctualLight& l : other.punctual) {
             l.position = l.position * double(scale);
-            // The sun and the sky shine on an area.
+            // Distant lights shine on an area, so their power grows with it.
             if (l.kind == PunctualLight::Kind::Directional) l.intensity *= 1.0f / scale / scale;
         }
         const Lights scaled(other.triangles, other.punctual, {}, nullptr, 2.0f * scale);

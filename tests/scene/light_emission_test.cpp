@@ -1,4 +1,4 @@
-// The light subpath's first step: profiles and densities. False alarms: 1e-3 over all comparisons
+// The first step of light subpaths: profiles and densities. False alarms: 1e-3 over all comparisons
 // of this file.
 #include <gtest/gtest.h>
 
@@ -144,7 +144,7 @@ TEST(Emission, ExitanceTimesProfileIsWhatTheFileSays) {
             const Vec3d d = Vec3d(frame.s) * (std::sin(angle) * std::cos(phi)) +
                             Vec3d(frame.t) * (std::sin(angle) * std::sin(phi)) +
                             axis * std::cos(angle);
-            // Half-angle forms: nothing cancels.
+            // Half-angle forms avoid cancellation.
             const auto versine = [](double a) { return 2 * std::pow(std::sin(a / 2), 2); };
             double falloff = angle < outer;
             if (angle > inner && angle < outer) {
@@ -188,7 +188,7 @@ TEST(Emission, LightsAtInfinityCoverTheScene) {
         } else {
             ASSERT_EQ(p.exitance, environment.radiance(p.position));
         }
-        // Before the sphere, and across all of its shadow, uniformly.
+        // The ray starts before the sphere and covers the sphere's shadow uniformly.
         const Vec3d origin(ray->origin), to(ray->direction);
         ASSERT_GE(-dot(origin, to), kRadius * (1 - 1e-6));
         const Vec3d across = origin - to * dot(origin, to);

@@ -1,4 +1,4 @@
-// Which group a light is in.
+// The group of each light.
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_builder.h"
@@ -23,7 +23,7 @@ TEST(LightGroupNames, NodeThenMaterialThenTheMaterialsName) {
     b.d.instances.back().lightGroup = 0;
     b.add(lampMesh(b.add(grouped)), translation({6, 0, 0}));
     b.add(lampMesh(nameless), translation({9, 0, 0}));
-    b.add(lampMesh(0), translation({12, 0, 0}));  // shines not at all
+    b.add(lampMesh(0), translation({12, 0, 0}));  // does not shine
     const auto scene = b.build();
     const LightGroups groups = scene->lightGroups();
     EXPECT_EQ(groups.names, (std::vector<std::string>{"tube", "key", "work", "unnamed"}));

@@ -1,5 +1,5 @@
-// Which light, and where on it: draws against densities. False alarms: 1e-3 over all comparisons of
-// this file.
+// Which light is picked, and which point on it: draws compared with densities. False alarms: 1e-3 over all comparisons
+// of this file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ EmissiveTriangle emissive(Vec3 a, Vec3 b, Vec3 c, Rgb radiance, bool twoSided = 
     return t;
 }
 
-/// Left half dark, right half bright in red; linear.
+/// Left half black, right half bright, mostly red; linear.
 Texture halfTexture() {
     Texture t;
     t.width = t.height = 2;
@@ -64,7 +64,7 @@ TEST(LightSelection, ProportionalToPower) {
     ASSERT_EQ(lights.size(), 9u);
     ASSERT_FALSE(lights.empty());
 
-    // The spot's falloff, integrated over the cosine by its definition.
+    // The spot's falloff, integrated over the cosine as it is defined.
     double spot = 0;
     constexpr int kSteps = 100'000;
     const double co = std::cos(0.9), ci = std::cos(0.4);
@@ -103,9 +103,9 @@ TEST(LightSelection, ProportionalToPower) {
     EXPECT_GT(chiSquareSignificance(counts, pmf, kSamples), kSignificance);
 }
 
-/// Of emission that varies: power by its mean, however small the part that shines.
+/// The power of varying emission is that of its mean, however small the bright part is.
 TEST(LightSelection, PowerOfTexturesAndAlpha) {
-    // One bright texel among 64 x 64, between all of 36 evenly spread looks; a mask with as much.
+    // Nine bright texels of 64 x 64, as a texture and as a mask. A grid of 36 samples misses them.
     Texture star;
     star.width = star.height = 64;
     star.rgba.assign(64 * 64 * 4, 0);
@@ -131,12 +131,12 @@ TEST(LightSelection, PowerOfTexturesAndAlpha) {
 
     const Lights lights({plain, textured, masked, gone}, {}, {}, nullptr, 1.0f);
     EXPECT_EQ(lights.pmf(3), 0.0);
-    // 9 of 2048 texels of the triangle; what keeps it pickable is a thousandth.
+    // 9 of 2048 texels of the triangle, plus a thousandth that keeps it pickable.
     const double share = 9.0 / 2048;
     EXPECT_NEAR(lights.pmf(1) / lights.pmf(0), share + 1e-3, 0.3 * share);
     EXPECT_NEAR(lights.pmf(2) / lights.pmf(0), share + 1e-3, 0.3 * share);
 
-    // A texel that no look falls on still gets light paths.
+    // A texel that no sample of the texture meets still gets light paths.
     Texture spark;
     spark.width = spark.height = 1024;
     spark.rgba.assign(std::size_t(1024) * 1024 * 4, 0);
@@ -153,7 +153,7 @@ TEST(LightSelection, NothingToPick) {
     const Lights lights({emissive({}, {1, 0, 0}, {0, 1, 0}, Rgb(0.0f))}, dark, {}, &black, 1.0f);
     EXPECT_TRUE(lights.empty());
     EXPECT_EQ(lights.size(), 3u);
-    // What an eye path that runs into a black light asks for is still finite.
+    // An eye path that hits a black light still gets finite values.
     const LightPoint area = lights.areaPoint(0, {}, {0, 0, 1}, {0.2f, 0.2f});
     EXPECT_EQ(area.pdf, 0.0f);
     EXPECT_TRUE(isBlack(area.exitance));
@@ -162,8 +162,8 @@ TEST(LightSelection, NothingToPick) {
     EXPECT_TRUE(isBlack(sky.exitance));
 }
 
-/// Exitances of lights that are too bright or too dark for a float's room come in another unit: the
-/// same numbers, for powers of two. Ordinary ones are what the file says.
+/// Exitances of lights that are too bright or too dark for floats are in another unit. For powers of two, the numbers
+/// stay the same. Ordinary exitances are those of the file.
 TEST(LightUnit, KeepsThePowerNearOne) {
     struct Found {
         double unit;
@@ -210,7 +210,7 @@ TEST(AreaLight, PointsAgainstDensity) {
         Rng rng(2, 0, StreamKind::User, unsigned(i));
         const LightPoint p = lights.samplePoint(rng);
         const EmissiveTriangle& t = threeTriangles()[p.light];
-        // Uniform in area: sqrt of the distance from corner 0, and the share along the far side.
+        // Uniform in area: the square root of the distance from corner 0, and the share along the opposite side.
         ASSERT_TRUE(p.uv.x >= 0 && p.uv.y >= 0 && p.uv.x + p.uv.y <= 1 + 1e-6f);
         const double s = p.uv.x + p.uv.y, share = s > 0 ? p.uv.y / s : 0;
         ++counts[(p.light * kGrid + std::min(kGrid - 1, int(s * s * kGrid))) * kGrid +
@@ -242,7 +242,7 @@ TEST(AreaLight, HitPointAsIfItHadBeenDrawn) {
         ASSERT_EQ(q.exitance, p.exitance);
         ASSERT_EQ(q.ng, p.ng);
         ASSERT_EQ(q.kind, LightKind::Area);
-        // What leaves towards the front is the radiance of the material.
+        // The radiance towards the front is the material's.
         const EmissiveTriangle& t = threeTriangles()[p.light];
         Rgb radiance = t.radiance;
         if (t.texture) radiance *= sampleTexture(*t.texture, {p.uv.x, p.uv.y}).rgb;
@@ -253,7 +253,7 @@ TEST(AreaLight, HitPointAsIfItHadBeenDrawn) {
 }
 
 TEST(AreaLight, TinyAndHugeTriangles) {
-    // Sides from 1e-18 to 1e9: normals stay unit, densities positive and finite.
+    // Sides from 1e-18 to 1e9: normals have unit length, and densities are positive and finite.
     for (const float size : {1e-18f, 1e-12f, 1e-9f, 1e-6f, 1.0f, 1e6f, 1e9f}) {
         const Lights lights({emissive({0, 0, 0}, {size, 0, 0}, {0, 0, size}, Rgb(1.0f))}, {}, {},
                             nullptr, 2 * size);
@@ -291,8 +291,8 @@ std::vector<Map> maps() {
     return maps;
 }
 
-/// Quarters of texels: each lies between four centres of texels, where the density is bilinear in
-/// longitude and cosine, so that its mean is that in the middle.
+/// Quarters of texels. Each lies between four texel centres, where the density is bilinear in longitude and cosine, so
+/// its mean is the value in the middle.
 struct TexelQuarters {
     int width, height;
     double rotationDegrees;
@@ -354,7 +354,7 @@ TEST(EnvironmentLight, DirectionsAgainstDensity) {
             ASSERT_NEAR(length(Vec3d(p.position)), 1.0, 1e-6);
             const LightPoint q = lights.environmentPoint(p.position);
             ASSERT_EQ(q.exitance, p.exitance);
-            // A direction at a texel's edge may fall into the neighbour.
+            // A direction at a texel's edge may fall into the next texel.
             different += std::abs(q.pdf - p.pdf) > 1e-5f * p.pdf;
         }
         EXPECT_LE(different, 2);

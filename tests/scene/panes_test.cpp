@@ -1,4 +1,4 @@
-// Which meshes are panes, and what share of the rays they let pass.
+// Which meshes are panes, and what share of rays passes them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace lacuna::test {
 namespace {
 
-/// Share of the rays through the middle of a square about the origin, `degrees` from its normal in its
-/// own space, that do not stop there.
+/// The share of rays that pass through the middle of a square around the origin. They meet it `degrees` from its
+/// normal, in the square's own space.
 double passing(const Scene& scene, double degrees, const Affine& to, int rays = 20000) {
     RayTally tally;
     Rng rng(2, 0, StreamKind::User, 0);
@@ -77,7 +77,7 @@ TEST(Pane, IsThinFlatAndSmoothGlassAlone) {
     })));
 }
 
-/// One glass on a window and on something curved.
+/// The same glass on a window and on a curved mesh.
 TEST(Pane, IsOfItsMeshAndNotOfItsMaterial) {
     SceneBuilder b;
     const auto glassy = b.add(pane());
@@ -88,7 +88,7 @@ TEST(Pane, IsOfItsMeshAndNotOfItsMaterial) {
     const auto scene = b.build();
     EXPECT_GT(passing(*scene, 0, {}, 400), 0.9);
     EXPECT_EQ(passing(*scene, 0, translation({0, 0, 4}), 400), 0.0);
-    // What stops light, for the skeleton: that one.
+    // Only the curved mesh blocks light for the skeleton.
     EXPECT_EQ(scene->blockingTriangles(pool()).size(), scene->triangleCount() - 2);
 }
 

@@ -1,4 +1,4 @@
-// What lights and objects are called.
+// The names of lights and objects.
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_builder.h"

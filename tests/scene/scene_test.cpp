@@ -1,5 +1,4 @@
-// A scene as a whole: what it holds, where it stands, and what is left of it when parts are
-// missing.
+// A scene as a whole: its content, its position, and what remains of it if parts are missing.
 #include "libcore/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +18,7 @@
 namespace lacuna::test {
 namespace {
 
-/// A picture in a file that is gone when the test is over.
+/// A picture in a file that is removed after the test.
 class TemporaryPfm {
   public:
     explicit TemporaryPfm(const Image& image)
@@ -76,13 +75,13 @@ TEST(Scene, MovedAndScaledGivesTheSameHits) {
                     ++different;  // at an edge
                     continue;
                 }
-                // From 1e5, file coordinates in double leave 1e-11 / scale.
+                // At an offset of 1e5, file coordinates in double are exact to 1e-11 / scale.
                 const float slack = 1e-5f / std::abs(dot(p->ng, d));
                 ASSERT_LT(length(q->position * float(1 / scale) - p->position), slack);
                 ASSERT_LT(length(q->ng - p->ng), 1e-5f);
                 const LightPoint a = base->lights().samplePoint(lightA),
                                  b = scene->lights().samplePoint(lightB);
-                // Their powers scale differently, so compare where the same kind was picked.
+                // Their powers scale differently, so only picks of the same kind are compared.
                 if (a.kind == b.kind && a.light == b.light && a.kind == LightKind::Area) {
                     ASSERT_LT(length(b.ng - a.ng), 1e-5f);
                 }

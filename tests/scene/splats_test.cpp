@@ -1,4 +1,4 @@
-// addSplats, and what Embree does to the floating point environment of our threads.
+// addSplats, and the floating-point environment of our threads after Embree.
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
@@ -18,7 +18,7 @@ std::vector<std::vector<Splat>> someSplats(std::size_t pixels) {
     for (std::size_t c = 0; c < chunks.size(); ++c) {
         Rng rng(1, 0, StreamKind::User, c);
         for (std::size_t n = c == 5 ? 0 : 2000; n > 0; --n) {
-            // Values over many decades, so that sums depend on their order.
+            // Values span many decades, so that sums depend on their order.
             const float e = std::exp2(40 * rng.uniform() - 20);
             chunks[c].push_back({rng.below(std::uint32_t(pixels)), {e, e * rng.uniform(), 1}});
         }
@@ -42,7 +42,7 @@ TEST(AddSplats, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// Of three splats that are finite, and whose sum is not, the last one is left out and counted.
+/// Three splats are finite, but their sum is not: the last one is left out and counted.
 TEST(AddSplats, SumsStayFinite) {
     std::vector<std::vector<Splat>> chunks(2);
     for (const float value : {2e38f, 1e38f}) chunks[0].push_back({1, {value, 0, 1}});

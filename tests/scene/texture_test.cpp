@@ -170,7 +170,7 @@ TEST(Texture, HugeCoordinatesStayInside) {
                 for (const float v : {u, 0.5f}) {
                     const Rgba c = sampleTexture(t, {u, v});
                     EXPECT_TRUE(isFinite(c.rgb) && c.alpha >= 0.0f && c.alpha <= 1.000001f) << u;
-                    // Floats of that size are even integers: where the texture begins.
+                    // Floats of that size are even integers, where the texture begins.
                     if (std::abs(u) < 1e6f || wrap == Wrap::ClampToEdge) continue;
                     expectSame(c, sampleTexture(t, {0, v == u ? 0 : v}), 1e-6f);
                 }

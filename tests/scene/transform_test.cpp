@@ -11,7 +11,7 @@
 namespace lacuna::test {
 namespace {
 
-/// A box with shading normals of any length, leaning up to 60 degrees away from the faces'.
+/// A box whose shading normals have any length and lean up to 60 degrees away from the faces'.
 Mesh softBox() {
     Mesh m = box({-0.5f, -0.4f, -0.3f}, {0.5f, 0.4f, 0.3f});
     Rng rng(1, 0, StreamKind::User, 0);
@@ -41,24 +41,24 @@ TEST(SurfacePoint, AgainstExactTransforms) {
                 const float u = 0.02f + 0.5f * rng.uniform(), v = 0.02f + 0.4f * rng.uniform();
                 const ExactSurface e = exactSurface(mesh, triangle, t.toWorld, u, v);
                 const Vec3d centre = scene->centre(), at = e.position - centre;
-                // From outside, leaning: a box hides none of its faces from where it looks.
+                // From outside at an angle: a convex box hides none of its faces.
                 const Vec3d from = at + (e.ng + Vec3d(randomDirection(rng)) * 0.5) * (0.1 * size);
                 const auto hit = scene->intersect(Vec3(from), {}, Vec3(normalize(at - from)),
                                                   RayKind::Camera, tally);
                 ASSERT_TRUE(hit);
                 // The ray itself is rounded: allow for the scene's extent of 20.
                 const double cosine = std::abs(dot(e.ng, normalize(at - from)));
-                // On a needle of 1 x 6e-4 barycentrics are rough, but the point stays on its plane.
+                // On a needle of 1 x 6e-4, barycentrics are inexact, but the point stays on its plane.
                 const double error = (t.name == "nearly flat" ? 2e-4 : 1e-5) / cosine;
                 ASSERT_LT(length(Vec3d(hit->position) - at), error);
                 ASSERT_NEAR(dot(Vec3d(hit->position) - at, e.ng), 0, 3e-6);
                 ASSERT_NEAR(length(Vec3d(hit->ng)), 1, 1e-6);
                 ASSERT_NEAR(length(Vec3d(hit->ns)), 1, 1e-6);
                 ASSERT_GT(dot(hit->ng, hit->ns), 0.0f);
-                // Corners are rounded too: what tilts a face depends on its size.
+                // Corners are rounded too, which tilts small faces more.
                 const double smallest = t.name == "tiny" || t.name == "nearly flat" ? 6e-5 : 0.1;
                 ASSERT_LT(length(Vec3d(hit->ng) - e.ng), 4e-6 / smallest * 0.6);
-                if (smallest < 0.1) continue;  // the hit's barycentrics are too rough for the rest
+                if (smallest < 0.1) continue;  // the hit's barycentrics are too inexact for the rest
                 ASSERT_LT(length(Vec3d(hit->ns) - e.ns), 1e-3);
                 ASSERT_NEAR(hit->uv.x, e.uv.x, 1e-3);
                 ASSERT_NEAR(hit->uv.y, e.uv.y, 1e-3);
@@ -111,7 +111,7 @@ TEST(SurfacePoint, InstancedEqualsBaked) {
 }
 
 TEST(SurfacePoint, FlatInstances) {
-    // glTF allows a scale of zero: what is left of the mesh is still there, used once or twice.
+    // glTF allows a scale of zero: the flattened mesh is still there.
     const Affine flat = rotation({1, 1, 0}, 40) * scaling({1, 0, 1});
     const Affine line = scaling({1, 0, 0}), point = scaling({0, 0, 0});
     SceneBuilder b;
@@ -168,10 +168,10 @@ TEST(SurfacePoint, MissingZeroAndContradictingNormals) {
             EXPECT_GT(dot(s.ns, s.ng), 0.0f);
         }
         EXPECT_LT(length(hitWith({tilted, tilted, tilted}, p).ns - tilted), 1e-5f);
-        // Against the winding: turned over, not believed.
+        // Against the winding: they are turned over.
         EXPECT_LT(length(hitWith({-tilted, -tilted, -tilted}, p).ns - tilted), 1e-5f);
         EXPECT_LT(length(hitWith({-up, -up, -up}, p).ns - up), 1e-6f);
-        // A zero normal leaves the others their say.
+        // A zero normal leaves the direction to the others.
         EXPECT_LT(length(hitWith({tilted, zero, tilted}, p).ns - tilted), 1e-5f);
     }
 }
@@ -195,7 +195,7 @@ TEST(SurfacePoint, SizesFarBelowOne) {
     }
 }
 
-/// One texel; a normal map of it tilts by r along the image's width and by g towards its upper edge.
+/// One texel. As a normal map, it tilts by r along the image's width and by g towards its upper edge.
 Texture texelOf(std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t alpha = 255) {
     Texture t;
     t.width = t.height = 1;
@@ -252,7 +252,7 @@ TEST(SurfacePoint, TangentsSayHowANormalMapLies) {
                     place(b, mesh, transform.toWorld, placement);
                     const auto scene = b.build();
 
-                    // The map is on the surface before the surface is moved.
+                    // The map's frame is that of the surface before the transform.
                     const Affine& a = transform.toWorld;
                     const Vec3d right{-0.6, 0.8, 0}, along = a.vector(right);
                     const Vec3d edge = a.vector(cross(Vec3d{0, 0, side}, right) * handed);
@@ -268,7 +268,7 @@ TEST(SurfacePoint, TangentsSayHowANormalMapLies) {
                     const auto hit = scene->intersect(Vec3(at + n * reach), {}, Vec3(-n),
                                                       RayKind::Camera, tally);
                     ASSERT_TRUE(hit) << transform.name;
-                    // As for the corners above; that the frame turns with ng is in it.
+                    // The error of the corners as above; it includes that the frame turns with ng.
                     const double size =
                         2 * std::min(length(a.vector({1, 0, 0})), length(a.vector({0, 1, 0})));
                     EXPECT_LT(length(Vec3d(hit->ns) - exact),
@@ -324,7 +324,7 @@ struct Met {
     Bsdf bsdf() const { return scene->bsdfAt(point.value()); }
 };
 
-/// What a ray against the z axis meets at (0.25, 0.25) of `mesh`.
+/// The point of `mesh` at (0.25, 0.25) that a ray against the z axis hits.
 Met meet(SceneBuilder b, Mesh mesh, const lacuna::Material& material) {
     mesh.material = b.add(material);
     b.add(mesh);
@@ -363,7 +363,7 @@ TEST(SurfacePoint, CoatTexturesMultiplyTheirFactors) {
     }
 }
 
-/// A triangle whose texture coordinates grow along x, and upwards (against v) along y.
+/// A triangle whose texture coordinates grow along x, and along y upwards in the image (against v).
 Mesh axesTriangle() {
     Mesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     mesh.uvs = {{0, 1}, {1, 1}, {0, 0}};
@@ -387,13 +387,13 @@ TEST(SurfacePoint, GrainTurnsFromTheTangentToTheBitangent) {
     SceneBuilder b;
     brushed.anisotropyTexture = b.add(texelOf(128, 255, 128));
     expectVector(meet(b, axesTriangle(), brushed).point->grain, {-0.125f, 0.217f, 0});
-    // Tangents go before coordinates; their bitangent is below with a sign of -1.
+    // Tangents go before texture coordinates. With a sign of -1, their bitangent points the other way.
     Mesh mesh = axesTriangle();
     mesh.normals.assign(3, Vec3{0, 0, 1});
     mesh.tangents.assign(3, {0, 1, 0, -1});
     brushed.anisotropyTexture = {};
     expectVector(meet({}, mesh, brushed).point->grain, {0.25f, 0.433f, 0});
-    // Without either, some direction on the surface.
+    // Without either, the grain has some direction on the surface.
     const Vec3 any = meet({}, triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), brushed).point->grain;
     EXPECT_NEAR(length(any), 0.5, 1e-5);
     EXPECT_NEAR(any.z, 0, 1e-6);
@@ -491,7 +491,7 @@ TEST(SurfacePoint, ColouredPointsAreOfThatColoursMaterial) {
 
 TEST(SurfacePoint, TexturesLieByTheSetTheyAskFor) {
     SceneBuilder b;
-    Texture halves;  // red and not there, then blue
+    Texture halves;  // red with alpha 0, then blue
     halves.width = 2;
     halves.height = 1;
     halves.rgba = {255, 0, 0, 0, 0, 0, 255, 255};
@@ -514,7 +514,7 @@ TEST(SurfacePoint, TexturesLieByTheSetTheyAskFor) {
     const Rgb exitance = met.scene->lights().samplePoint(rng).exitance;
     EXPECT_GT(exitance.b, 1.0f);
     EXPECT_LT(exitance.r, 1e-5f);
-    // A set that the mesh lacks is (0, 0) everywhere: the corner between both halves.
+    // A set that the mesh lacks is (0, 0) everywhere, which is between both halves.
     mesh.uvs1.clear();
     material.alphaMode = lacuna::Material::Alpha::Opaque;
     const Rgb corner = meet(b, mesh, material).bsdf().layerAlbedo();

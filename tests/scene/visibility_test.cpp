@@ -1,4 +1,4 @@
-// Shadow rays and rays that leave a surface: no leak, no shadow of a surface on itself.
+// Shadow rays and rays that leave a surface: no leaks, and no surface shadows itself.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(Visibility, ClosedBox) {
                 selfShadow +=
                     !scene->visible(p.position, p.ng, q.position, q.ng, RayKind::Connection, tally);
             }
-            // Nothing outside is seen through another wall ...
+            // Nothing outside is visible through another wall.
             const Vec3 outside(middle + Vec3d(randomDirection(rng)) * 8.0);
             if (inFront(outside)) {
                 ++pairs;
@@ -96,7 +96,7 @@ TEST(Visibility, ClosedBox) {
                 leak += scene->visibleToInfinity(p.position, p.ng, outside - p.position,
                                                  RayKind::Connection, tally);
             }
-            // ... not through the edges and corners either.
+            // Nor is it through edges and corners.
             Vec3d edge{1, 1, 2.0 * rng.uniformDouble() - 1};
             for (int k = 0; k < 3; ++k) edge[k] *= rng.below(2) ? 1 : -1;
             if (i % 10 == 0) edge.z = edge.z > 0 ? 1 : -1;
@@ -124,7 +124,7 @@ TEST(Visibility, ClosedBox) {
 }
 
 TEST(Visibility, GrazingPlane) {
-    // A floor turned any way; towards points barely above it.
+    // A floor turned in several ways, and points barely above it.
     for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
         for (int turn = 0; turn < 6; ++turn) {
             const Affine m = rotation({1.0 - turn, 2, 0.3 * turn}, 37 * turn);
@@ -149,14 +149,15 @@ TEST(Visibility, GrazingPlane) {
                 const Vec3d q = onFloor();
                 const double distance = length(q - Vec3d(p));
                 if (distance < 0.05) continue;
-                // 89.9 degrees and flatter, but above what rounding is for a scene of radius 10.
+                // 89.9 degrees and flatter, but above rounding at the size of this scene.
                 const double height = distance * std::pow(10.0, -2.8 - rng.uniformDouble());
                 const Vec3 above(q + normal * height), below(q - normal * height);
                 shadow += !scene->visible(p, hit->ng, above, {}, RayKind::Connection, tally);
                 shadow += !scene->visible(above, {}, p, hit->ng, RayKind::Connection, tally);
-                // Below the floor, a path leaves it on the other side (transmission): also open.
+                // A path that leaves the floor on the other side (transmission) is not blocked
+                // either.
                 shadow += !scene->visible(p, hit->ng, below, {}, RayKind::Connection, tally);
-                // From above to below there is the floor.
+                // The floor lies between above and below.
                 through += scene->visible(above, {}, below, {}, RayKind::Connection, tally);
                 const Vec3 d = normalize(above - p);
                 rehit += scene->intersect(p, hit->ng, d, RayKind::EyeWalk, tally).has_value();
@@ -169,9 +170,9 @@ TEST(Visibility, GrazingPlane) {
     }
 }
 
-/// Rays that leave the boxes of `mesh` (each convex) outwards may meet another box, not their own.
-/// Rays that go inwards must find the other side of their own box.
-/// `boxSize`: of their shortest edge; the longest is less than `longest`.
+/// Rays that leave the boxes of `mesh` (each convex) outwards may meet another box, but not their
+/// own. Rays that go inwards must find the other side of their own box. `boxSize` is the shortest
+/// edge of the boxes; the longest is less than `longest`.
 void checkLeaving(const Scene& scene, const Mesh& mesh, const Affine& toWorld, double boxSize,
                   double longest) {
     RayTally tally;
@@ -206,20 +207,20 @@ void checkLeaving(const Scene& scene, const Mesh& mesh, const Affine& toWorld, d
 }
 
 TEST(Visibility, LeavingInstancesFarFromTheirOrigin) {
-    // Two boxes a long way from their mesh's middle: local coordinates are large wherever the
-    // instance puts them, above all where that is the scene's middle.
+    // Two boxes far from their mesh's middle: local coordinates are large wherever the instance is,
+    // even in the scene's middle.
     for (const double far : {10.0, 100.0, 1000.0}) {
         Mesh mesh = joined(box({float(-far) - 1, -1, -1}, {float(-far) + 1, 1, 1}),
                            box({float(far) - 1, -1, -1}, {float(far) + 1, 1, 1}));
         for (const double scale : {1.0, 1e-3, 1e3}) {
             for (int turn = 0; turn < 4; ++turn) {
-                // Odd turns: sheared as well, and thin.
+                // Odd turns are also sheared and thin.
                 const double thin = turn % 2 ? 0.2 : 1;
                 const Affine linear = rotation({1, 2.0 - turn, 0.5}, 77 * turn) *
                                       scaling({scale, scale * thin, scale}) *
                                       (turn % 2 ? rotation({1, 1, 0}, 30) : Affine{});
-                // The left box of the one and the right box of the other, side by side in the
-                // middle of the scene.
+                // The left box of one instance and the right box of the other are side by side in
+                // the middle of the scene.
                 Affine m = linear, other = linear;
                 m.m[3] = linear.vector({far, 0, 0});
                 other.m[3] = linear.vector({-far, 5, 5});
@@ -243,7 +244,7 @@ TEST(Visibility, LeavingInstancesFarFromTheirOrigin) {
 }
 
 TEST(Visibility, ThinGapsStayOpen) {
-    // Two plates 1e-4 of the scene's size apart, and light between them.
+    // Two plates with a gap of 1e-4 of the scene's size, and light between them.
     for (const Placement placement : {Placement::Baked, Placement::Instanced}) {
         SceneBuilder b;
         const float gap = 4e-4f;
