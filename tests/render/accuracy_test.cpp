@@ -1,4 +1,4 @@
-// --until, --estimate, and what the progress line says of the error.
+// --until, --estimate, and the error in the progress line.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +11,7 @@ namespace {
 
 class RenderUntil : public RenderTool {
   protected:
-    /// 64 x 48 pixels of the room, to out.exr and o.json: 43 iterations are enough paths for a promise.
+    /// Renders 64 x 48 pixels of the room to out.exr and o.json. 43 iterations have enough paths for a promise.
     std::string room(const std::string& method, const std::string& more) const {
         return "@room.gltf -o @out.exr --json @o.json --quiet --width 64 --height 48 --max-depth 4 "
                "--method " +
@@ -20,7 +20,7 @@ class RenderUntil : public RenderTool {
     LayeredImage picture() const { return readExrLayers(path("out.exr")); }
 };
 
-/// What depends on the clock or on how the picture was asked for.
+/// The part of the JSON that depends neither on the clock nor on how the picture was asked for.
 nlohmann::json figures(const nlohmann::json& j) {
     nlohmann::json kept;
     for (const char* key : {"iterations", "stopped", "estimated_error", "mean_rgb", "rays"}) {
@@ -46,7 +46,7 @@ TEST_F(RenderUntil, stopsAtASetCountWithThePictureOfThatManyIterations) {
     }
 }
 
-// Against the same picture with many times the iterations.
+// Compares with the same picture at many times the iterations.
 TEST_F(RenderUntil, theErrorIsWhatWasAskedFor) {
     std::filesystem::copy_file(std::string(LACUNA_SCENES) + "/cornell-box.glb", path("room.gltf"),
                                std::filesystem::copy_options::overwrite_existing);
@@ -77,7 +77,7 @@ TEST_F(RenderUntil, goesOnFromACheckpointToTheSameEnd) {
         }
         EXPECT_EQ(figures(json("o.json")), figures(whole));
         EXPECT_TRUE(picture().channels() == channels);
-        // What is finished stays as it is.
+        // A finished render stays as it is.
         ASSERT_EQ(run(common + "--checkpoint @ck --until mape=0.3").exitCode, 0);
         EXPECT_EQ(figures(json("o.json")), figures(whole));
         std::filesystem::remove(path("ck"));
@@ -102,7 +102,7 @@ TEST_F(RenderUntil, whatCannotBePromisedIsSaidAndNotStopped) {
     EXPECT_NE(o.err.find("--until: cannot be promised yet: "), std::string::npos) << o.err;
 }
 
-// Nothing but black is known of a scene without light.
+// A scene without light is known to be black.
 TEST_F(RenderUntil, aSceneWithoutLightIsDone) {
     TinyScene dark;
     dark.lamp = false;
@@ -129,7 +129,7 @@ TEST_F(RenderUntil, errorsAreUsage) {
 class RenderEstimate : public RenderUntil {};
 
 TEST_F(RenderEstimate, printsWhatAccuracyCosts) {
-    // A sanitizer makes few iterations in a second, too few to promise anything.
+    // Under a sanitizer, a second has too few iterations for a promise.
     const std::string time = LACUNA_SANITIZED ? "20" : "1";
     const Outcome o =
         run("@room.gltf --width 64 --height 48 --max-depth 4 --method bpt --estimate --time " +

@@ -41,13 +41,13 @@ TEST_F(RenderAuto, SaysWhatItChoseAndHowToAskForItByName) {
     EXPECT_FALSE(json("named.json").contains("chosen"));
     const Image a = readExr(path("auto.exr")), b = readExr(path("named.exr"));
     EXPECT_EQ(a.pixels, b.pixels);
-    // Said where people look, unless they do not want to hear.
+    // stderr tells the choice, unless --quiet.
     const Outcome loud = run("@room.gltf -o @x.exr --cache @cache --scale 10% --iterations 1");
     EXPECT_NE(loud.err.find("the same by name: --method "), std::string::npos) << loud.err;
 }
 
-// Its lamp is seen through glass, and lights what is seen through glass. As many iterations as trials need
-// to be longer than its sparks are rare.
+// In this scene a lamp is seen through glass, and lights what is seen through glass. Its bright sparks are rare, so
+// trials need to be long, and their length follows the iterations.
 TEST_F(RenderAuto, MergesOnlyIfItMay) {
     const std::string scene = std::string(LACUNA_SCENES) + "/kitchen-glass.glb";
     const auto chosen = [&](const std::string& name, const std::string& more) {
@@ -95,7 +95,7 @@ TEST_F(RenderAuto, ACheckpointKeepsTheChoice) {
 }
 
 TEST_F(RenderAuto, ACropOfAHugePictureTakesAsLongAsTheCrop) {
-    // A light subpath per pixel of the whole picture would be 60 million rays.
+    // One light subpath per pixel of the whole picture would take 60 million rays.
     const Outcome o =
         run("@room.gltf -o @crop.exr --json @crop.json --cache @crop-cache --quiet "
             "--width 4000 --height 2000 --crop 2000,2010,1000,1010 --iterations 2 --allow-bias");
@@ -145,7 +145,7 @@ TEST_F(RenderAuto, EffectsNeedNoChoice) {
                   .exitCode,
               0);
     EXPECT_EQ(json("on.json")["effects"], json("named.json")["effects"]);
-    // A technique that is off is off for whatever is chosen.
+    // A technique that is off stays off, whichever row is chosen.
     ASSERT_EQ(run(automatic("off", "--iterations 1 --effect splats=off")).exitCode, 0);
     EXPECT_EQ(json("off.json")["rays_by_kind"]["splat"], 0);
 }
@@ -156,7 +156,7 @@ TEST_F(RenderAuto, ASceneAloneIsEnough) {
     EXPECT_TRUE(exists("room.png"));
     EXPECT_NE(o.out.find("room.png"), std::string::npos) << o.out;
     const std::string first = read("room.png");
-    // Again, over our own picture; never over somebody's.
+    // The tool replaces its own picture, but never a file of somebody else.
     EXPECT_EQ(run("@room.gltf --scale 2% --samples 1").exitCode, 0);
     EXPECT_EQ(read("room.png"), first);
     write("room.png", "a texture");
@@ -180,13 +180,13 @@ TEST_F(RenderAuto, SizesAsPeopleWriteThem) {
     EXPECT_EQ(size("--scale 10%").first, 128);
 }
 
-/// A picture with independent relative noise `sigma` after the mean of both halves.
+/// A picture whose halves have independent relative noise in proportion to `sigma`; `seen` is its share of the light.
 HalfPictures noisy(double sigma, double seen, std::uint64_t seed) {
     HalfPictures p;
     Rng rng(seed, 0, StreamKind::User, 0);
     for (auto* half : {&p.first, &p.second}) {
         for (int i = 0; i < 4096; ++i) {
-            // Uniform noise: mean distance is half of its range.
+            // The mean of two such halves is off by a sixth of the range on average.
             const double range = 4.0 * sigma;  // |mean of two| has a third of it
             const double value = 1.0 + range * (double(rng.uniform()) - 0.5);
             half->push_back(Rgb(float(seen * value)));
@@ -202,7 +202,7 @@ TEST(Judge, TellsTheNoiseOfPicturesApart) {
     EXPECT_NEAR(e[0] / e[2], 2.0, 0.2);
 }
 
-// As where light is hard: each picture is right but for a few pixels, which are never the same.
+// As in scenes with difficult light: each picture is right except for a few pixels, which differ between pictures.
 TEST(Judge, RareErrorsOfTwoPicturesAddUp) {
     const auto sparkling = [](double rate, std::uint64_t seed) {
         HalfPictures p;
@@ -214,8 +214,8 @@ TEST(Judge, RareErrorsOfTwoPicturesAddUp) {
         }
         return p;
     };
-    // The mean of two halves is off by 1/2 in twice as many pixels: by `rate` in the mean, up to those
-    // that meet, and over a mean that is a little above 1.
+    // The mean of both halves is off by 1/2 in twice as many pixels, which is `rate` on average. A few of them
+    // coincide, and the mean is a little above 1.
     const HalfPictures all[] = {sparkling(0.02, 1), sparkling(0.04, 2), sparkling(0.08, 3)};
     const std::vector<double> e = errorsOf(all, 64);
     EXPECT_NEAR(e[0], 0.02, 0.005);
@@ -224,7 +224,7 @@ TEST(Judge, RareErrorsOfTwoPicturesAddUp) {
 }
 
 TEST(Judge, SeesLightThatAPictureLacks) {
-    // The third one hardly has noise of its own: it has never met half of the light.
+    // The third one has hardly any noise, because it never meets half of the light.
     const HalfPictures all[] = {noisy(0.1, 1.0, 1), noisy(0.1, 1.0, 2), noisy(0.01, 0.5, 3)};
     const std::vector<double> e = errorsOf(all, 64);
     EXPECT_GT(e[2], 3.0 * e[0]);
@@ -247,7 +247,7 @@ TEST(Judge, KeepsTheUsualRowUnlessAnotherIsClearlyBetter) {
     };
     EXPECT_EQ(taken({{0.1, 0.9}, {0.1, 1.0}, {0.1, 2.0}}), 1u);
     EXPECT_EQ(taken({{0.1, 0.8}, {0.1, 1.0}, {0.1, 0.7}}), 2u);
-    // Black pictures agree with each other: the less is seen, the clearer it has to be.
+    // Black pictures agree with each other. The less light the trials met, the clearer the difference must be.
     EXPECT_EQ(taken({{0.5, 0.5}, {0.5, 1.0}, {0.5, 0.6}}), 1u);
     EXPECT_EQ(taken({{0.5, 0.4}, {0.5, 1.0}, {0.5, 0.6}}), 0u);
     EXPECT_EQ(taken({{0.9, 0.01}, {1.1, 1.0}, {0.1, 0.02}}), 1u);
@@ -265,10 +265,10 @@ TEST(ProcessorShare, IsWhatOthersLeave) {
             }
         });
     }
-    // Before they end: they take with them what they waited.
+    // Reads before the threads end, because the time that they waited goes with them.
     std::this_thread::sleep_until(end - std::chrono::milliseconds(50));
     EXPECT_GT(processors.value(), 0.0);
-    EXPECT_LT(processors.value(), 0.6);  // a quarter, had they always run when it was their turn
+    EXPECT_LT(processors.value(), 0.6);  // 1/4 if the threads share all processors
 }
 
 TEST(Choices, TravelAsText) {

@@ -1,5 +1,5 @@
-// A picture that is black although the scene has lights: which cause lacuna-render names, and that
-// it says nothing of pictures with light.
+// Pictures that are black although the scene has lights: lacuna-render names the cause, and says nothing of pictures
+// with light.
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -13,12 +13,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-// What TinyScene puts where: meshes and nodes have the same order.
+// The quads of TinyScene. Meshes and nodes have the same order.
 enum Quad : std::size_t { Floor, Ceiling, Back, Left, Right, Lamp, Quads };
 
 class RenderBlack : public RenderTool {
   protected:
-    /// Renders the scene as `edit` leaves it; the one warning, "" if there is none.
+    /// Renders the scene after `edit` and returns the one warning, or "".
     std::string warningOf(const TinyScene& scene, const std::function<void(Json&)>& edit,
                           const std::string& options) const {
         Json root = Json::parse(scene.text());
@@ -63,7 +63,7 @@ class RenderBlack : public RenderTool {
     }
 };
 
-/// Leaves these quads in the scene, and whatever is behind them (camera, point light).
+/// Keeps these quads and all nodes after the quads (camera, point light) in the scene.
 void keep(Json& root, const std::vector<std::size_t>& quads) {
     Json nodes = Json::array();
     for (const std::size_t q : quads) nodes.push_back(q);
@@ -128,7 +128,7 @@ TEST_F(RenderBlack, LampsThatFaceAway) {
             << warning;
         EXPECT_NE(warning.find("seen from behind"), std::string::npos) << warning;
     }
-    // As bright as can be from both sides.
+    // From both sides, the lamp is bright.
     const auto both = [&](Json& root) {
         edit(root);
         root["materials"][4]["doubleSided"] = true;
@@ -145,7 +145,7 @@ TEST_F(RenderBlack, TooShortPaths) {
 }
 
 TEST_F(RenderBlack, LightTracingAndMirrors) {
-    // The lamp behind the camera shines at mirrors.
+    // The lamp, behind the camera, shines at mirrors.
     const auto edit = [](Json& root) {
         makeMirrors(root);
         keep(root, {Back, Lamp});
@@ -157,7 +157,7 @@ TEST_F(RenderBlack, LightTracingAndMirrors) {
 }
 
 TEST_F(RenderBlack, PointLightBehindSmoothGlass) {
-    // Above the glass that the floor lies in, and sheets of glass over it. (Shadow rays pass a thin pane.)
+    // The light is above a ceiling of solid glass and sheets of glass over it. (Shadow rays would pass a thin pane.)
     int sheets = 0;
     const auto edit = [&](Json& root) {
         keep(root, {Floor, Ceiling});
@@ -197,7 +197,7 @@ TEST_F(RenderBlack, ACameraThatLooksAway) {
 }
 
 TEST_F(RenderBlack, NothingIsNamedThatWasNotFound) {
-    // Black walls: light and camera reach surfaces, and nothing more can be said.
+    // Black walls: light and camera reach surfaces, and no other cause can be named.
     const auto edit = [](Json& root) {
         keep(root, {Back, Lamp});
         root["materials"][2] = root["materials"][4];
@@ -208,7 +208,7 @@ TEST_F(RenderBlack, NothingIsNamedThatWasNotFound) {
     expectCause("is the light shut in?", {}, edit, "--method pt");
 }
 
-/// A crop of the room that is dark has the causes of the crop.
+/// The causes for a dark crop are those of the crop, not of the room.
 TEST_F(RenderBlack, CropsAreLookedAtAlone) {
     const Outcome o = run(
         "@room.gltf -o @out.exr --width 240 --height 160 --crop 0,8,0,8 --method pt --iterations 2 "

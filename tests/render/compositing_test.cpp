@@ -1,4 +1,4 @@
-// What compositors ask for: alpha, ids, half and parts, as lacuna-render and lacuna-merge write them.
+// Output for compositors: alpha, ids, half floats and parts, as lacuna-render and lacuna-merge write them.
 #include <stb/stb_image.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 class RenderCompositing : public RenderTool {
   protected:
-    /// As quick(), to a file of this name.
+    /// As quick(), but to a file of this name.
     std::string to(const std::string& name, const std::string& more) const {
         std::string text = quick("bpt", "--quiet --env-colour 0.2,0.4,0.8 " + more);
         return text.replace(text.find("out.exr"), 7, name);
@@ -22,7 +22,7 @@ class RenderCompositing : public RenderTool {
     }
 };
 
-// The upper left corner passes the room.
+// The upper left pixel sees past the room.
 TEST_F(RenderCompositing, ABackgroundIsLeftOutWhereAlphaSaysSo) {
     const std::string common = "--iterations 4 --light-groups ";
     const LayeredImage shown = made("shown.exr", common);
@@ -40,7 +40,7 @@ TEST_F(RenderCompositing, ABackgroundIsLeftOutWhereAlphaSaysSo) {
         ofSky += double(sky.pixels[i].b);
     }
     EXPECT_EQ(sky.pixels[0], Rgb());
-    EXPECT_GT(ofSky, 0);  // what lights the room stays
+    EXPECT_GT(ofSky, 0);  // the sky's light in the room stays
 }
 
 TEST_F(RenderCompositing, APngHasAlphaToo) {
@@ -65,7 +65,7 @@ TEST_F(RenderCompositing, MergedPartsHaveTheAlphaAndIdsOfTheWhole) {
     expectSamePicture("merged.exr", "whole.exr");
     EXPECT_TRUE(whole.attributes.contains("cryptomatte/3ae39a5/manifest"));
 
-    // As parts and halves it is what one render would have written.
+    // With half floats and parts, the merged file is what one render writes.
     made("half.exr", common + "--half --multi-part");
     ASSERT_EQ(run("@1.exr @0.exr -o @merged-half.exr --half --multi-part", LACUNA_MERGE).exitCode,
               0);

@@ -1,6 +1,5 @@
-// Scenes as the tools of others pack them (tests/exporters/, whose make.py made them) against what they
-// were made of: what the camera sees first, which has no noise, as far as the tool rounds; and the picture,
-// as far as noise tells.
+// Compares scenes that other tools packed (tests/exporters/, made by make.py there) with their originals. What the
+// camera sees first has no noise and must agree up to the tool's rounding. Pictures must agree within their noise.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -15,12 +14,12 @@ namespace {
 
 const std::string kFolder = LACUNA_SCENES "/../tests/exporters/";
 
-/// A file of files.json.
+/// An entry of files.json.
 struct Exported {
     std::string name, twin;
-    /// How far most pixels may be off: of albedo, of a normal's coordinate, of depth as a share.
+    /// Allowed difference for most pixels: of albedo, of a normal's coordinate, of depth (relative).
     double albedo = 1e-3, normal = 1e-2, depth = 3e-4;
-    std::vector<std::string> warnings = {};  ///< parts of those that there are
+    std::vector<std::string> warnings = {};  ///< parts of the expected warnings
 };
 void PrintTo(const Exported& file, std::ostream* out) {
     *out << file.name;
@@ -59,7 +58,7 @@ class FilesOfExporters : public RenderTool, public ::testing::WithParamInterface
     }
 };
 
-/// The difference that all but a fiftieth of the pixels stay below: edges of things may move by a pixel.
+/// The difference that all but a fiftieth of the pixels stay below. Edges of objects may move by a pixel.
 double mostPixels(std::vector<double> differences) {
     const auto at = differences.begin() + std::ptrdiff_t(differences.size() * 49 / 50);
     std::nth_element(differences.begin(), at, differences.end());
@@ -90,7 +89,7 @@ TEST_P(FilesOfExporters, renderAsTheirTwins) {
     EXPECT_LE(farthest(packed, plain, {"normal.X", "normal.Y", "normal.Z"}, false), file.normal);
     EXPECT_LE(farthest(packed, plain, {"Z"}, true), file.depth);
 
-    // The pictures differ by their noise, or by less: paths are often the same.
+    // The pictures differ by at most their noise, often by less, because many paths are the same.
     double squares = 0.0, difference = 0.0, variances = 0.0;
     int count = 0;
     for (const std::string channel : {"R", "G", "B"}) {

@@ -1,5 +1,5 @@
-// What there is to see while a picture is rendered: --display-server and --write-every. Whatever a
-// viewer does, the picture is the same.
+// What can be seen while a picture is rendered: --display-server and --write-every. No viewer
+// changes the picture.
 #include <signal.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 using std::chrono::milliseconds;
 using Manner = TevDouble::Manner;
 
-/// Tries again and again for a time that is long for anything.
+/// Tries until it succeeds, for at most two minutes.
 bool comesAbout(const std::function<bool()>& wanted) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
     while (std::chrono::steady_clock::now() < end) {
@@ -47,7 +47,7 @@ TEST(ServerAddresses, haveAHostAPortOrBoth) {
     }
 }
 
-/// Byte by byte what the protocol says.
+/// The bytes are those of tev's protocol.
 TEST(TevPackets, areWrittenAsTevReadsThem) {
     const auto bytes = [](const Packet& packet) {
         std::string text;
@@ -164,7 +164,7 @@ TEST_F(LiveViews, askOnceAndSendWhatTheyGet) {
     EXPECT_TRUE(told_.empty());
 }
 
-/// A picture that took 1000 s to make is the last one for 2000 s.
+/// A picture of 1000 s is the last one for 2000 s at a share of 1/2.
 TEST_F(LiveViews, costNoMoreThanTheirShare) {
     const TevDouble tev;
     LiveView::Timing timing;
@@ -185,7 +185,7 @@ TEST_F(LiveViews, doNotWaitForAViewerThatHangs) {
     ASSERT_TRUE(comesAbout([&] { return live->wants(); }));
     live->show(grey(1), LiveView::Seconds(0));
     std::this_thread::sleep_for(milliseconds(500));
-    EXPECT_FALSE(live->wants());  // not a picture more for who does not take the first
+    EXPECT_FALSE(live->wants());  // no more pictures for a viewer that takes none
     live->showLast(grey(2));
     const auto before = std::chrono::steady_clock::now();
     live->leave();
@@ -194,7 +194,7 @@ TEST_F(LiveViews, doNotWaitForAViewerThatHangs) {
     EXPECT_NE(told_[0].find("last picture within 0.3 s"), std::string::npos) << told_[0];
 }
 
-/// Of what was under way when the last picture came, no more is sent than is in the sockets.
+/// When the last picture comes, no more of an older one is sent than the sockets already hold.
 TEST_F(LiveViews, sendTheLastPictureInPlaceOfAnOlderOne) {
     TevDouble tev(Manner::NeverReads);
     LiveView::Timing timing;
@@ -236,7 +236,7 @@ class RenderLive : public RenderTool {
     std::string server(const TevDouble& tev) const {
         return " --display-server 127.0.0.1:" + std::to_string(tev.port()) + " ";
     }
-    /// Two tiles.
+    /// An endless render of two tiles.
     std::string endless(const std::string& more) const {
         return "@room.gltf -o @out.exr --method pt --width 200 --height 150 --max-depth 4 --quiet "
                "--time 1h " +
@@ -246,7 +246,7 @@ class RenderLive : public RenderTool {
         kill(child, SIGINT);
         return end(child);
     }
-    /// The viewer has what the file has, to the last bit.
+    /// Expects the viewer to have the file's pixels, to the last bit.
     void expectShown(const TevDouble& tev, const std::vector<std::string>& channels) const {
         const LayeredImage file = readExrLayers(path("out.exr"));
         const auto same = [&](const TevDouble::State& state) {
@@ -269,7 +269,7 @@ class RenderLive : public RenderTool {
         for (const float v : *file.find("G")) most = std::max(most, v);
         EXPECT_GT(most, 0.0f);
     }
-    /// Every channel, and all that does not tell of times.
+    /// Compares all channels and all attributes, except times and the command line.
     void expectSameFile(const std::string& a, const std::string& b) const {
         LayeredImage one = readExrLayers(path(a)), other = readExrLayers(path(b));
         EXPECT_TRUE(one.channels() == other.channels()) << a << " and " << b;
@@ -396,7 +396,7 @@ TEST_F(RenderLive, theFileIsNewerAgainAndAgainAndAlwaysWhole) {
     EXPECT_TRUE(temporaries().empty());
     expectShown(tev, {"R", "G", "B"});
 
-    // What is left is what it would have been without all that.
+    // The file is the same as that of an undisturbed render.
     const LayeredImage last = readExrLayers(path("out.exr"));
     EXPECT_EQ(std::get<std::string>(last.attributes.at("stopped")), "interrupt");
     const int n = std::get<int>(last.attributes.at("iterations"));
@@ -423,7 +423,7 @@ TEST_F(RenderLive, otherFormatsAreWrittenAnewAsWell) {
     }
 }
 
-/// Here there is a folder in the way for a while.
+/// For a while, a folder is in the place of the file.
 TEST_F(RenderLive, aFileThatCannotBeWrittenIsAWarning) {
     const pid_t child = start(endless("--write-every 0.05s"));
     EXPECT_TRUE(comesAbout([&] { return exists("out.exr"); }));
@@ -441,7 +441,7 @@ TEST_F(RenderLive, aFileThatCannotBeWrittenIsAWarning) {
               "interrupt");
 }
 
-/// Together with all that writes and shows something.
+/// All options together that write or show something.
 TEST_F(RenderLive, everythingTogetherIsThePicture) {
     for (const char* method : {"bpt", "icbpt", "spcbpt"}) {
         const auto command = [&](const std::string& name, const std::string& more) {

@@ -1,4 +1,4 @@
-// A look at the result without other tools: exposure and tone of a .png, the page of all layers.
+// Looking at the result without other tools: exposure and tone of a .png, the sheet of all layers.
 #include <nlohmann/json.hpp>
 
 #include "libcore/image/exr.h"
@@ -26,7 +26,7 @@ TEST_F(RenderLook, aPngIsExposedByItself) {
                   .exitCode,
               0);
     EXPECT_EQ(read("a.png"), read("b.png"));
-    // As bright as the scene is made to be, and no brighter.
+    // The exposure is the one that the linear picture asks for.
     ASSERT_EQ(run(command("-o @a.exr --quiet")).exitCode, 0);
     EXPECT_NEAR(stops, automaticExposure(readExr(path("a.exr"))), 0.006);
     for (const char* other : {"--tone standard", "--exposure 0", "--png-bits 16"}) {
@@ -53,7 +53,7 @@ TEST_F(RenderLook, theSheetHasEveryLayer) {
     };
     EXPECT_GT(area("few.png"), 5 * 24 * 16);  // the picture and four layers
     EXPECT_GT(area("many.png"), 2 * area("few.png"));
-    // A part's sums are no layers.
+    // The sums in a part's file are no layers.
     ASSERT_EQ(run(command("-o @part.exr --quiet --sheet @part.png --blocks 0,1")).exitCode, 0);
     EXPECT_EQ(area("part.png"), area("few.png"));
 }

@@ -1,4 +1,4 @@
-// What lacuna-render writes: image, layers, header, JSON, curve.
+// The output of lacuna-render: image, layers, header, JSON, curve.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -77,7 +77,7 @@ TEST_F(RenderOutput, NumbersAreTheMethodsUnlessTheCommandLineSaysOtherwise) {
 }
 
 TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
-    // Variances need two groups of even numbers.
+    // Enough iterations for variances.
     ASSERT_EQ(run(quick("bpt", "--quiet --iterations 32")).exitCode, 0);
     const LayeredImage image = readExrLayers(path("out.exr"));
     EXPECT_EQ(image.width(), 24);
@@ -89,7 +89,7 @@ TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
         ASSERT_NE(values, nullptr) << name;
         for (const float v : *values) ASSERT_TRUE(std::isfinite(v)) << name;
     }
-    // The middle looks at the back wall: rough metal at z = -1, four units from the camera.
+    // The middle pixel sees the back wall: rough metal at z = -1, four units from the camera.
     const std::size_t middle = 8 * 24 + 12;
     EXPECT_NEAR(image.find("Z")->at(middle), 4.0f, 1e-3f);
     EXPECT_NEAR(image.find("normal.Z")->at(middle), 1.0f, 1e-5f);
@@ -97,7 +97,7 @@ TEST_F(RenderOutput, LayersAreFiniteAndMeanSomething) {
     EXPECT_NEAR(image.find("albedo.B")->at(middle), 0.5f, 1e-3f);
     EXPECT_GT(image.find("variance.R")->at(middle), 0.0f);
     EXPECT_GT(image.find("R")->at(middle), 0.0f);
-    // The upper left corner passes the room: nothing is hit.
+    // The upper left pixel sees past the room and hits nothing.
     EXPECT_EQ(image.find("Z")->at(0), 0.0f);
     EXPECT_EQ(image.find("R")->at(0), 0.0f);
     EXPECT_EQ(image.find("normal.X")->at(0), 0.0f);
@@ -136,7 +136,7 @@ TEST_F(RenderOutput, JsonHasItsKeys) {
     std::uint64_t rays = 0;
     for (const auto& [name, n] : j["rays_by_kind"].items()) rays += n.get<std::uint64_t>();
     EXPECT_EQ(rays, j["rays"].get<std::uint64_t>());
-    // The mean of the image is what mean_rgb says.
+    // mean_rgb is the mean of the image.
     const Image image = readImage(path("out.exr"));
     double sum = 0.0;
     for (const Rgb& p : image.pixels) sum += p.g;
@@ -171,7 +171,7 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
     }
     for (const auto& [decade, rows] : perDecade) EXPECT_LE(rows, 10) << decade;
 
-    // The 200 iterations as a reference: the error falls.
+    // With the 200 iterations as reference, the error falls.
     std::filesystem::rename(path("out.exr"), path("reference.exr"));
     const Outcome o =
         run(quick("pt",
@@ -188,7 +188,7 @@ TEST_F(RenderOutput, CurveHasItsColumnsAndFewRows) {
 }
 
 TEST_F(RenderOutput, CropHasItsSizeAndItsPixels) {
-    // Path tracing adds to a pixel from its own eye path alone: the crop is a part, bit for bit.
+    // In path tracing, only a pixel's own eye paths add to it, so the crop is the same bit for bit.
     ASSERT_EQ(run(quick("pt", "--quiet")).exitCode, 0);
     const LayeredImage full = readExrLayers(path("out.exr"));
     ASSERT_EQ(run(quick("pt", "--quiet --crop 5,17,3,10 --json @out.json")).exitCode, 0);
@@ -210,7 +210,8 @@ TEST_F(RenderOutput, CropHasItsSizeAndItsPixels) {
 }
 
 TEST_F(RenderOutput, CropOfMethodsWithSplatsIsThatPart) {
-    // Splats come from the light paths of the full image: equal but for the order of additions.
+    // Splats come from the light paths of the full image: they are equal except for the order of
+    // additions.
     for (const char* method : {"lt", "bpt", "lvcbpt"}) {
         ASSERT_EQ(run(quick(method, "--quiet")).exitCode, 0);
         const Image full = readImage(path("out.exr"));
@@ -331,7 +332,7 @@ TEST_F(RenderOutput, LayersThatCannotBeAreRefused) {
     expectFailure(png, 2, "--layer: expected an .exr or a --sheet to hold the layers");
 }
 
-// A group's layer is what its techniques add; the JSON and the table are about the same layers.
+// A group's layer is the sum of its techniques. The JSON and the table describe the same layers.
 TEST_F(RenderOutput, GroupsOfTechniquesHaveEnergyNoiseAndTime) {
     const Outcome o = run(quick("bpt", "--techniques --iterations 32 --json @o.json"));
     ASSERT_EQ(o.exitCode, 0) << o.err;
@@ -347,7 +348,7 @@ TEST_F(RenderOutput, GroupsOfTechniquesHaveEnergyNoiseAndTime) {
     for (std::size_t i = 0; i < sum.size(); ++i) {
         EXPECT_NEAR(sum[i], mean(picture.pixels[i]), 1e-4) << i;
     }
-    // What the mirror shows is the first eye vertex as well: t = 3 there.
+    // A surface seen in the mirror is also a first eye vertex, with t = 3.
     std::vector<float> atTwo(sum.size(), 0.0f);
     for (int s = 2; s <= 5; ++s) {
         const std::string layer = "weighted." + TechniqueFilm::layerName(s, 2);
@@ -404,7 +405,7 @@ TEST_F(RenderOutput, TheShareOfConnectionsAtTheFirstVertex) {
         EXPECT_NEAR(share->at(i), total > 0.0 ? first[i] / total : 0.0, 1e-4) << i;
         between += share->at(i) > 0.05f && share->at(i) < 0.95f;
     }
-    // The lamp is seen, and what is lit by it has other techniques as well.
+    // The lamp is seen directly, and what it lights has other techniques as well.
     EXPECT_GT(between, 100);
     // Light tracing has no such connections.
     ASSERT_EQ(run(quick("lt", "--quiet --techniques")).exitCode, 0);
@@ -458,7 +459,7 @@ TEST_F(RenderOutput, OneSideAloneKeepsTheShape) {
     EXPECT_EQ(size(both, "--height 4"), Size(16, 4));
     EXPECT_EQ(size(both, "--width 20 --height 9"), Size(20, 9));
     EXPECT_EQ(size(both, "--width 1"), Size(1, 1));
-    // By the camera's aspect, 1.5, where the extras name one side only.
+    // If the extras name only one side, the camera's aspect of 1.5 gives the other.
     EXPECT_EQ(size(wide, ""), Size(24, 16));
     EXPECT_EQ(size(wide, "--width 12"), Size(12, 8));
     EXPECT_EQ(size(wide, "--height 10"), Size(15, 10));
@@ -468,7 +469,7 @@ TEST_F(RenderOutput, OneSideAloneKeepsTheShape) {
     EXPECT_EQ(size(none, "--width 12"), Size(12, 8));
 }
 
-/// Experiments say so wherever somebody may look: list, help, stderr, header, JSON.
+/// Biased methods say so in the list, the help, stderr, the header and the JSON.
 TEST_F(RenderOutput, BiasedMethodsSaySo) {
     std::size_t biased = 0;
     for (const MethodRow& row : methods()) {
@@ -490,7 +491,7 @@ TEST_F(RenderOutput, BiasedMethodsSaySo) {
     EXPECT_EQ(biased, 2u);
 }
 
-/// Rows that merge, and settings that do, say so as well, and no others.
+/// Rows and settings that merge say so too, and no others do.
 TEST_F(RenderOutput, MethodsThatMergeSayThatTheyAreConsistentOnly) {
     const auto expectSaid = [&](const std::string& method, const std::string& more, bool merges) {
         const Outcome o = run(quick(method, "--json @o.json --quiet" + more));
@@ -527,12 +528,12 @@ TEST_F(RenderOutput, WithoutLightItIsBlackWithOneWarning) {
             run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 2 --method " + row.name +
                 cheap(row.name));
         EXPECT_EQ(o.exitCode, 0) << o.err;
-        // An experiment has a warning of its own.
+        // A biased row has a warning of its own.
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), row.biased ? 2 : 1) << o.err;
         EXPECT_NE(o.err.find("no light"), std::string::npos) << o.err;
         for (const Rgb& p : readImage(path("out.exr")).pixels) ASSERT_TRUE(isBlack(p));
     }
-    // A warning is no remark: --quiet leaves it.
+    // --quiet does not silence warnings.
     const Outcome quiet =
         run("@dark.gltf -o @out.exr --width 12 --height 8 --iterations 1 --method pt --quiet");
     EXPECT_EQ(std::count(quiet.err.begin(), quiet.err.end(), '\n'), 1) << quiet.err;
@@ -542,13 +543,14 @@ TEST_F(RenderOutput, AnEnvironmentFromTheCommandLine) {
     LayeredImage sky(8, 4);
     sky.setRgb("", Image(8, 4, Rgb(2.0f)));
     writeExr(path("sky.exr"), sky);
-    // One edge: the sky seen directly past the room, exactly its radiance.
+    // One edge: the sky seen directly past the room has exactly its radiance.
     ASSERT_EQ(run(quick("pt", "--quiet --env @sky.exr --env-scale 0.25 --max-depth 1")).exitCode,
               0);
     EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).g, 0.5f, 1e-5f);
 }
 
-// 683 lumens per watt, of points, spots and suns alone: the lamp of emissive triangles stays.
+// 683 lumens per watt, for points, spots and suns only: the lamp of emissive triangles keeps its
+// brightness.
 TEST_F(RenderOutput, LampsInCandelaAreThoseInWatts) {
     TinyScene scene;
     scene.pointLight = true;
@@ -579,7 +581,7 @@ TEST_F(RenderOutput, AnEnvironmentOfOneColour) {
     const Image ofMap = readImage(path("out.exr"));
     ASSERT_EQ(run(quick("bpt", "--quiet --env-colour 0.5,1,2")).exitCode, 0);
     EXPECT_EQ(readImage(path("out.exr")).pixels, ofMap.pixels);
-    // One edge: seen directly past the room, exactly its radiance.
+    // One edge: the environment seen directly past the room has exactly its radiance.
     ASSERT_EQ(run(quick("pt", "--quiet --env-colour 0.5,1,2 --max-depth 1")).exitCode, 0);
     EXPECT_NEAR(readImage(path("out.exr")).at(0, 0).b, 2.0f, 1e-5f);
 }

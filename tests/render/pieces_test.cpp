@@ -1,5 +1,5 @@
-// Pictures that are made in pieces: --checkpoint, --blocks and lacuna-merge. However it came about,
-// a picture is the one that is made in one go, bit for bit.
+// Pictures that are rendered in pieces: --checkpoint, --blocks and lacuna-merge. Such a picture is
+// the same as one that is rendered in one go, bit for bit.
 #include <signal.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<std::string> allMethods() {
 class RenderPiecesOf : public RenderPieces, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
-    // Ten iterations: the last block is not whole.
+    // Ten iterations: the last block is incomplete.
     const std::string common =
         quick(GetParam(),
               "--quiet --techniques --light-noise --layer 'x=C<.D>.*' --iterations 10 "
@@ -56,7 +56,7 @@ TEST_P(RenderPiecesOf, mergedPartsAreThePicture) {
 
 TEST_P(RenderPiecesOf, moreIterationsGoOnFromTheCheckpoint) {
     const auto command = [&](int iterations, const std::string& more) {
-        // Groups of 8 are cut by blocks of 12 and by checkpoints.
+        // Blocks of 12 and checkpoints cut groups of 8.
         return quick(GetParam(),
                      "--quiet --sampler sobol --block-iterations 12 --json @o.json "
                      "--iterations " +
@@ -70,7 +70,7 @@ TEST_P(RenderPiecesOf, moreIterationsGoOnFromTheCheckpoint) {
         ASSERT_EQ(o.exitCode, 0) << o.err;
     }
     expectSamePicture("out.exr", "whole.exr");
-    // Fewer than there are would be another picture than the command's own.
+    // The checkpoint has more iterations than this command asks for, so its picture is another one.
     const Outcome fewer = run(command(4, "--checkpoint @ck"));
     EXPECT_EQ(fewer.exitCode, 3);
     EXPECT_NE(fewer.err.find("at most 4 iterations"), std::string::npos) << fewer.err;
@@ -89,8 +89,9 @@ INSTANTIATE_TEST_SUITE_P(All, RenderPiecesOf, ::testing::ValuesIn(allMethods()),
 
 class RenderKills : public RenderPieces {
   protected:
-    /// Kills `method` at `kills` random moments, then lets it end. On a machine that became busier
-    /// no kill may have waited for the first save: then at later ones, until one has.
+    /// Kills `method` at `kills` random moments, then lets it end. On a machine that became busier,
+    /// every kill may come before the first save; then later moments are tried until one comes
+    /// after it.
     void killAndGoOn(const std::string& method, int kills, std::uint64_t seed) {
         SCOPED_TRACE(method);
         const std::string common =
@@ -130,7 +131,7 @@ TEST_F(RenderKills, leaveNothingToBeSeen) {
 
 using RenderKillsNight = RenderKills;
 
-/// A hundred of them, over all rows.
+/// A hundred kills, over all rows.
 TEST_F(RenderKillsNight, leaveNothingToBeSeenByAnyRow) {
     const std::vector<std::string> names = allMethods();
     const int each = (100 + int(names.size()) - 1) / int(names.size());
@@ -140,7 +141,7 @@ TEST_F(RenderKillsNight, leaveNothingToBeSeenByAnyRow) {
 TEST_F(RenderKills, anInterruptSavesTheCheckpoint) {
     for (const char* method : {"bpt", "tsrbpt"}) {
         SCOPED_TRACE(method);
-        // What tsrbpt saves are whole blocks: there is one by then on a busy machine as well.
+        // tsrbpt saves whole blocks. By then there is one, even on a busy machine.
         const std::string more = "--block-iterations 2 --width 48 --height 32 --quiet";
         const Outcome o =
             runAndSignal(quick(method, more + " --time 1h --iterations 100000 --checkpoint @ck"),
@@ -170,7 +171,7 @@ TEST_F(RenderPieces, theCurveGoesOnToo) {
     const std::string after = read("o.csv");
     EXPECT_EQ(after.substr(0, before.size()), before);
     EXPECT_NE(after.find("\n9,"), std::string::npos) << after;
-    // Rows behind the checkpoint are of iterations that are made again.
+    // Rows after the checkpoint belong to iterations that are rendered again.
     std::ofstream(path("o.csv"), std::ios::app) << "77,9e9,0,0,,,,\n";
     ASSERT_EQ(run(command("11")).exitCode, 0);
     EXPECT_EQ(read("o.csv").find("\n77,"), std::string::npos);
@@ -236,13 +237,13 @@ TEST_F(RenderPieces, damagedAndForeignFilesAreRefusedAndKept) {
     for (const std::string& text : files) {
         write("ck", text);
         const Outcome o = run(common);
-        if (o.exitCode == 0) continue;  // a bit that stands for nothing
+        if (o.exitCode == 0) continue;  // this bit has no meaning
         ++refused;
         EXPECT_EQ(o.exitCode, 3) << o.err;
         EXPECT_NE(o.err.find(path("ck")), std::string::npos) << o.err;
         EXPECT_TRUE(bytes("ck") == text) << "overwritten";
     }
-    // Words that OpenEXR skips and bytes behind the end change nothing.
+    // Words that OpenEXR skips and bytes after the end change nothing.
     EXPECT_GE(refused, int(files.size()) - 4);
 }
 
@@ -253,7 +254,7 @@ TEST_F(RenderPieces, aFullDiskCostsTheNewCheckpointAndNothingElse) {
     };
     ASSERT_EQ(run(command("--iterations 8 --quiet")).exitCode, 0);
     const std::string before = bytes("ck");
-    // Files of no more than 8 kB: the picture fits, no checkpoint does.
+    // Files may have 8 kB: the picture fits, a checkpoint does not.
     const std::string tool =
         std::string("sh -c 'ulimit -f 16; trap \"\" XFSZ; exec \"$0\" \"$@\"' ") + LACUNA_RENDER;
     const Outcome o = run(command("--iterations 60 --checkpoint-every 0.001s"), tool.c_str());
@@ -265,8 +266,8 @@ TEST_F(RenderPieces, aFullDiskCostsTheNewCheckpointAndNothingElse) {
     EXPECT_TRUE(temporaries().empty());
 }
 
-/// A save takes long then: the render goes on beside it, and a kill in its middle leaves the
-/// last file.
+/// A save takes long on such a disk. The render goes on meanwhile, and a kill during a save leaves
+/// the last file.
 TEST_F(RenderKills, onASlowDiskCostNeitherPictureNorCheckpoint) {
     if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer must be loaded first";
     const auto command = [&](const std::string& more) {
@@ -313,7 +314,7 @@ TEST_F(RenderPieces, partsThatDoNotFitAreRefused) {
     refuse("@a.exr @whole.exr", "found an image without its sums");
     refuse("@a.exr @nowhere.exr", "nowhere.exr");
 
-    // Told, gaps are taken: what there is, with its own error.
+    // With --gaps, the existing parts are merged, with their own error.
     const Outcome o = merge("@c.exr @a.exr -o @m.exr --gaps --json @m.json");
     EXPECT_EQ(o.exitCode, 0);
     EXPECT_NE(o.err.find("expected block 2 to be next"), std::string::npos) << o.err;
@@ -327,7 +328,7 @@ TEST_F(RenderPieces, partsThatDoNotFitAreRefused) {
     };
     EXPECT_NEAR(mean("m.exr"), 0.5 * (mean("a.exr") + mean("c.exr")), 1e-4 * mean("a.exr"));
 
-    // A part that was interrupted in a block.
+    // A part that was interrupted within a block.
     std::string text = quick("bpt", "--quiet --block-iterations 2 --iterations 3 --blocks 0,2");
     ASSERT_EQ(run(text.replace(text.find("@out.exr"), 8, "@short.exr")).exitCode, 0);
     refuse("@short.exr @b.exr", "found block 1 unfinished");
@@ -354,14 +355,14 @@ TEST_F(RenderPieces, optionsThatDoNotGoTogetherAreUsageErrors) {
     expectFailure("@a.exr -o @m.png", 2, ".exr", LACUNA_MERGE);
 }
 
-/// A sample of a later block is the one that the block holds.
+/// A replayed sample of a later block is the one that the block contains.
 TEST_F(RenderPieces, replaysAreOfTheirBlock) {
     for (const MethodRow& row : methods()) {
         const auto method = row.create(resolve(row, {}));
         if (row.techniques.splats || !method->learns() || !needsOf(row, resolve(row, {})).empty())
             continue;
         SCOPED_TRACE(row.name);
-        // Iteration 3 alone is what blocks of one iteration have as number 3.
+        // Iteration 3 alone is block 3 of blocks of one iteration.
         const std::string common = quick(row.name, "--quiet --block-iterations 1 --iterations 4");
         ASSERT_EQ(run(common + " --blocks 3,4").exitCode, 0);
         const LayeredImage image = readExrLayers(path("out.exr"));

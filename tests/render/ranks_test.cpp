@@ -1,5 +1,5 @@
-// Several processes make one picture: mpirun -n P lacuna-render. However many there are and
-// whichever of them ends too early, the picture is that of one process, bit for bit.
+// Several processes render one picture: mpirun -n P lacuna-render. The picture is that of one
+// process, bit for bit, for any number of them and whichever ends too early.
 #include <signal.h>
 
 #include <algorithm>
@@ -47,14 +47,14 @@ TEST(PieceSize, isANodeOfTheBlocksTree) {
 TEST(PieceSize, isWhatTheTimeIsWorth) {
     EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 0.1), 16u);
     EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 3.0), 1u);
-    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, -1.0, 0.1), 1u);  // the time is over
+    EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, -1.0, 0.1), 1u);  // time is over
     EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 2.0, 0.0), 1u);   // nothing is known
     EXPECT_EQ(pieceSize(256, 0, plan(64), false, 4, 30.0, 1e-9), 64u);
-    // The last iterations are shared out.
+    // The last iterations are divided among the ranks.
     EXPECT_EQ(pieceSize(32, 64, plan(64), false, 4, 30.0, 0.01), 4u);
 }
 
-/// Whoever stops by the error stops where one process would.
+/// Ranks that stop by the error stop where one process would.
 TEST(PieceSize, ofNoneGoesPastACountAtWhichErrorsAreLookedAt) {
     for (std::uint64_t next = 0; next < 1000;) {
         const std::uint64_t end = next + pieceSize(next, 0, plan(4096), false, 2, 30.0, 1e-9);
@@ -117,7 +117,7 @@ class RenderRanks : public RenderTool {
         if (!LACUNA_HAS_MPI) GTEST_SKIP() << "built with LACUNA_MPI=OFF";
         setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
         setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // what Open MPI keeps is not ours to find
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // Open MPI's leaks are not ours
     }
 
     void expectThePictureOfOneProcess(const std::string& method) const;
@@ -125,14 +125,15 @@ class RenderRanks : public RenderTool {
         return run(arguments, mpirun(ranks).c_str());
     }
     static std::string mpirun(int ranks) {
-        // Quiet: mpirun has a dozen lines of its own for every exit code but 0.
-        // Shared memory by name: to look for networks takes mpirun a second.
+        // -q, because mpirun prints a dozen lines for every exit code but 0.
+        // Shared memory by name, because mpirun takes a second to search for networks.
         return "mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca pml ob1 -n " +
                std::to_string(ranks) + " " LACUNA_RENDER;
     }
 };
 
-/// Starting ranks takes seconds: rows that give out nodes, whole blocks and read caches are quick.
+/// Starting ranks takes seconds, so only two rows run by day: one that gives out nodes of blocks,
+/// one that reads caches.
 void RenderRanks::expectThePictureOfOneProcess(const std::string& method) const {
     SCOPED_TRACE(method);
     const std::string common = quick(
@@ -151,7 +152,7 @@ void RenderRanks::expectThePictureOfOneProcess(const std::string& method) const 
         for (const char* key : {"rays_by_kind", "mean_rgb", "mean_rgb_stderr", "iterations"}) {
             EXPECT_EQ(j[key], whole[key]) << key;
         }
-        // One line, and once the table.
+        // The line and the table are each printed once.
         EXPECT_EQ(o.out.find(" pixels, "), o.out.rfind(" pixels, ")) << o.out;
         EXPECT_EQ(o.out.find("eye vertex"), o.out.rfind("eye vertex")) << o.out;
         EXPECT_LE(std::ranges::count(o.err, '\n'), 1) << o.err;  // a biased row says that it is
@@ -232,7 +233,7 @@ TEST_F(RenderRanks, surviveTheDeathOfTwoOfFour) {
     std::filesystem::rename(path("out.exr"), path("whole.exr"));
     const std::string saving = common + " --checkpoint @ck --checkpoint-every 0.01s";
     std::thread killer([&] {
-        // As soon as there is something to go on from.
+        // As soon as there is a checkpoint to continue from.
         for (int i = 0; i < 30000 && !exists("ck"); ++i) {
             std::this_thread::sleep_for(milliseconds(2));
         }
@@ -311,7 +312,7 @@ TEST_F(RenderRanks, printHelpOnce) {
     EXPECT_EQ(runRanks(2, "@room.gltf --effects").out, run("@room.gltf --effects").out);
 }
 
-/// A rank with another scene or another command would make parts of another picture.
+/// A rank with another scene or another command would render parts of another picture.
 TEST_F(RenderRanks, renderTheSame) {
     const std::string one = quick("bpt", "--quiet --threads 1"), other = one + " --seed 2";
     const Outcome o = runRanks(1, one + " : -n 1 " LACUNA_RENDER " " + other);
@@ -321,7 +322,7 @@ TEST_F(RenderRanks, renderTheSame) {
     EXPECT_EQ(std::ranges::count(o.err, '\n'), 1) << o.err;
 }
 
-/// What rank 0 has just made is not made again by the others.
+/// The other ranks read the caches that rank 0 has just made.
 TEST_F(RenderRanks, readTheCachesThatRank0Makes) {
     const std::string command = quick("spcbpt", "--threads 1 -v");
     const Outcome o = runRanks(3, command);

@@ -1,4 +1,4 @@
-// lacuna-relight, and the noise of groups of lights that it reads.
+// lacuna-relight, and the noise of light groups that it reads.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ class Relight : public RenderTool {
         write("room.gltf", room(1.0, 2.0));
     }
 
-    /// Their intensities multiply what the layers "light.lamp" and "light.unnamed" hold.
+    /// The scene with these intensities. They are factors of the layers "light.lamp" and "light.unnamed".
     static std::string room(double lamp, double bulb) {
         TinyScene scene;
         scene.pointLight = true;
@@ -74,7 +74,7 @@ TEST_F(Relight, factorsMultiplyTheLayersAndTheirSumIsThePicture) {
         EXPECT_FLOAT_EQ(relit.rgb().pixels[i].r, newLamp.r + newBulb.r);
         EXPECT_EQ(relit.rgb().pixels[i].b, newBulb.b);
     }
-    // Geometry and header stay; what is of the old light goes.
+    // Geometry and header stay; layers that depend on the old light are removed.
     for (const char* layer : {"albedo.R", "normal.X", "Z"}) {
         EXPECT_EQ(*relit.find(layer), *image.find(layer)) << layer;
     }
@@ -92,7 +92,7 @@ TEST_F(Relight, factorsMultiplyTheLayersAndTheirSumIsThePicture) {
                           json("o.json")["shares"]["unnamed"].get<double>();
     EXPECT_NEAR(shares, 1.0, 1e-6);
 
-    // Relit once more: header and layers are what one step would have made.
+    // Relighting a second time gives the header and layers of a single step.
     ASSERT_EQ(relight("@new.exr -o @newer.exr --light unnamed=4").exitCode, 0);
     ASSERT_EQ(relight("@out.exr -o @once.exr --light lamp=3,5,0 --light unnamed=2").exitCode, 0);
     expectSamePicture("newer.exr", "once.exr");
@@ -111,12 +111,12 @@ TEST_F(Relight, bySameFactorsThePictureIsWhatItWasAndWithoutAGroupWhatTheOthersA
     const Outcome off = relight("@out.exr -o @off.exr --light lamp=0");
     ASSERT_EQ(off.exitCode, 0);
     EXPECT_EQ(readImage(path("off.exr")).pixels, image.rgb("light.unnamed").pixels);
-    // Layers alone do not tell how noisy their sum is.
+    // Layers alone do not tell the noise of their sum.
     EXPECT_FALSE(readExrLayers(path("off.exr")).hasRgb("variance"));
     EXPECT_NE(off.err.find("render with --light-noise"), std::string::npos) << off.err;
 }
 
-// What it is the variance of is known here: each iteration alone, relit.
+// Compares the variance with that of single iterations, each relit.
 TEST_F(Relight, theNoiseIsThatOfRelitIterations) {
     constexpr int kIterations = 8;
     const std::string factors = " --light lamp=0.25,1,4 --light unnamed=2,0,0.5";
@@ -148,7 +148,7 @@ TEST_F(Relight, theNoiseIsThatOfRelitIterations) {
     }
     EXPECT_GT(noisy, 0.5 * double(sum.size()));
 
-    // By factors of 1 it is the render's own, which is made in another way.
+    // With factors of 1 it is the variance of the render, which is computed in another way.
     const std::vector<double> own = numbers(whole.rgb("variance")), mean = numbers(whole.rgb());
     for (std::size_t p = 0; p < own.size(); ++p) {
         const double quadratic = double(numbers(whole.rgb("covariance.g00g00"))[p]) +
@@ -158,7 +158,7 @@ TEST_F(Relight, theNoiseIsThatOfRelitIterations) {
     }
 }
 
-// Against a render of the lamps as they then are; light paths begin by another power there.
+// Compares with a render of the changed lamps, where light paths start with other probabilities.
 TEST_F(Relight, agreesWithARenderOfOtherLamps) {
     rendered("--light-noise --iterations 512 --seed 3");
     ASSERT_EQ(relight("@out.exr -o @relit.exr --light lamp=0.1 --light unnamed=3").exitCode, 0);
@@ -179,7 +179,7 @@ TEST_F(Relight, agreesWithARenderOfOtherLamps) {
         ++count;
     }
     ASSERT_GT(count, 1000);
-    // Channels of a pixel are nearly one number, and so are splats' neighbours: a third of them count.
+    // A pixel's channels are nearly the same number, and splats correlate neighbours: a third of the numbers counts.
     const double independent = count / 3.0;
     EXPECT_LT(worst, 6.0);
     EXPECT_LT(std::abs(sum / count), 5.0 / std::sqrt(independent));

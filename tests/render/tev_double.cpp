@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto kLong = std::chrono::seconds(120);
 
-/// Fields of a packet, from its front.
+/// Reads the fields of a packet from its front.
 class Fields {
   public:
     Fields(const std::uint8_t* bytes, std::size_t size) : at_(bytes), left_(size) {}
@@ -63,7 +63,7 @@ void require(bool holds, const char* what) {
 
 TevDouble::TevDouble(Manner manner) : manner_(Manner::Absent) {
     listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    const int little = 1 << 14;  // so that not all of a picture fits into what nobody reads
+    const int little = 1 << 14;  // so that a picture does not fit into the unread buffer
     setsockopt(listener_, SOL_SOCKET, SO_RCVBUF, &little, sizeof little);
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -128,7 +128,7 @@ void TevDouble::run() {
     for (const Guest& g : guests) close(g.fd);
 }
 
-/// What there is. False where the connection is over.
+/// Receives the available bytes. False if the connection has ended.
 bool TevDouble::receive(Guest& guest) {
     constexpr std::size_t kInTheMiddleOfATile = 100'000;
     std::vector<std::uint8_t> buffer(1 << 20);

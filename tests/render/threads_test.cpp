@@ -1,4 +1,4 @@
-// The same command gives the same pixels, bit for bit, whatever the number of threads.
+// The same command gives the same pixels, bit for bit, with any number of threads.
 #include <sched.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class RenderThreads : public RenderTool, public ::testing::WithParamInterface<st
     }
 };
 
-/// What a method needs to build its caches on our scenes.
+/// The options with which a method builds its caches on our scenes.
 std::string preparing(const std::string& method) {
     const MethodRow& row = findMethod(method);
     const std::vector<AssetNeed> needs = needsOf(row, resolve(row, {}));
@@ -50,7 +50,8 @@ std::string preparing(const std::string& method) {
 
 class RenderWithSkeleton : public RenderTool {};
 
-/// Places are rounded in a file: who makes one must use what the next render will read.
+/// Files round positions. A render that makes a file must use the rounded ones, as the next render
+/// will.
 TEST_F(RenderWithSkeleton, MakesThePictureThatItsFileMakes) {
     const std::string command = std::string(LACUNA_SCENES) +
                                 "/court.glb -o @out.exr --method skelbpt --iterations 16 --prepare "
@@ -90,7 +91,7 @@ std::string onScene(const char* scene, const std::string& method) {
            preparing(method);
 }
 
-/// A day has one of the scenes for each method.
+/// By day, each method runs in one of the scenes.
 TEST_P(RenderThreadsSlow, PixelsAreTheSameOnOneOfOurScenes) {
     const std::vector<std::string> all = names();
     const auto place = std::size_t(std::ranges::find(all, GetParam()) - all.begin());
@@ -116,7 +117,7 @@ TEST_F(RenderSeed, AnotherSeedIsAnotherPicture) {
 
 using RenderProcessors = RenderTool;
 
-/// mpirun and containers give a process some of the machine's processors.
+/// mpirun and containers may give a process only some of the machine's processors.
 TEST_F(RenderProcessors, threadsAreThoseThatTheProcessMayHave) {
     cpu_set_t allowed;
     ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);

@@ -1,4 +1,4 @@
-// Limits of time, and interrupts.
+// Time limits and interrupts.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -32,14 +32,14 @@ TEST_F(RenderTime, TheSoonerLimitEndsIt) {
     const nlohmann::json j = json("o.json");
     EXPECT_EQ(j["stopped"], "time");
     EXPECT_GT(j["iterations"].get<int>(), 3);
-    // Iterations take milliseconds: it ends close to the limit, from either side.
+    // Iterations take milliseconds, so it ends close to the limit, on either side.
     EXPECT_GT(j["seconds"].get<double>(), 0.3);
     EXPECT_LT(j["seconds"].get<double>(), 1.5);
 }
 
 TEST_F(RenderTime, SetupCountsOnlyIfAskedFor) {
-    // The setup alone takes longer than a microsecond: the first iteration is always rendered, and
-    // with setup counted nothing more is.
+    // The setup alone takes longer than a microsecond. The first iteration is always rendered; with setup counted, no
+    // other is.
     const std::string start =
         "@room.gltf -o @out.exr --method pt --width 8 --height 8 --quiet --json @o.json ";
     ASSERT_EQ(run(start + "--time 0.000001s --count-setup").exitCode, 0);
@@ -55,7 +55,7 @@ TEST_F(RenderTimeSlow, AnIterationThatWouldEndFarPastTheLimitIsNotBegun) {
         "--json @o.json ";
     ASSERT_EQ(run(start + "--iterations 1").exitCode, 0);
     const double one = json("o.json")["seconds"];
-    // Time for one and a quarter: the second would end 60 % past the limit.
+    // Time for one and a quarter iterations: the second would end 60 % past the limit.
     ASSERT_EQ(run(start + "--time " + std::to_string(1.25 * one) + "s").exitCode, 0);
     EXPECT_LT(json("o.json")["seconds"].get<double>(), 2.0 * 1.25 * one);
     EXPECT_EQ(json("o.json")["stopped"], "time");
@@ -87,14 +87,14 @@ TEST_F(RenderInterrupt, SavesWhatThereIs) {
 
 TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
     if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer is too slow for it";
-    // One iteration of a second or so, interrupted in its middle.
+    // One iteration of about a second, interrupted in its middle.
     const Outcome o = runAndSignal(
         "@room.gltf -o @out.exr --method bpt --width 600 --height 400 --time 1h --json @o.json",
         {SIGINT}, milliseconds(400));
     EXPECT_EQ(o.exitCode, 130) << o.err;
     EXPECT_GE(json("o.json")["iterations"].get<int>(), 1);
     EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
-    // The picture is the same as that many undisturbed iterations.
+    // The picture is that of as many undisturbed iterations.
     const auto values = *readExrLayers(path("out.exr")).find("R");
     ASSERT_EQ(run("@room.gltf -o @out.exr --method bpt --width 600 --height 400 --quiet "
                   "--iterations " +
@@ -104,7 +104,7 @@ TEST_F(RenderInterrupt, TheFirstIterationIsFinished) {
     EXPECT_EQ(values, *readExrLayers(path("out.exr")).find("R"));
 }
 
-/// It has three seconds to end. Nothing is known of light paths of which some are missing.
+/// The iteration has three seconds to end. With light paths missing, nothing of it can be saved.
 TEST_F(RenderInterrupt, AFirstIterationOfMinutesIsCut) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome o = runAndSignal(
@@ -119,7 +119,7 @@ TEST_F(RenderInterrupt, AFirstIterationOfMinutesIsCut) {
     EXPECT_TRUE(temporaries().empty());
 }
 
-/// The layers beside the picture have as long. Of so many pixels they take half a minute.
+/// The layers beside the picture have the same three seconds. With so many pixels they take half a minute.
 TEST_F(RenderInterrupt, LayersOfMinutesAreCut) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome o = runAndSignal(
@@ -132,7 +132,7 @@ TEST_F(RenderInterrupt, LayersOfMinutesAreCut) {
     EXPECT_FALSE(exists("out.exr"));
 }
 
-/// Eye paths that were made are a picture, but no part of one and no checkpoint.
+/// The finished eye paths make a picture, but neither a part nor a checkpoint.
 TEST_F(RenderInterrupt, WhatIsFinishedOfTheFirstIterationIsSaved) {
     const Outcome o = runAndSignal(
         "@room.gltf -o @out.exr --method lvcbpt --width 1600 --height 1600 --max-depth 254 "
@@ -149,7 +149,7 @@ TEST_F(RenderInterrupt, WhatIsFinishedOfTheFirstIterationIsSaved) {
     EXPECT_FALSE(exists("ck"));
 }
 
-/// Tools that are done in no time: here one waits for a pipe, whose reader does not read.
+/// lacuna-compare is done at once, so here it waits for a pipe that nobody reads.
 TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
     const std::string noise =
         "@room.gltf --method pt --width 400 --height 300 --iterations 1 --quiet";
@@ -157,7 +157,7 @@ TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
     ASSERT_EQ(run(noise + " -o @b.exr --seed 2").exitCode, 0);
     ASSERT_EQ(mkfifo(path("map.png").c_str(), 0600), 0);
     const int reader = open(path("map.png").c_str(), O_RDONLY | O_NONBLOCK);
-    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // otherwise all of it may fit
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const Outcome o = runAndSignal("@a.exr @b.exr --error-map @map.png", {signal},
                                        milliseconds(600), LACUNA_COMPARE);
@@ -167,12 +167,12 @@ TEST_F(RenderInterrupt, WithoutAnythingToSaveNothingIsWritten) {
     close(reader);
 }
 
-/// The picture is finished then, whatever comes. Here it goes into a pipe, which is not read at first.
+/// The picture is finished then and is saved in any case. Here it goes into a pipe that nobody reads at first.
 TEST_F(RenderInterrupt, WhileSavingChangesNothing) {
     if (LACUNA_SANITIZED) GTEST_SKIP() << "a sanitizer is too slow for it";
     ASSERT_EQ(mkfifo(path("out.png").c_str(), 0600), 0);
     const int reader = open(path("out.png").c_str(), O_RDONLY | O_NONBLOCK);
-    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // or all of it may fit
+    ASSERT_GE(fcntl(reader, F_SETPIPE_SZ, 4096), 0);  // otherwise all of it may fit
     const pid_t child = start(
         "@room.gltf -o @out.png --method pt --width 400 --height 300 --iterations 1 --json "
         "@o.json");

@@ -1,4 +1,4 @@
-// Parts of lacuna-render by themselves.
+// Parts of lacuna-render, each tested alone.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -69,7 +69,8 @@ TEST(RenderUnits, CurveLogWantsTenRowsPerDecade) {
               "3,0.5,0.25,7,,,,,1,2,0,4,0,0,0,\n"
               "4,1,0.25,9,0.1,0,0,inf,2,7,0,0,0,0,0,eye paths=0.5;light paths=0.25\n");
     {
-        // Whoever has the file open sees the one from before, whole: it is replaced, not changed.
+        // A reader with the file open still sees the old one, whole: the file is replaced, not
+        // changed.
         std::ifstream before(file);
         CurveLog goesOn(file, 4);
         EXPECT_EQ(goesOn.lastIteration(), 4u);

@@ -1,4 +1,4 @@
-// What lacuna-render says and returns for command lines and scenes, good and bad.
+// Messages and exit codes of lacuna-render for command lines and scenes, good and bad.
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
@@ -50,7 +50,7 @@ TEST_F(RenderUsage, MethodsAreListedWithTheirParameters) {
 }
 
 TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
-    // No such scene: what is wrong on the command line is found before anything is loaded.
+    // The scene does not exist: errors of the command line are found before anything is loaded.
     const std::string start = "@none.glb -o @out.exr --method pt ";
     expectFailure("", 2, "SCENE.glb");
     expectFailure("@none.glb -o @out.exr --method fast", 2, "'fast'");
@@ -115,7 +115,7 @@ TEST_F(RenderUsage, CommandLinesThatAreWrongExitWith2) {
     expectFailure(start + "--json @out.exr", 2, "file of its own");
 }
 
-/// The names of all options with a value: in the lines of --help a type follows them.
+/// The names of all options with a value. In the lines of --help, a type follows them.
 std::vector<std::string> optionsWithValues(const std::string& help) {
     std::vector<std::string> names;
     std::istringstream lines(help);
@@ -128,7 +128,7 @@ std::vector<std::string> optionsWithValues(const std::string& help) {
     return names;
 }
 
-/// A variable of the shell that is not set must not leave an option out.
+/// An unset variable of the shell must not leave an option out.
 TEST_F(RenderUsage, EmptyTextsExitWith2) {
     const std::pair<const char*, const char*> tools[] = {
         {LACUNA_RENDER, "@none.glb "},      {LACUNA_COMPARE, "@a.exr @b.exr "},
@@ -156,7 +156,7 @@ TEST_F(RenderUsage, EmptyTextsExitWith2) {
     expectFailure("\"\" -o @out.exr --method pt", 2, "SCENE");
 }
 
-/// What the parser of the command line would make something else of.
+/// Numbers that the parser of the command line would misread.
 TEST_F(RenderUsage, IntegersAreDecimalAndFit) {
     const std::string start = "@none.glb -o @out.exr --method pt ";
     for (const char* seed : {"18446744073709551616", "99999999999999999999999", "010", "0x10"}) {
@@ -177,7 +177,7 @@ TEST_F(RenderUsage, MessagesShowTheNumberThatWasFound) {
     expectFailure(start + "--tolerance -1e-46", 2, "found -1e-46");
 }
 
-/// A picture of eight bits has no light above white, and was made to be looked at.
+/// An eight-bit picture has no light above white, and its values are not linear.
 TEST_F(RenderUsage, EnvironmentsAreExrOrHdr) {
     ASSERT_EQ(run("@room.gltf -o @sheet.png --method pt --width 24 --height 16 --iterations 1 "
                   "--quiet")
@@ -251,7 +251,7 @@ TEST_F(RenderUsage, ScenesThatCannotBeUsedExitWith3) {
 }
 
 TEST_F(RenderUsage, OutputsThatCannotBeWrittenExitWith1BeforeRendering) {
-    // An endless render: these return only because nothing is rendered.
+    // The render would not end: these commands return only because nothing is rendered.
     const std::string endless = "@room.gltf --method pt --time 10h --quiet ";
     expectFailure(endless + "-o @none/out.exr", 1, "none/out.exr");
     expectFailure(endless + "-o @out.exr --json @none/out.json", 1, "none/out.json");
@@ -267,7 +267,7 @@ TEST_F(RenderUsage, ResultsNeverReplaceInputs) {
     const std::string before = read("room.gltf");
     expectFailure("@room.gltf -o @o.exr --json @room.gltf --method pt", 2, "file of its own");
     expectFailure("@room.gltf -o @o.exr --json @./room.gltf --method pt", 2, "file of its own");
-    // Two results of one name, none of which is there yet.
+    // Two results of the same name, before either file exists.
     expectFailure("@room.gltf -o @o.exr --json @c --log @./c --method pt", 2, "file of its own");
     expectFailure("@room.gltf --voxels @v.vdb -o @./v.vdb", 2, "file of its own",
                   LACUNA_SKELETONIZE);
@@ -302,7 +302,7 @@ TEST_F(RenderUsage, EffectsNeedNeitherOutputNorMethod) {
     EXPECT_TRUE(json("e.json").at("effects").at("reasons").contains("mirror"));
     expectFailure("@room.gltf --effects --method nonsense", 2, "nonsense");
 
-    TinyScene blind;  // no camera is needed to say what a scene calls for
+    TinyScene blind;  // --effects needs no camera
     blind.camera = false;
     blind.pointLight = true;
     blind.lamp = false;

@@ -1,4 +1,4 @@
-// --verify and --replay: the second way to every weight, and one sample run alone.
+// --verify and --replay: the second way to every weight, and one sample rendered alone.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ class RenderVerify : public RenderTool {};
 class RenderVerifySlow : public RenderTool {
   protected:
     static constexpr std::size_t kParts = 4;
-    /// Every fourth method on a scene, and each on every fourth scene: `part` of them.
+    /// `part` of every fourth method per scene, so that each method is on every fourth scene.
     void expectFullProductsOnOurScenes(std::size_t part) const;
 };
 
@@ -30,7 +30,8 @@ void RenderVerifySlow::expectFullProductsOnOurScenes(std::size_t part) const {
         if (entry.path().extension() == ".glb") scenes.push_back(entry.path().string());
     }
     std::ranges::sort(scenes);
-    // One depth of roulette per scene and method, in turn: over twelve scenes a method has had all.
+    // Depths of roulette alternate over scenes and methods: over twelve scenes, a method has had
+    // all.
     const std::array<const char*, 3> depths = {"1", "3", "100"};
     for (std::size_t s = 0; s < scenes.size(); ++s) {
         for (std::size_t m = (s + part) % kParts; m < methods().size(); m += kParts) {
@@ -85,7 +86,8 @@ TEST_F(RenderVerifySlow, NightOnOurScenes) {
 }
 
 TEST_F(RenderVerify, ReadsNoStoredDensity) {
-    // Every density that a walk stored is spoilt: misWeight must notice, the products must not.
+    // Every density that a walk stored is spoiled: misWeight must notice, and the products must
+    // not.
     const ThreadPool pool(2);
     const Scene scene(loadGltf(path("room.gltf")), pool);
     const Camera camera = scene.makeCamera("", {16, 12}, {});
