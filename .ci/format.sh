@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Whether the sources are laid out as .clang-format says (clang-format 14, Debian 12's).
+# Checks that the sources are formatted as .clang-format says (clang-format 14 of Debian 12).
 #
-#   bash .ci/format.sh          names the files that are not; exit 1 where there are any
-#   bash .ci/format.sh --fix    lays them out
+#   bash .ci/format.sh          names the files that are not; exit 1 if there are any
+#   bash .ci/format.sh --fix    formats them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,7 +12,7 @@ if [[ ${1:-} == --fix ]]; then
     exit
 fi
 
-# One call for all: to start it takes longer than to read a file. What is wrong begins `FILE:LINE:`.
+# One call for all files, because starting it takes longer than reading a file. Errors begin with `FILE:LINE:`.
 if ! said=$(clang-format --dry-run -Werror "${sources[@]}" 2>&1); then
     mapfile -t bad < <(sed -n 's/^\([^ :]*\):[0-9]*:[0-9]*: error:.*/\1/p' <<<"$said" | sort -u)
     printf '%s\n' "${bad[@]:-$said}"

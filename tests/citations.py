@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Whether what the project cites is there: documents, their sections, files, papers, tests.
+"""Checks that what the project cites exists: documents, their sections, files, papers, tests.
 
   python3 tests/citations.py           looks at all sources, scripts and Markdown, and tests itself
 
-A citation of a section is a document's name and its title in quotes, or several; a paper's a key of REFERENCES.md in
-brackets. What theory.md links to as the code of a section cites that section, and the rows of its table of constants
-name what is in the code.
+A citation of a section is a document's name and its title in quotes, or several titles. A citation of a paper is a key of
+REFERENCES.md in brackets. Code that theory.md links to from a section must cite that section. The names and numbers in the
+rows of its table of constants must be in the code.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def one_line(text: str) -> str:
 
 
 def prose(markdown: str) -> str:
-    """Without code: blocks and spans become spaces, so that places stay."""
+    """The text without code: blocks and spans become spaces, so that positions stay."""
     def blank(m: re.Match) -> str:
         return re.sub(r"[^\n]", " ", m.group())
 
@@ -68,7 +68,7 @@ def headings(markdown: str) -> list[str]:
 
 @cache
 def anchors(markdown: str) -> set[str]:
-    """As GitHub names headings; a title that is there twice gets a number."""
+    """Anchors, as GitHub names headings; a repeated title gets a number."""
     found: set[str] = set()
     for title in headings(markdown):
         plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title).lower()
@@ -88,7 +88,7 @@ class Section(NamedTuple):
 
 
 def sections_of(markdown: str) -> list[Section]:
-    """From one heading of the second level or below to the next."""
+    """The sections, from one heading of the second level or below to the next."""
     found: list[Section] = []
     above = ""
     starts = [m.start() for m in re.finditer(r"^##+ ", markdown, re.M)] + [len(markdown)]
@@ -129,7 +129,7 @@ class Project:
         return {row for row in rows if PAPER.match(row)}
 
     def document(self, name: str, file: str) -> str | None:
-        """The document that `file` means: beside it, from the root, or the only one of that name."""
+        """The document that `file` means by `name`: beside it, from the root, or the only one of that name."""
         for base in (Path(file).parent, Path(".")):
             path = os.path.normpath((base / name).as_posix())
             if path in self.documents:
@@ -177,7 +177,7 @@ class Project:
                 if self.document(m.group(1), source) == document for title in TITLE.findall(m.group(2))}
 
     def citations_back(self, file: str, text: str) -> Iterator[tuple[int, str]]:
-        """The code of a section cites it, or another one of those that it is the code of."""
+        """Finds code that a section links to and that cites neither this section nor another one that links to it."""
         places: dict[str, int] = {}
         titles: dict[str, set[str]] = {}
         for section in sections_of(text):
@@ -191,7 +191,8 @@ class Project:
                 yield places[source], f'{source} does not cite {" or ".join(sorted(expected))}'
 
     def constants(self, file: str, text: str) -> Iterator[tuple[int, str]]:
-        """Rows `NAME` numbers, `NAME` numbers; numbers | file, file | ..: what is in the code that they name."""
+        """Checks rows `NAME` numbers, `NAME` numbers; numbers | file, file | ..: the code of these files must have
+        them."""
         table = next((s for s in sections_of(text) if s.title == "Constants"), None)
         for m in re.finditer(r"^\| *(.*?) *\| *(.*?) *\|", table.text if table else "", re.M):
             if m.group(1) == "constant" or not m.group(1).strip("-"):
@@ -210,7 +211,7 @@ class Project:
 
     @staticmethod
     def constants_of(cell: str, code: str) -> Iterator[str]:
-        """What `code` lacks. The numbers behind a name, up to a semicolon, stand in a statement with it."""
+        """What `code` lacks. The numbers after a name, up to a semicolon, must be in one statement with it."""
         absent = "not in the code that the row names"
         for name, rest in re.findall(r"(?:`(\w+)`)?([^`]+|(?<=`)$)", cell):
             with_name, _, alone = rest.partition(";") if name else ("", "", rest)
@@ -281,7 +282,7 @@ class Citations(unittest.TestCase):
 
 
 class Planted(unittest.TestCase):
-    """A small project of its own, with one fault at a time."""
+    """A small project with one fault at a time."""
 
     GOOD = {
         "REFERENCES.md": "# References\n\n| key | |\n|---|---|\n| Su22 | Su. |\n| Duff et al. 2017 | Duff. |\n",
@@ -333,7 +334,7 @@ class Planted(unittest.TestCase):
         self.only('no section "Cache dots"', '// (theory.md, "Cache points",\n// "Cache dots")\n')
 
     def theory(self, old: str, new: str) -> str:
-        """The good one with a change."""
+        """The good theory.md with a change."""
         self.assertIn(old, self.GOOD["doc/theory.md"])
         return self.GOOD["doc/theory.md"].replace(old, new)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Whether what render/demo.sh builds has every program that the READMEs go on to use: what a
-# newcomer copies from them must be there. bash tests/demo_tools.sh BUILD
+# Checks that render/demo.sh builds every program that the READMEs use, because newcomers copy commands from them.
+# bash tests/demo_tools.sh BUILD
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

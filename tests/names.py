@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Whether two types of one name can meet in a program: C++ takes them for one, and no compiler says so.
+"""Checks that no two types of one name can meet in a program: C++ takes them for one, and no compiler says so.
 
-  python3 tests/names.py           looks at all sources, and tests itself
+  python3 tests/names.py           looks at the sources of libcore, preprocess and render, and tests itself
 
-A header's types have names of their own, and so has what a source file has outside an unnamed namespace.
+Types in headers have unique names, and so have those of source files outside unnamed namespaces.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TYPE = re.compile(r"^(?:struct|class|enum|enum class)(?: alignas\(\d+\))? (\w+)(
 
 
 def types(text: str) -> list[str]:
-    """With the namespaces they are in, of those that other files' may meet; types inside types are indented."""
+    """Types with their namespaces, if those of other files may meet them; types inside types are indented."""
     inside: list[str] = []
     found = []
     for line in text.splitlines():

@@ -3,15 +3,15 @@
 #
 #   bash tests/package.sh [FILE.md]
 #
-# Needs lintian, and mmdebstrap for the clean root. FILE.md gets what was found.
+# Needs lintian, and mmdebstrap for the clean root. FILE.md gets the results.
 set -euo pipefail
 project=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 page=${1:-$project/tests/results/package-$(date +%F).md}
 packages=$project/build-package/packages
 work=$(mktemp -d)
-# What is still mounted in the root is not of ours to remove.
+# Files that are still mounted in the root must not be removed.
 trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
-# Keeps what a command says in a file of the step's name, and says it where the step fails.
+# Keeps a command's output in a file of the step's name, and prints it if the step fails.
 step() {
     local name=$1
     shift
@@ -33,7 +33,7 @@ step bootstrap mmdebstrap --variant=apt --aptopt='Apt::Install-Recommends "false
 mkdir "$work/root/root/packages"
 cp "$packages"/*.deb "$work/root/root/packages/"
 inside() { chroot "$work/root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
-# What is of Lacuna: its own files, not what apt itself keeps.
+# The files in the root, except those that apt itself keeps.
 listing() { (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./var -o -path ./root \) -prune -o -print | sort); }
 listing >"$work/before"
 step update inside apt-get update -qq

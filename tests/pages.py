@@ -1,4 +1,4 @@
-"""What the pages that scripts write to tests/results/ have in common."""
+"""Shared parts of the pages that scripts write to tests/results/."""
 
 import datetime
 import os
@@ -8,13 +8,13 @@ import subprocess
 
 
 def commit():
-    """Of the sources that these scripts belong to, short; `-dirty` where files differ from it."""
+    """The commit of the sources that these scripts belong to, short; `-dirty` if files differ from it."""
     return subprocess.run(["git", "describe", "--always", "--dirty", "--exclude=*"], cwd=pathlib.Path(__file__).parent,
                           capture_output=True, text=True).stdout.strip() or "unknown"
 
 
 def processor(information="/proc/cpuinfo"):
-    """Its model; "" where the system does not say."""
+    """The processor's model; "" if the system does not say."""
     try:
         with open(information) as lines:
             return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), "")
@@ -27,13 +27,13 @@ def machine():
 
 
 def origin(command, load):
-    """Lines of a table: when and of which program, where, at which load before it began, and by which command."""
+    """Lines of a table: date, commit, machine, the load before the program began, and its command."""
     return table([["", ""], ["date", datetime.date.today()], ["commit", commit()], ["machine", machine()], ["load before", load],
                   ["command", f"`{command}`"]])
 
 
 def load():
-    """Of the system now, in the mean of a minute."""
+    """The load of the system, averaged over the last minute."""
     return pathlib.Path("/proc/loadavg").read_text().split()[0]
 
 

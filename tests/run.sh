@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests, but for those of a night: bash tests/run.sh [--quick] [-- CTEST OPTIONS]
+# Builds everything and runs the tests, except those of a night: bash tests/run.sh [--quick] [-- CTEST OPTIONS]
 #
 #   --quick    leaves out the tests that take longer than seconds (label `slow`)
 #

@@ -123,7 +123,7 @@ def table(tests: dict[str, list[Test]], measured: dict[tuple[str, str], str]) ->
 
 
 def kept() -> dict[tuple[str, str], str]:
-    """The figures of the table that is there."""
+    """The figures of the existing table."""
     rows = re.findall(r"^\| ([\w-]+) \| .* \| (.*) \| `(\S+)` \|$",
                       TABLE.read_text(encoding="utf-8") if TABLE.exists() else "", re.MULTILINE)
     return {(case, test): text for case, text, test in rows}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds the studies of tests/studies/ against render/study/study.schema.json, as they are and with --quick.
+"""Checks the studies of tests/studies/ against render/study/study.schema.json, as they are and with --quick.
 
   python3 tests/study_schema.py        (needs Debian's python3-jsonschema; skipped with exit code 77 without it)
 """
@@ -31,7 +31,7 @@ def parsed(text: str) -> dict:
 
 
 def merged(target: object, patch: object) -> object:
-    """RFC 7386."""
+    """A JSON merge patch (RFC 7386)."""
     if not isinstance(patch, dict):
         return patch
     result = dict(target) if isinstance(target, dict) else {}

@@ -2,15 +2,15 @@
 
     suites.py PROGRAM LIST FILTER
 
-One process per suite: started for every test of a suite, two thousand of them take longer to start than to
-test. A suite in which all tests skip is skipped; of one that skips a part, ctest -V says what and why.
+One process per suite, because two thousand processes, one per test, would take longer to start than to test. A suite in
+which all tests skip is skipped; if a suite skips some tests, ctest -V says which and why.
 """
 import re
 import subprocess
 import sys
 from pathlib import Path
 
-# The last lines where nothing ran, and so nothing failed.
+# The last lines of the output if no test ran, and so none failed.
 SKIPPED = r"PASSED  . 0 tests.\n(.  SKIPPED . [^\n]*\n)+\n*$"
 
 
@@ -33,7 +33,7 @@ def main():
     lines = []
     for suite, count in suites_of(program, tests).items():
         lines.append(f"add_test([==[{suite}]==] [==[{program}]==] [==[--gtest_filter={suite}.*]==])\n")
-        # Where no run has been timed, those with most tests begin first: else the last one may be long.
+        # Without times of earlier runs, suites with most tests begin first, so that the last one is not a long one.
         lines.append(f"set_tests_properties([==[{suite}]==] PROPERTIES COST {count} "
                      f"SKIP_REGULAR_EXPRESSION [==[{SKIPPED}]==])\n")
     Path(path).write_text("".join(lines))

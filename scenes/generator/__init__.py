@@ -1,1 +1,1 @@
-"""What make_scenes.py is made of: meshes, building parts, pictures, the GLB writer, its validator, the scenes."""
+"""The parts of make_scenes.py: meshes, building parts, pictures, the GLB writer, its validator, the scenes."""

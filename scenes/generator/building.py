@@ -10,7 +10,7 @@ from .mesh import Mesh, box, grid, merged
 from .vector import Vec3, add, cross, scaled
 
 Rect = tuple[float, float, float, float]  # u0, u1, v0, v1
-SUNK = 0.002  # metres by which things that stand are let into what they stand on: no two faces coincide
+SUNK = 0.002  # metres by which standing things sink into their support, so that no faces coincide
 
 
 def slab(origin: Vec3, u: Vec3, v: Vec3, width: float, height: float, thickness: float, openings: Sequence[Rect] = ()) -> Mesh:
@@ -33,7 +33,7 @@ def slab(origin: Vec3, u: Vec3, v: Vec3, width: float, height: float, thickness:
     out = Mesh()
 
     def face(*corners: tuple[float, float, float]) -> None:
-        """Texture coordinates are the two in which the face extends."""
+        """Texture coordinates are the two coordinates in which the face extends."""
         axes = [k for k in range(3) if len({c[k] for c in corners}) > 1]
         out.face([point(*c) for c in corners], [(c[axes[0]], c[axes[1]]) for c in corners])
 
@@ -68,7 +68,7 @@ def room(lo: Vec3, hi: Vec3, thickness: float, openings: dict[str, Sequence[Rect
     w, h, d = x1 - x0, y1 - y0, z1 - z0
 
     def across(side: str, rise: float, start: float, sign: float) -> list[Rect]:
-        """World rectangles as the slab's own; `sign` -1 where u runs against the world's axis."""
+        """World rectangles in the slab's coordinates; `sign` is -1 if u runs against the world's axis."""
         return [(*sorted((sign * (a - start), sign * (b - start))), c - rise, e - rise) for a, b, c, e in cut.get(side, ())]
 
     floor = [(a - x0 + t, b - x0 + t, z1 + t - e, z1 + t - c) for a, b, c, e in cut.get("floor", ())]

@@ -1,5 +1,6 @@
-"""Finds faces that lie in one another and look the same way: a ray that meets both takes whichever its machine's tracer
-finds first, so that the picture is another one elsewhere. Faces that look at each other are where solids touch; no ray gets there."""
+"""Finds faces that coincide and look the same way. A ray that meets both takes whichever the machine's tracer finds
+first, so pictures would differ between machines. Faces that look at each other are where solids touch, and no ray gets
+there."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class SceneFile:
         return index
 
     def add(self, name: str, mesh: Mesh, material: int, **placing: Any) -> int:
-        """A mesh that is used once."""
+        """Adds a mesh that is used once."""
         return self.node(name, self.mesh(name, (mesh, material)), **placing)
 
     def camera(self, position: Vec3, target: Vec3, vertical_degrees: float) -> None:

@@ -1,4 +1,4 @@
-"""glTF materials as Lacuna reads them (design: interface, section Scene)."""
+"""glTF materials as Lacuna reads them."""
 
 from __future__ import annotations
 

@@ -60,13 +60,13 @@ def moved(mesh: Mesh, offset: Sequence[float]) -> Mesh:
 
 
 def inside_out(mesh: Mesh) -> Mesh:
-    """Its other side: what lies outside of a hollow."""
+    """The mesh turned inside out, for the inner side of a hollow body."""
     normals = [scaled(n, -1.0) for n in mesh.normals]
     return Mesh(list(mesh.positions), normals, list(mesh.uvs), [(a, c, b) for a, b, c in mesh.triangles])
 
 
 def flat_shaded(mesh: Mesh) -> Mesh:
-    """Own corners for every triangle: where shading normals must be the geometry's (furnace)."""
+    """The mesh with separate corners for every triangle, where shading normals must be geometric (furnace)."""
     out = Mesh()
     for t in mesh.triangles:
         out.face([mesh.positions[k] for k in t], [mesh.uvs[k] for k in t])
@@ -105,8 +105,8 @@ def box_at(centre_bottom: Vec3, size: Vec3) -> Mesh:
 
 
 def grid(point: Callable[[float, float], Vec3], nu: int, nv: int) -> Mesh:
-    """Smooth sheet point(u, v) over the unit square; its front looks along dp/du x dp/dv. Normals are averaged over
-    the faces: the surface's own may look to a face's back where a fold is only a few cells wide."""
+    """Smooth sheet point(u, v) over the unit square; its front looks along dp/du x dp/dv. Normals are averaged over the
+    faces, because exact ones may look to a face's back if a fold is only a few cells wide."""
     out = Mesh()
     for j in range(nv + 1):
         for i in range(nu + 1):
@@ -122,7 +122,7 @@ def grid(point: Callable[[float, float], Vec3], nu: int, nv: int) -> Mesh:
 
 
 def _circle(segments: int) -> list[tuple[float, float]]:
-    """Directions around +Y; the last equals the first exactly, so that what is turned closes."""
+    """Directions around +Y; the last equals the first exactly, so that turned shapes close."""
     ring = [(math.cos(2 * math.pi * i / segments), math.sin(2 * math.pi * i / segments)) for i in range(segments)]
     return ring + ring[:1]
 

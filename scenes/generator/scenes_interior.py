@@ -17,7 +17,7 @@ def _put_room(s: SceneFile, sides: dict[str, Mesh], finish: dict[str, int]) -> N
 
 
 def _put_table(s: SceneFile, name: str, at: Vec3, size: Vec3, wood: int) -> int:
-    """Returns the node that things on the board are to be children of; its y = 0 is the floor."""
+    """Returns the parent node for things on the board; its y = 0 is the floor."""
     width, height, depth = size
     board, leg = table(width, height, depth)
     top = s.node(name, s.mesh(f"{name} board", (board, wood)), at=at)
@@ -41,7 +41,8 @@ def door() -> SceneFile:
     lamp = s.material(m.emitter("lamp", (3300.0, 3075.0, 2700.0)))
 
     _put_room(s, room((-2.6, 0, -5.6), (2.6, 2.7, 2.4), 0.2), {"walls": wall, "floor": tiles})
-    # The partition is let into floor, ceiling and walls; its doorway is cut down to the partition's lower edge and ends inside the frame.
+    # The partition is let into floor, ceiling and walls. Its doorway is cut down to the partition's lower edge and ends
+    # inside the frame.
     opening = (2.62 - 1.18, 2.62 - 0.22, -0.1, 2.10)
     s.add("partition", slab((-2.62, -0.02, -2.0), X, Y, 5.24, 2.74, 0.14, [opening]), wall)
     frame = boxes(((-1.21, -SUNK, -2.15), (-1.15, 2.11, -1.985)), ((-0.25, -SUNK, -2.15), (-0.19, 2.11, -1.985)),
@@ -181,7 +182,7 @@ def kitchen_glass() -> SceneFile:
     s.add("pane", box((-1.51, 0.54, 1.23), (1.51, 2.26, 1.242)), glass)
     s.add("tiled wall", slab((-1.9 - SUNK, 0.88, -1.59), X, Y, 3.8 + 2 * SUNK, 0.72, 0.025), tiles)
 
-    # What overlaps inside the walls and the corner is let in to a depth of its own each.
+    # Parts that overlap inside the walls and the corner are let in to different depths.
     counter = s.node("counter")
     s.add("cupboards", boxes(((-1.9 - SUNK, 0.1, -1.6 - SUNK), (1.235, 0.86, -1.0)), ((-1.9 - 2 * SUNK, 0.1 + SUNK, -1.02), (-1.3, 0.86 - SUNK, 0.6))), front, parent=counter)
     s.add("plinth", boxes(((-1.9 - 3 * SUNK, -SUNK, -1.6 - 2 * SUNK), (1.225, 0.12, -1.06)), ((-1.9 - 4 * SUNK, -2 * SUNK, -1.1), (-1.36, 0.12 - SUNK, 0.56))), steel, parent=counter)

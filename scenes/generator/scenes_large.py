@@ -168,7 +168,7 @@ def lamp_warehouse() -> SceneFile:
     x1, z1 = cell * columns / 2, cell * lines / 2
     for side, mesh in room((-x1, 0, -z1), (x1, height, z1), 0.3).items():
         s.add(side, mesh, concrete if side == "floor" else plaster)
-    # Partitions reach into floor, ceiling and outer walls, and into each other, nowhere equally far.
+    # Partitions reach into floor, ceiling, outer walls and each other, all to different depths.
     across = s.mesh("partition across", (box((-x1 - 0.1, -0.02, -0.05), (x1 + 0.1, height + 0.02, 0.05)), plaster))
     along = s.mesh("partition along", (box((-0.05, -0.03, -z1 - 0.1), (0.05, height + 0.03, z1 + 0.1)), plaster))
     for i in range(1, lines):

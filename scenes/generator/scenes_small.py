@@ -30,8 +30,8 @@ def cornell_box() -> SceneFile:
 
 
 def furnace() -> SceneFile:
-    """Albedo a and emission 1 - a everywhere: L = (1 - a) + a L has the one solution L = 1, at every depth cut off
-    after n edges 1 - a^n. Shading normals are the geometry's, or the smooth ones would lose light at the rims."""
+    """Albedo a and emission 1 - a everywhere: L = (1 - a) + a L has the only solution L = 1, and paths of up to n edges
+    give 1 - a^n. Shading normals are geometric, because smooth ones would lose light at the rims."""
     s = SceneFile("furnace", "Closed room, albedo 0.5 and emission 0.5 on every surface: radiance is exactly 1", 256, 256, 32)
     wall = s.material(m.emitter("half and half", (0.5, 0.5, 0.5), albedo=(0.5, 0.5, 0.5)))
     s.add("room", box((-2, 0, -2), (2, 3, 2), inward=True), wall)
@@ -61,8 +61,8 @@ def ring_caustic() -> SceneFile:
 
 
 def torus_in_glass() -> SceneFile:
-    """The torus floats inside the block, so that no edge of L S D S E has an end that light or lens can be joined to. A
-    sun cannot be hit either: only specular chains and merging show the torus lit directly."""
+    """The torus floats inside the block, so that no edge of L S D S E ends at a point that light or lens can be joined
+    to. A sun cannot be hit either: only specular chains and merging show the torus lit directly."""
     s = SceneFile("torus-in-glass", "Diffuse torus inside a block of smooth glass under a small sun", 480, 360)
     floor = s.material(m.lambert("floor", (0.62, 0.60, 0.56)))
     red = s.material(m.lambert("red", (0.75, 0.28, 0.16)))

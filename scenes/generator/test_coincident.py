@@ -1,4 +1,4 @@
-"""What counts as faces in one another: python3 -B -m unittest discover -s scenes -t scenes"""
+"""Tests which faces count as coincident: python3 -B -m unittest discover -s scenes -t scenes"""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .vector import about
 
 
 def shared_area(*things: tuple[Mesh, dict]) -> float:
-    """Of all pairs of faces, in square metres, after the way through a file."""
+    """The shared area of all pairs of faces, in square metres, after writing and reading a file."""
     s = SceneFile("test", "meshes as given", 64, 64)
     grey = s.material(lambert("grey", (0.5, 0.5, 0.5)))
     for i, (mesh, placing) in enumerate(things):
@@ -36,7 +36,7 @@ class CoincidentFaces(unittest.TestCase):
                 self.assertAlmostEqual(shared_area((self.square, {"turned": turned}), (self.square, {"turned": turned})), 1.0, 4)
 
     def test_a_frame_in_its_opening_cut_to_measure(self) -> None:
-        # The door's, once: posts 15 cm deep around an opening in a wall of 14 cm, whose reveals lay in the posts' faces.
+        # A post beside an opening that is cut to measure: the wall's reveal lies in the post's face.
         wall = slab((0, 0, 0), X, Y, 3.0, 2.5, 0.14, [(1.0, 2.0, -0.1, 2.0)])
         post = box((0.94, -0.01, -0.15), (1.0, 2.0, 0.015))
         self.assertAlmostEqual(shared_area((wall, {}), (post, {})), 0.14 * 2.0, 4)

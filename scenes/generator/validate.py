@@ -40,7 +40,7 @@ class Glb:
         return rows
 
     def triangles(self) -> int:
-        """As drawn: instances count each time."""
+        """The number of triangles as drawn: each instance counts."""
         sizes = [sum(self.all("accessors")[p["indices"]]["count"] // 3 for p in m["primitives"]) for m in self.all("meshes")]
         return sum(sizes[n["mesh"]] for n in self.all("nodes") if "mesh" in n)
 

@@ -1,8 +1,7 @@
-"""Run by Blender: a compositor graph that loads an .exr of lacuna-render with light groups and Cryptomatte, changes two
-lamps, cuts out one object and renders that, against what NumPy makes of the same channels.
+"""Run by Blender: compares a compositor graph with NumPy on the same channels. The graph loads an .exr of lacuna-render
+with light groups and Cryptomatte, changes two lamps, and cuts out one object.
 blender -b --factory-startup --python-exit-code 1 -P compositor.py -- PICTURE.exr CHANNELS.exr DIR
-CHANNELS.exr holds the same channels where the add-on's reader reads them: one part of 32-bit floats."""
-
+CHANNELS.exr holds the same channels in a form that the add-on's reader reads: one part of 32-bit floats."""
 import os
 import sys
 

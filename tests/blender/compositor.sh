@@ -1,6 +1,6 @@
 #!/bin/sh
-# Our layers in Blender's compositor: sh tests/blender/compositor.sh BUILD
-# Exits with 77 where there is no Blender.
+# Tests Lacuna's layers in Blender's compositor: sh tests/blender/compositor.sh BUILD
+# Exits with 77 if Blender is missing.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "$1" && pwd)

@@ -1,6 +1,6 @@
-"""A reader of Cryptomatte that knows the published specification (1.2.0) and nothing of Lacuna: names, ids and mattes of
-the channels and attributes of a file. As a program it reads what lacuna-render writes: python3 cryptomatte.py LACUNA_RENDER.
-Exits with 77 without NumPy."""
+"""A reader of Cryptomatte that knows the published specification (1.2.0) and nothing of Lacuna: it finds names, ids and
+mattes in a file's channels and attributes. As a program it checks what lacuna-render writes: python3 cryptomatte.py
+LACUNA_RENDER. Exits with 77 without NumPy."""
 
 import json
 import os
@@ -21,7 +21,7 @@ from lacuna_blender import exr  # noqa: E402
 
 
 def murmur_hash(text):
-    """MurmurHash3_32 of its UTF-8, seed 0."""
+    """MurmurHash3_32 of the text's UTF-8 with seed 0."""
     data, value = text.encode(), 0
 
     def turned(x, by):
@@ -42,13 +42,14 @@ def murmur_hash(text):
 
 
 def id_bits(name):
-    """Of the float that stands for it: no zero, denormal, infinity or NaN."""
+    """The bits of a name's id as a float, which is no zero, denormal, infinity or NaN."""
     value = murmur_hash(name)
     return value ^ 1 << 23 if value >> 23 & 255 in (0, 255) else value
 
 
 class Cryptomatte:
-    """One type of a file: `names` to bits of ids, `ids` and `shares` by rank (ranks x height x width)."""
+    """One type of a file: `names` maps names to the bits of ids; `ids` and `shares` are by rank (ranks x height x
+    width)."""
 
     def __init__(self, channels, header, type_name):
         key = "cryptomatte/%s/" % ("%08x" % murmur_hash(type_name))[:7]
@@ -68,7 +69,7 @@ class Cryptomatte:
         return numpy.where(self.ids == self.names[name], self.shares, 0).sum(axis=0)
 
     def check(self):
-        """Raises AssertionError where something is not as the specification has it."""
+        """Raises AssertionError if something is not as the specification says."""
         for name, bits in self.names.items():
             assert bits == id_bits(name), (name, bits)
         known = set(self.names.values()) | {0}
@@ -79,7 +80,7 @@ class Cryptomatte:
 
 
 def _renamed(path, names):
-    """A .glb with other names of nodes."""
+    """The bytes of a .glb with renamed nodes."""
     data = open(path, "rb").read()
     size, = struct.unpack_from("<I", data, 12)
     document = json.loads(data[20:20 + size])
@@ -95,7 +96,7 @@ def _renamed(path, names):
 
 
 def _test(program):
-    """What lacuna-render writes, of names that are long, foreign, shared by several nodes, or none."""
+    """Checks what lacuna-render writes for names that are long, foreign, shared by several nodes, or missing."""
     scene = os.path.join(HERE, "..", "..", "scenes", "blender-still-life.glb")
     long = "Stra\u00dfe \u6771\u4eac \"quoted\" \\ " + 300 * "x"
     names = {"enamel ring": long, "wall": "", "skittle 2": "skittle", "skittle 3": "skittle"}
@@ -113,7 +114,7 @@ def _test(program):
         assert numpy.allclose(matte.shares.sum(axis=0), 1), "a room without a gap"
     assert {long, "unnamed", "skittle"} <= set(objects.names) and "skittle 2" not in objects.names, objects.names
     assert objects.matte(long).max() == 1 and objects.matte("unnamed").mean() > 0.2
-    # The skittles are all that is of their material, whatever they are called.
+    # The skittles are the only objects of their material, whatever their names.
     skittles = sum(objects.matte(name) for name in objects.names if name.startswith("skittle"))
     assert any(numpy.allclose(skittles, materials.matte(name)) for name in materials.names), list(materials.names)
     print("Cryptomatte: %d objects, %d materials" % (len(objects.names), len(materials.names)))

@@ -101,7 +101,7 @@ class Engine(unittest.TestCase):
         self.stop()
 
     def add_marble(self):
-        """What Cycles is asked about."""
+        """Adds a cube with a texture that only Cycles can evaluate."""
         made, tree, node = scenes.material("marble", "ShaderNodeBsdfDiffuse")
         tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Color"])
         return scenes.cube(made)

@@ -140,7 +140,7 @@ def node(kind, *inputs, output="Color", **members):
 
 
 class Inputs(list):
-    """The only one, by whatever name."""
+    """Inputs of which the first is found by any name."""
 
     def __getitem__(self, key):
         return super().__getitem__(0 if isinstance(key, str) else key)
@@ -174,7 +174,7 @@ class Nodes(unittest.TestCase):
 
 
 def use_of(values, **placed):
-    """Of a picture of these values: rows from the top, numbers or colours."""
+    """A use of a picture with these values: rows from the top, numbers or colours."""
     texels = numpy.array(values, numpy.float32)
     rgb = texels if texels.ndim == 3 else numpy.dstack([texels] * 3)
     return textures.Use(textures.Picture("made", rgb), **placed)
@@ -206,14 +206,14 @@ class Blend(unittest.TestCase):
     def test_a_slope_is_its_normal(self):
         x = numpy.arange(16) / 16
         for heights, expected in ((numpy.tile(x, (16, 1)), (-0.5, 0, 1)), (numpy.tile(x[::-1, None], (1, 16)), (0, -0.5, 1))):
-            normal = self.normals(heights, 1.0, 1.0, 2.0, wrap="EXTEND")[8, 8]  # a metre in two
+            normal = self.normals(heights, 1.0, 1.0, 2.0, wrap="EXTEND")[8, 8]  # one metre over two
             numpy.testing.assert_allclose(normal, numpy.array(expected) / numpy.linalg.norm(expected), atol=1e-6)
         numpy.testing.assert_allclose(self.normals(heights, 1.0, 0.0, 2.0)[8, 8], (0, 0, 1), atol=1e-6)
 
     def test_a_placed_slope_turns_with_its_image(self):
         heights = numpy.tile(numpy.arange(16) / 16, (16, 1))
         normal = self.normals(heights, 1.0, 1.0, 1.0, wrap="EXTEND", place=((0, 0), math.pi / 2, (1, 2)))[8, 8]
-        # Turned by a right angle the image's u is the surface's -v, and twice as dense.
+        # Turned by a right angle, the image's u runs along the surface's -v and is twice as dense.
         numpy.testing.assert_allclose(normal[:2] / normal[2], (0, 2), atol=1e-6)
 
     def test_repeated_heights_have_no_rim(self):

@@ -1,10 +1,11 @@
-"""How much noise Lacuna's and Cycles' pictures have after the same seconds: both renderers take scenes.py's scenes from
-Blender, told nothing but a time limit.
+"""Compares the noise of Lacuna's and Cycles' pictures after the same seconds. Both renderers get scenes.py's scenes from
+Blender, and only a time limit and a depth.
 
   blender -b --factory-startup --python-exit-code 1 -P tests/blender/race.py -- lacuna-render OUT [--only NAME] [--page FILE.md]
 
-Noise needs no reference: two seeds differ by it. Lacuna's seconds count reading the scene and the pilot of `auto`,
-Cycles' only its render. OUT gets all pictures (.exr), and SHEET.png: each scene after each time, Lacuna left.
+Noise needs no reference: it is what two seeds differ by. Lacuna's seconds include reading the scene and the pilot of
+`auto`, Cycles' only its render. OUT gets all pictures (.exr), and SHEET.png: the middle of some scenes after each time,
+Lacuna left.
 """
 
 import datetime
@@ -30,7 +31,7 @@ SHOWN = ("area-lamps", "spots", "sky-image", "shaders", "copies-and-modifiers")
 
 
 class Exporter(bpy.types.RenderEngine):
-    """Blender gives what is to be rendered (and not what the viewport shows) to engines alone."""
+    """An engine, because Blender gives only engines the scene as it is rendered, and not as the viewport shows it."""
     bl_idname, bl_label = "LACUNA_EXPORTER", "Exporter"
     folder, arguments = "", []
 
@@ -39,7 +40,7 @@ class Exporter(bpy.types.RenderEngine):
 
 
 def exported(scene, folder):
-    """The command line's arguments of the scene."""
+    """The arguments of lacuna-render for the scene."""
     Exporter.folder, scene.render.engine = str(folder), Exporter.bl_idname
     bpy.ops.render.render()
     return Exporter.arguments
@@ -53,7 +54,7 @@ def cycles(scene, seconds, seed, path):
 
 
 def lacuna(program, arguments, seconds, seed, path):
-    """Prepared anew by each: what one has trained, another does not find."""
+    """Each render has its own caches, so that none finds what another has trained."""
     caches = path.with_suffix(f".{seconds}-{seed}.caches")
     subprocess.run([program, *arguments, "-o", path, "--time", f"{seconds}s", "--count-setup", "--seed", str(seed),
                     "--max-depth", str(EDGES), "--cache", caches, "--quiet"], check=True)
@@ -67,7 +68,7 @@ def smoothed(picture):
 
 
 def noise(first, second):
-    """What each is off by, of what both show: the mean over pixels and channels."""
+    """The relative error of each picture, from the difference of both: the mean over pixels and channels."""
     mean = (first + second) / 2
     return float(numpy.mean(numpy.abs(first - second) / (smoothed(mean) + 0.01 * mean.mean())) / numpy.sqrt(2))
 
@@ -77,7 +78,7 @@ def pixels(path):
 
 
 def race(name, program, out):
-    """By seconds the noise of both, Lacuna's first, and a picture of each."""
+    """By seconds: the noise of both renderers, Lacuna's first, and a picture of each."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scenes.for_cycles(scene, WIDTH, HEIGHT, EDGES, samples=1 << 20)  # the time limit comes first
@@ -103,7 +104,7 @@ def race(name, program, out):
 
 
 def save_sheet(path, found):
-    """A row of each scene that is shown; its middle, from the shortest time to the longest, Lacuna left of Cycles."""
+    """One row for each scene shown: its middle, from the shortest time to the longest, Lacuna left of Cycles."""
     def shown(picture, other):
         middle = picture[HEIGHT // 4:HEIGHT // 4 + HEIGHT // 2, WIDTH // 4:WIDTH // 4 + WIDTH // 2]
         return textures.to_srgb(middle * 0.4 / max(other.mean(), 1e-6))

@@ -1,10 +1,10 @@
-"""Random scenes by Lacuna and by Cycles: finds what a list of scenes does not. By hand, as root or not:
+"""Renders random scenes by Lacuna and by Cycles, to find faults that a list of scenes does not. By hand, as root or not:
 
   blender -b --factory-startup --python-exit-code 1 -P tests/blender/random_scenes.py -- ADD-ON.zip lacuna-render OUT
       [--first N] [--scenes N]
 
-A line for each scene: Lacuna's mean over Cycles', the darkest and brightest region likewise, and what the add-on says is
-left out. OUT has both pictures of each side by side (Lacuna left), its .blend and its log. Exits with 1 where a whole
+A line for each scene: Lacuna's mean over Cycles', likewise for the darkest and the brightest region, and what the add-on
+leaves out. OUT has both pictures of each scene side by side (Lacuna left), its .blend and its log. Exits with 1 if a whole
 picture differs by more than ALLOWED. A region differs by more where Cycles bumps between pixels, where two shaders are
 one surface, and under a glossy layer: look at the picture."""
 
@@ -28,7 +28,7 @@ _PRIMITIVES = [f"primitive_{kind}_add" for kind in ("cube", "uv_sphere", "cylind
 
 
 class Maker:
-    """Of one scene, by its number."""
+    """Makes the scene of a number."""
 
     def __init__(self, seed):
         self.r = random.Random(seed)
@@ -60,7 +60,7 @@ class Maker:
         return scenes.image(f"image {len(bpy.data.images)}", texels, color=self.chance(0.7))
 
     def place(self, tree, node):
-        """What an image or a texture lies by; sometimes nothing, which means UV or the object's box."""
+        """Links coordinates to an image or a texture; sometimes none, which means UV or the object's box."""
         r = self.r
         if self.chance(0.2):
             return
@@ -111,13 +111,13 @@ class Maker:
         return node.outputs[0]
 
     def feed(self, tree, socket, low, high):
-        """A number between the two, from a colour."""
+        """Links a number between the two, made from a colour."""
         node = scenes.node(tree, "ShaderNodeMapRange", self.color(tree, 1), "Value")
         node.inputs["To Min"].default_value, node.inputs["To Max"].default_value = low, high
         tree.links.new(node.outputs[0], socket)
 
     def grouped(self, tree):
-        """A colour from within a group."""
+        """A colour that comes from inside a group."""
         inside = bpy.data.node_groups.new("group", "ShaderNodeTree")
         inside.outputs.new("NodeSocketColor", "Color")
         inside.links.new(self.color(inside, 1), inside.nodes.new("NodeGroupOutput").inputs[0])
@@ -168,7 +168,7 @@ class Maker:
         tree.links.new(self.shader(tree), tree.get_output_node("CYCLES").inputs["Surface"])
         return made
 
-    # Things.
+    # Objects.
 
     def thing(self, number):
         r = self.r

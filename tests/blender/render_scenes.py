@@ -43,7 +43,7 @@ def installed(archive, program, out):
 
 
 def make(name, fill, out):
-    """The .blend of what `fill` puts into an empty scene, and Cycles' picture of it."""
+    """Writes the .blend of an empty scene with what `fill` adds, and Cycles' picture of it."""
     for old in out.glob(f"{name}-*"):
         old.unlink()
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -59,7 +59,8 @@ def make(name, fill, out):
 
 
 def render(name, out, environment):
-    """What users type; returns what the add-on says is left out. The scene's settings of Lacuna come by a line of Python."""
+    """Runs the command that users type; returns what the add-on says it leaves out. A line of Python sets the scene's
+    settings of Lacuna."""
     chosen = f"import bpy; s = bpy.context.scene.lacuna; s.samples, s.seconds, s.depth = {SAMPLES}, 0, {EDGES}"
     done = subprocess.run([bpy.app.binary_path, "-b", "--factory-startup", "--addons", "lacuna_blender", str(out / f"{name}.blend"),
                            "--python-expr", chosen, "-E", "LACUNA", "-o", str(out / f"{name}-lacuna.exr"), "-x", "0", "-f", "1"],
@@ -76,7 +77,7 @@ def regions(picture):
 
 
 def differences(ours, theirs):
-    """By region, as a share; what is nearly black is measured against a twentieth of the picture."""
+    """Relative differences by region. Nearly black regions count relative to a twentieth of the picture's mean."""
     return (ours - theirs).mean(axis=2) / numpy.maximum(theirs.mean(axis=2), 0.05 * theirs.mean())
 
 
@@ -88,7 +89,7 @@ def save_png(path, *pictures):
 
 
 def pictures(name, out):
-    """Lacuna's and Cycles', saved side by side as well."""
+    """Lacuna's and Cycles' pictures; also saves them side by side."""
     # Blender adds the number of the frame.
     places = (out / f"{name}-lacuna.exr0001", out / f"{name}-lacuna0001.exr", out / f"{name}-lacuna.exr")
     ours, theirs = exr.read(next(p for p in places if p.exists())), exr.read(out / f"{name}-cycles.exr")

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The add-on's pictures against those of Cycles: sh tests/blender/run.sh BUILD [options of render_scenes.py]
-# Exits with 77 where there is no Blender.
+# Compares the add-on's pictures with those of Cycles: sh tests/blender/run.sh BUILD [options of render_scenes.py]
+# Exits with 77 if Blender or a built file is missing.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "$1" && pwd)

@@ -1,4 +1,4 @@
-"""Sixteen small scenes, made by Blender's own means, that between them hold what the add-on carries over."""
+"""Sixteen small scenes, made with Blender's own tools, which together contain everything that the add-on exports."""
 
 import math
 
@@ -38,7 +38,7 @@ def textured(name, picture, kind="ShaderNodeBsdfDiffuse"):
 
 
 def image(name, texels, color=True, deep=False):
-    """Height x width x 3 as stored, row 0 at the bottom."""
+    """An image of these texels, height x width x 3 as stored, row 0 at the bottom."""
     height, width, _ = texels.shape
     made = bpy.data.images.new(name, width, height, float_buffer=deep)
     if not deep:
@@ -49,7 +49,7 @@ def image(name, texels, color=True, deep=False):
 
 
 def quarters(name, colors, size=32):
-    """Four colours: lower left, lower right, upper left, upper right."""
+    """An image of four colours: lower left, lower right, upper left, upper right."""
     c = numpy.array(colors, float).reshape(2, 2, 3)
     return image(name, c.repeat(size, axis=0).repeat(size, axis=1))
 
@@ -78,7 +78,8 @@ def ball(made, radius=0.5, **place):
 
 
 def for_cycles(scene, width, height, edges, samples):
-    """An .exr of that size by Cycles, of paths of up to so many edges, without what it does for looks or speed."""
+    """Sets Cycles to write an .exr of that size with paths of up to `edges` edges, without features for looks or
+    speed."""
     render, cycles = scene.render, scene.cycles
     render.engine = "CYCLES"
     render.resolution_x, render.resolution_y = width, height
@@ -152,8 +153,9 @@ def sky(rotation):
 def area_lamps():
     stage()
     ball(diffuse("red", 0.7, 0.2, 0.1), location=(-0.8, 0, 0.5))
-    lamp("AREA", (1.5, 0.5, 2.5), (0, 0, 0.5), 120, size=0.8, color=(1, 0.9, 0.7))  # in the picture, seen by nobody
-    lamp("AREA", (0, -3, 0.7), (0, 3, 0.5), 40, shape="ELLIPSE", size=1.0, size_y=0.5).scale = (1.5, 0.5, 1)  # before it
+    lamp("AREA", (1.5, 0.5, 2.5), (0, 0, 0.5), 120, size=0.8, color=(1, 0.9, 0.7))  # in the picture, but invisible
+    # In front of the camera.
+    lamp("AREA", (0, -3, 0.7), (0, 3, 0.5), 40, shape="ELLIPSE", size=1.0, size_y=0.5).scale = (1.5, 0.5, 1)
     camera()
 
 
@@ -191,7 +193,7 @@ def sky_image():
 
 
 def lens_and_film():
-    """A shifted camera with a lens, of another sensor fit, that looks up, in a picture that is higher than wide."""
+    """A shifted camera with a lens and another sensor fit, which looks up, and a picture that is higher than wide."""
     stage()
     for i in range(4):
         cube(diffuse(f"pillar {i}", 0.2 + 0.2 * i, 0.5, 0.8 - 0.2 * i), location=(-1.5 + i, -1 + i, 1), scale=(0.4, 0.4, 2))
@@ -334,7 +336,7 @@ def ray_visibility():
 
 
 def sky_texture():
-    """Blender's own sky, its sun from beside through a gap, in a world that is turned, tinted and mixed."""
+    """Blender's own sky, tinted, whose sun shines from the side through a gap."""
     stage()
     for x in (-1.9, 1.9):
         cube(diffuse(f"beside {x}", 0.7, 0.7, 0.7), location=(x, -1, 1.5), scale=(0.1, 3, 3))
@@ -350,7 +352,7 @@ def sky_texture():
 
 
 def node(tree, kind, source, input_, **inputs):
-    """A node of that kind with these inputs, and that output linked to its `input_`."""
+    """A node of that kind with these inputs, whose `input_` is linked to the output `source`."""
     made = tree.nodes.new(kind)
     for key, value in inputs.items():
         made.inputs[key].default_value = value
@@ -406,7 +408,8 @@ def hills(name):
 
 
 def masks_and_bumps():
-    """Two shaders by an image, heights as two Bumps, a cut by an image without a coloured one, a screen that shines by one."""
+    """Two shaders mixed by an image, heights in two Bump nodes, an alpha cut by an image alone, a screen that emits an
+    image."""
     stage()
     mask = quarters("mask", [(0,) * 3, (1,) * 3, (1,) * 3, (.3,) * 3])
     made, tree, place = textured("painted steel", mask)
@@ -450,7 +453,7 @@ def masks_and_bumps():
 
 
 def procedural():
-    """Textures that are functions of place: by the object's box, its coordinates, UV; as colour, roughness and bump."""
+    """Procedural textures: over the object's box, its coordinates or UV; as colour, roughness and bump."""
     made, tree, shader = material("tiles", "ShaderNodeBsdfDiffuse")
     place = tree.nodes.new("ShaderNodeTexCoord")
     node(tree, "ShaderNodeTexChecker", place.outputs["UV"], "Vector", Scale=16, Color1=(.7, .6, .5, 1), Color2=(.2, .2, .3, 1))
@@ -489,7 +492,7 @@ def procedural():
 
 
 def tinted_glass():
-    """Bodies that absorb, thick and thin, before a bright wall."""
+    """Glass cubes with weak to strong absorption under a bright sky."""
     stage()
     for x, density in ((-1.5, 0.5), (0, 2.0), (1.5, 4.0)):
         made, tree, _ = material(f"tinted {density}", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0, IOR=1.2)
@@ -501,7 +504,7 @@ def tinted_glass():
     camera()
 
 
-# Allowed difference of a region's mean from Cycles', as a share of it, and why it is more than noise.
+# Allowed relative difference of a region's mean from Cycles', and why it is more than noise.
 SCENES = {
     "area-lamps": (area_lamps, 0.04, ""), "bulbs": (bulbs, 0.04, ""),
     "spots": (spots, 0.12, "the cone fades by glTF's curve"),

@@ -1,12 +1,12 @@
-"""A point light behind glass, seen through glass, beside lamps that shrink to it: writes a page of tests/results.
+"""Compares a point light behind glass, seen through glass, with lamps that shrink to it: writes a page of tests/results.
 
     python3 tests/calibration/glass_limit.py build/render/lacuna-render DIRECTORY PAGE
 
-A room of three metres, half of it behind a pane of solid glass: there are a lamp, a ball of glass below it, and a block. The
-camera stands before the pane, so that no edge of light through the ball can be joined. `pt` and `bpt` make the picture with a
-lamp that is a point, `bpt` with one that is a ball of the same power, as it is and without next event through glass. The noise
-is the variance of a pixel times the seconds of rendering, as it is and without the hundredth of the pixels that has the most.
-DIRECTORY keeps scenes and pictures; NumPy is wanted.
+A room of three metres, half of it behind a pane of solid glass. There are a lamp, a ball of glass below it, and a block. The
+camera is in front of the pane, so that no edge of light through the ball can be joined. `pt` and `bpt` render the lamp as a
+point, `bpt` also as a ball of the same power, with and without next event through glass. The noise is the variance of a
+pixel times the seconds of rendering, for all pixels and without the noisiest hundredth. DIRECTORY keeps scenes and pictures.
+Needs NumPy.
 """
 
 import datetime
@@ -33,10 +33,10 @@ from generator.vector import about_y  # noqa: E402
 INTENSITY = 3.0  # W/sr
 ROOM = 3.0  # m
 LAMP = (0.55, 2.6, -0.7)  # out of sight, as the ball of glass below it is: no lens sees a point
-RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}  # of the ball, in terms of the room
+RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}  # of the ball, as a share of the room
 SEEDS = (1, 2, 3, 4)
 ITERATIONS = 48
-# Which rows render the lamp that is a point, and one that is not:
+# The rows that render the point lamp, and those that render balls:
 OF_POINTS = {"pt": ["--method", "pt"], "bpt": ["--method", "bpt"]}
 OF_BALLS = {"bpt": ["--method", "bpt"], "bpt, refractions=off": ["--method", "bpt", "--effect", "refractions=off"]}
 
@@ -48,7 +48,7 @@ def area(mesh):
 
 
 def scene(radius):
-    """The lamp is a point where `radius` is 0."""
+    """The scene; its lamp is a point if `radius` is 0."""
     s = SceneFile("glass-limit", "Lamp, ball of glass and block behind a pane of solid glass", 160, 90, 8)
     wall = s.material(m.lambert("wall", (0.6, 0.6, 0.55)))
     blue = s.material(m.lambert("blue", (0.2, 0.3, 0.6)))
@@ -77,7 +77,7 @@ def render(program, file, options, seed, target):
 
 
 def relative_variance(found, mean):
-    """Of each pixel, over the square of the picture's mean: what a pixel shows itself is as noisy."""
+    """The variance of each pixel over the square of the picture's mean. (A pixel's own mean is too noisy.)"""
     return (numpy.var(found, axis=0, ddof=1) / mean.mean() ** 2).mean(axis=-1)
 
 

@@ -1,10 +1,10 @@
-"""Pictures as arrays, for calibrations that look at pixels. NumPy is wanted."""
+"""Pictures as arrays, for calibrations that look at pixels. Needs NumPy."""
 
 import numpy
 
 
 def pixels(path):
-    """Of a .pfm: (height, width, 3), whichever way up."""
+    """The pixels of a .pfm: (height, width, 3), in the file's order of rows."""
     kind, size, scale, content = path.read_bytes().split(b"\n", 3)
     assert kind == b"PF"
     width, height = map(int, size.split())

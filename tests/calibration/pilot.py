@@ -1,12 +1,12 @@
-"""What a pilot in few pixels tells of a picture in many: writes a page of tests/results.
+"""Measures what a pilot with few pixels says about a picture with many: writes a page of tests/results.
 
     python3 tests/calibration/pilot.py build/render/lacuna-render DIRECTORY PAGE [SCENE ...]
 
-Renders each scene in three sizes by bpt, whose pixels know nothing of each other, and by sharebpt, whose pixels share what
-they find, with equal numbers of iterations. The noise is the mean relative distance of pictures of different seeds. From
-the sizes follows `alike` of render/choose/choose.cpp: the power of the number of pixels by which sharebpt's variance falls
-faster than bpt's. Iterations count, not seconds, so a busy machine changes nothing. DIRECTORY keeps the training; NumPy is
-wanted. Scenes that are not named: some of scenes/, and those of $LACUNA_SHARED_SCENES, where that is set.
+Renders each scene in three sizes by bpt, whose pixels are independent, and by sharebpt, whose pixels share what they find,
+with equal numbers of iterations. The noise is the mean relative distance of pictures of different seeds. The sizes give
+`alike` of render/choose/choose.cpp: the power of the number of pixels by which sharebpt's variance falls faster than bpt's.
+Iterations count, not seconds, so a busy machine changes nothing. DIRECTORY keeps the training. Needs NumPy. Without names
+of scenes: some of scenes/, and those of $LACUNA_SHARED_SCENES, if that is set.
 """
 
 import datetime
@@ -55,7 +55,7 @@ def rendered(program, directory, scene, size, row):
 
 
 def noises(program, directory, scene, size):
-    """Of each row, over what all show."""
+    """The noise of each row, relative to the mean of all pictures."""
     by_row = {row: list(rendered(program, directory, scene, size, row)) for row in ROWS}
     mean = numpy.mean([p for of in by_row.values() for p in of], axis=0)
     over = smoothed(mean) + EPSILON * mean.mean()
@@ -64,7 +64,7 @@ def noises(program, directory, scene, size):
 
 
 def measure(program, directory, scene):
-    """Noises by size, and the power from the smallest to the largest."""
+    """Noises by size, sharebpt's gains, and the power from the smallest size to the largest."""
     by_size = [noises(program, directory, scene, size) for size in SIZES]
     gains = [(n["bpt"] / n["sharebpt"]) ** 2 for n in by_size]
     ratio = SIZES[-1][0] * SIZES[-1][1] / (SIZES[0][0] * SIZES[0][1])

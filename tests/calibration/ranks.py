@@ -1,9 +1,9 @@
-"""How fast several ranks are, and what would limit more of them: writes a page of tests/results.
+"""Measures how fast several ranks are, and what would limit more of them: writes a page of tests/results.
 
     python3 tests/calibration/ranks.py build/render/lacuna-render PAGE
 
 Renders with 1, 2 and 4 ranks of one thread each, in turn, and takes the median of the ratios of
-three rounds. The rest is arithmetic with what was measured, and says so.
+three rounds. The rest of the page is computed from these measurements, and says so.
 """
 
 import datetime
@@ -47,7 +47,7 @@ def render(program, ranks, scene, width, height, iterations, options, directory)
 
 
 def measure(program, directory):
-    """By render and ranks: the reports of all rounds."""
+    """The reports of all rounds, by render and ranks."""
     found = {}
     for _ in range(ROUNDS):
         for name, *arguments in RENDERS:
@@ -82,7 +82,7 @@ def table(found):
 
 
 def outlook(found):
-    """What rank 0 can take, from its cost for a byte."""
+    """The load that rank 0 can take, from its cost per byte."""
     costs = []
     for name, _, width, height, *_ in RENDERS:
         for ranks in RANKS[1:]:

@@ -1,11 +1,11 @@
-"""What --sampler sobol is worth against --sampler independent: writes a page of tests/results.
+"""Measures the gain of --sampler sobol over --sampler independent: writes a page of tests/results.
 
     python3 tests/calibration/sampler.py build/render/lacuna-render DIRECTORY PAGE [SCENE ...]
 
 Errors are taken after equal numbers of iterations, which do not depend on what else the machine
 does: medians of ratios over seeds, each against a long render of another seed. Costs are processor
-seconds of the process, in turn. DIRECTORY keeps what was made: run again, it goes on. Scenes that
-are not named: those of scenes/ and of $LACUNA_SHARED_SCENES, where that is set.
+seconds of the process, measured in turn. DIRECTORY keeps the results, and a repeated call continues
+from them. Without names of scenes: those of scenes/ and of $LACUNA_SHARED_SCENES, if that is set.
 """
 
 import datetime
@@ -79,7 +79,7 @@ def mean(values):
 
 
 def measure(program, directory, chosen):
-    """By scene, row and iterations: by sampler the errors of all seeds."""
+    """The errors of all seeds, by scene, row and iterations, then by sampler."""
     found = {}
     for name, scene in chosen.items():
         for row in ROWS:
@@ -93,7 +93,7 @@ def measure(program, directory, chosen):
 
 
 def gain(of, measure_, power):
-    """How much longer independent numbers take: time is error^-power. Median over seeds, spread."""
+    """How much longer independent numbers take, as time is error^-power: median over seeds, lowest, highest."""
     a, b = ([e[measure_] for e in of[s]] for s in SAMPLERS)
     ratios = [(x / y) ** power for x, y in zip(a, b)]
     return statistics.median(ratios), min(ratios), max(ratios)
@@ -107,7 +107,7 @@ def seconds(program, arguments):
 
 
 def costs(program, directory, chosen):
-    """By scene and row: ratios of processor seconds per iteration, sobol over independent."""
+    """Ratios of processor seconds per iteration, sobol over independent, by scene and row."""
     kept = directory / "costs.json"
     found = json.loads(kept.read_text()) if kept.exists() else {}
     for name in (n for n in COST_SCENES if n in chosen):
@@ -128,7 +128,7 @@ def costs(program, directory, chosen):
 
 
 def slope(found, name, row, sampler):
-    """Of log error against log iterations, from the first to the last."""
+    """The slope of log error over log iterations, from the first to the last."""
     first, last = (statistics.median(e[0] for e in found[name, row, n][sampler])
                    for n in (ITERATIONS[0], ITERATIONS[2]))
     return math.log(last / first) / math.log(ITERATIONS[2] / ITERATIONS[0])

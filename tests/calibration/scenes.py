@@ -1,4 +1,4 @@
-"""Scenes that calibrations render: some of scenes/, and some that others made, where $LACUNA_SHARED_SCENES is their folder."""
+"""Scenes that calibrations render: some of scenes/, and some by others if $LACUNA_SHARED_SCENES is their folder."""
 
 import os
 import pathlib
@@ -8,8 +8,8 @@ LIGHT = {"classroom": "classroom_env.hdr"}  # environments that shared scenes do
 
 
 def of(ours, shared, names):
-    """By what a page calls them: the arguments of lacuna-render that are the scene. Those of `names`, or all if there are
-    none."""
+    """The arguments of lacuna-render for each scene, by the scene's name on a page. `names`: the scenes, or all if
+    there are none."""
     found = {stem: [OURS / f"{stem}.glb"] for stem in ours if not names or stem in names}
     if folder := os.environ.get("LACUNA_SHARED_SCENES"):
         for stem in (stem for stem in shared if not names or stem in names):

@@ -53,7 +53,7 @@ JUDGES = {
     "blender-still-life": ["--aperture", "0.02", "--focus", "1.0"],
 }
 SCENES = TUNED | JUDGES
-# Light tracing lacks what is seen in mirrors and through glass: no reference shows what it converges to.
+# Light tracing lacks what is seen in mirrors and through glass, so no reference shows what it converges to.
 LT_SEES_ALL = {"cornell-box", "nave", "light-mesh-instanced", "drapery-hall"}
 # Point lights behind smooth glass: see "Why is my picture black?" of render/README.md.
 PT_SEES_ALL = set(SCENES) - {"blender-still-life"}
@@ -69,7 +69,7 @@ class NotThere(Exception):
 
 
 def render(program: Path | None, folder: Path, name: str, arguments: list[str]) -> dict:
-    """What the render measured; taken from the folder where it is there."""
+    """The measurements of a render, read from the folder if they are there."""
     result = folder / f"{name}.json"
     if not result.exists():
         if program is None:
@@ -86,7 +86,7 @@ def applies(scene: str, row: str) -> bool:
 
 
 def run_all(program: Path, out: Path, sampler: str, targets: list[tuple[str, float]], results: list[dict], page_only: bool) -> None:
-    """Appends to `results`, which an interrupt leaves as they are. `page_only`: what is in the folder."""
+    """Appends to `results`, which keep what they have at an interrupt. `page_only`: only with results of the folder."""
     maker = None if page_only else program
     runs, references = out / "runs", out / "references"
     runs.mkdir(parents=True, exist_ok=True)
@@ -133,7 +133,7 @@ HEAD = (f"| | runs | stopped by the error | later than at the first look | of th
 
 
 def forecasts(results: list[dict]) -> list[float]:
-    """Iterations to the next error as the end of a run foretells them, over what it took."""
+    """Iterations to the next error, as forecast at the end of a run, over the iterations that it took."""
     at = {(r["scene"], r["row"], r["bound"]): r for r in results if r["measure"] == "mape" and r["stopped"] == "error"}
     bounds = sorted({bound for _, _, bound in at}, reverse=True)
     ratios = []

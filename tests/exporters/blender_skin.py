@@ -1,5 +1,5 @@
-"""Run by Blender: a column that an armature bends and shape keys swell, as its exporter writes both ("skin"), or
-as the mesh that Blender makes of them ("baked").
+"""Run by Blender: exports a column that an armature bends and shape keys swell, with both ("skin"), or as the mesh that
+Blender makes of them ("baked").
 
     blender -b --factory-startup --python blender_skin.py -- OUT.glb skin|baked
 """

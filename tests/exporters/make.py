@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Writes scenes as the tools of others pack them: files.json says which, from what, by what.
+"""Packs scenes with the tools of others: files.json lists the files, their originals and the steps.
 
     apt-get install gltfpack blender npm
     npm install --prefix out/npm @gltf-transform/cli@4.5.1 gltfpack@1.3.0
     python3 tests/exporters/make.py out/npm            all files that these tools can make, beside this script
     python3 tests/exporters/make.py out/npm NAME ...   these
 
-The files are part of the project, so that tests need none of the tools. A tool that is not there is named, and its files stay as
+The files are part of the project, so that tests need none of the tools. If a tool is missing, it is named, and its files stay as
 they are. Then tests/render/exporters_test.cpp says whether the new files render as their twins do.
 
 Exit 0: all were made. 77: a tool was missing.
@@ -32,7 +32,7 @@ def program(name: str, npm: Path) -> str | None:
 
 
 def make(file: dict, npm: Path) -> str | None:
-    """Runs the file's steps one after the other. Returns the tool that is missing, or nothing."""
+    """Runs the file's steps one after the other. Returns the name of a missing tool, or None."""
     with tempfile.TemporaryDirectory() as folder:
         source = SCENES / file["twin"]
         for i, step in enumerate(file["steps"]):

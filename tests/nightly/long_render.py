@@ -1,4 +1,4 @@
-"""A render that runs for long: whether it takes more and more memory, and whether its error goes on falling."""
+"""A long render: whether its memory keeps growing, and whether its error keeps falling."""
 
 import math
 import os
@@ -24,7 +24,7 @@ def resident(process):
 
 
 def iterations_of(head):
-    """Of the first bytes of an .exr, its attribute `iterations`."""
+    """The attribute `iterations` of an .exr, from its first bytes."""
     found = re.search(rb"iterations\0int\0\x04\0\0\0(.{4})|iterations\0string\0(.{4})(\d+)", head, re.S)
     if not found:
         return 0
@@ -39,14 +39,14 @@ def end_of(log):
 
 
 def iterations_in(lines):
-    """Of the last line of progress; 0 before the first one."""
+    """The iteration in the last line of progress; 0 before the first one."""
     found = re.findall(r"\biteration (\d+)", lines)
     return int(found[-1]) if found else 0
 
 
 def growth(samples):
     """Memory late in the run over memory early in it. `samples`: (iterations, bytes), by time. A film holds one sum for
-    each binary digit of the number of its iterations that is set, so that only equal numbers of sums are compared."""
+    each set bit of its number of iterations, so only equal numbers of sums are compared."""
     half, by_sums = len(samples) // 2, {}
     for late, part in enumerate((samples[:half], samples[half:])):
         for iterations, memory in part:
@@ -56,8 +56,8 @@ def growth(samples):
 
 
 def slope(errors, last):
-    """Of log mape over log iterations, by least squares. `errors`: (iterations, mape against the picture of `last`
-    iterations, of which it is a part), so that sigma sqrt(1/n - 1/N) is what is measured."""
+    """The slope of log mape over log iterations, by least squares. `errors`: (iterations, mape against the picture of
+    `last` iterations). That picture contains the one measured, so the measured error is sigma sqrt(1/n - 1/N)."""
     points = [(math.log(n), math.log(mape / math.sqrt(1 - n / last)))
               for n, mape in errors if BEGIN_OF_SLOPE * last <= n < last and mape > 0]
     if len(points) < 2:
@@ -85,7 +85,7 @@ def watch(process, picture, log, folder, seconds):
 
 
 def measure(programs, scene, seconds, folder):
-    """What a render by `auto` of `scene` for so many seconds did, at 1920 x 1080: rows of a table, and findings."""
+    """Runs a render of `scene` by `auto` for so many seconds at 1920 x 1080: rows of a table, and findings."""
     folder.mkdir(parents=True, exist_ok=True)
     picture = folder / "picture.exr"
     for old in folder.glob("*.exr"):

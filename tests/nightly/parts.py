@@ -15,23 +15,23 @@ ROOT = Path(__file__).resolve().parents[2]
 JOBS = str(os.cpu_count())
 DICTIONARIES = ROOT / "tests" / "fuzz" / "dictionaries"
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"
-# Parsers read files. Where memory can hold them, the disk need not.
+# The fuzzer's temporary files are in memory if possible, because parsers read files.
 MEMORY = {"TMPDIR": "/dev/shm"} if Path("/dev/shm").is_dir() else {}
 SUPPRESSIONS = Path(__file__).with_name("threads.supp")
-# A processor of 2010: SSE 4.2, no AVX. Its emulator takes some twenty times as long.
+# A processor of 2010 with SSE 4.2 but without AVX. Emulation takes some twenty times as long.
 OLD_PROCESSOR = ("qemu-x86_64", "-cpu", "Westmere")
-# Programs of tests that start no other program, which would not be emulated.
+# Test programs that start no other program, because that one would not be emulated.
 ALONE = ("base", "image", "material", "scene", "bidir", "resampling", "specular", "subspace", "skeleton", "voxel")
-# Suites in which threads meet, as ctest -R takes them.
+# Suites that use threads, as a pattern for ctest -R.
 THREADED = "^(ThreadPool|Library|Render|Live|Study|Train)"
 
 
 class Failed(Exception):
-    """What a part needs and does not get."""
+    """A part lacks something that it needs."""
 
 
 def run(command, log, **how):
-    """The output, which `log` keeps, and the exit code."""
+    """Runs a command. Returns its output, which `log` keeps, and its exit code."""
     done = subprocess.run([str(c) for c in command], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace", **how)
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -49,7 +49,7 @@ def build(preset, log, *targets, settings=()):
 
 
 def tests_of(output):
-    """What ctest said: how many tests ran, seconds, and the names of those that failed."""
+    """From ctest's output: the number of tests that ran, seconds, and the names of those that failed."""
     ran = re.search(r"tests failed out of (\d+)", output)
     seconds = re.search(r"Total Test time \(real\) =\s+([\d.]+)", output)
     failed = re.findall(r"^\s+\d+ - (\S.*?) \((?!Skipped)", output, re.M)
@@ -57,7 +57,7 @@ def tests_of(output):
 
 
 def suite(preset, log, *chosen, environment=()):
-    """Runs a preset's tests. How many, seconds, those that failed."""
+    """Runs a preset's tests. Returns their number, the seconds, and those that failed."""
     output, code = run(["ctest", "--test-dir", build(preset, log.with_suffix(".build.log")), "--parallel", JOBS,
                         "--output-on-failure", "--timeout", 7200, *chosen], log, env=os.environ | dict(environment))
     count, seconds, failed = tests_of(output)
@@ -75,7 +75,7 @@ def sanitizers(options):
 
 
 def threads(options):
-    """What has threads, under ThreadSanitizer."""
+    """The suites that use threads, under ThreadSanitizer."""
     count, seconds, failed = suite("threads", options.out / "threads.log", "-LE", "slow|night", "-R", THREADED,
                                    environment={"TSAN_OPTIONS": f"suppressions={SUPPRESSIONS}"})
     return {"summary": f"ThreadSanitizer, what has threads, without the slow tests: {count} tests in {seconds:.0f} s",
@@ -95,7 +95,7 @@ def on_old_processor(program, log):
 
 
 def baseline(options):
-    """What any x86-64 runs: the quick tests here, and those that start no other program on an old processor."""
+    """The build for any x86-64: the quick tests here, and programs that start no other on an emulated old processor."""
     count, seconds, failed = suite("baseline", options.out / "baseline.log", "-LE", "slow|night")
     if not shutil.which(OLD_PROCESSOR[0]):
         raise Failed(f"{OLD_PROCESSOR[0]} is missing: apt-get install qemu-user")
@@ -110,7 +110,7 @@ def baseline(options):
 
 
 def fuzzed(output):
-    """What libFuzzer said at its end: executions, edges, features, and the inputs that it kept as findings."""
+    """From libFuzzer's output: executions, edges, features, and the inputs that it kept as findings."""
     count = re.search(r"stat::number_of_executed_units:\s+(\d+)", output)
     covered = re.findall(r"cov: (\d+) ft: (\d+)", output)
     edges, features = covered[-1] if covered else (0, 0)
@@ -119,13 +119,14 @@ def fuzzed(output):
 
 
 def fuzz_parser(name, program, options):
-    """One row of the table, and findings. An input may take 20 seconds, and the memory that fuzz_main.cpp says."""
+    """Fuzzes one parser: a row of the table, and findings. An input may take 20 seconds, and the memory of
+    fuzz_main.cpp."""
     log = options.out / f"fuzz-{name}.log"
     dictionary, known = DICTIONARIES / f"{name}.dict", CORPUS / name
     output, code = run(
         [program, options.out / "fuzz" / name, *([known] if known.exists() else []),
          f"-runs={options.executions}", f"-max_total_time={options.seconds_each}", "-print_final_stats=1", "-timeout=20",
-         "-len_control=100",  # libFuzzer's own, which it leaves out where there is a mutator
+         "-len_control=100",  # libFuzzer's default, which it drops for mutators
          "-rss_limit_mb=4096", f"-artifact_prefix={options.out}/findings/{name}-",
          *([f"-dict={dictionary}"] if dictionary.exists() else [])],
         log, env={**os.environ, **MEMORY, "LACUNA_FUZZ_PARSER": name})
@@ -147,7 +148,7 @@ def fuzz(options):
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         done = list(pool.map(lambda name: fuzz_parser(name, folder / "fuzz", options), names))
     head = ["parser", "executions", "edges", "features"]
-    last = options.last.get("fuzz", {}).get("rows", [])[1:] if options.parser else []  # of those not asked for now
+    last = options.last.get("fuzz", {}).get("rows", [])[1:] if options.parser else []  # of other parsers
     rows = {row[0]: row for row in [*last, *(row for row, _ in done)]}
     return {"summary": f"libFuzzer, {sum(row[1] for row in rows.values())} executions",
             "rows": [head, *(rows[name] for name in sorted(rows))],
@@ -155,7 +156,8 @@ def fuzz(options):
 
 
 def counted(output):
-    """What hostile/run.py said: how often what was done, and what was wrong. Before that, renders speak."""
+    """From the output of hostile/run.py: what was done and how often, and what was wrong. Messages of renders come
+    first."""
     rows, wrong = [], []
     for line in output.splitlines():
         done = re.match(r" *(\d+)  (.+)", line)
@@ -180,20 +182,20 @@ def hostile(options):
 
 
 def compared(output):
-    """What differential/run.py said: its last line, and the finds."""
+    """From the output of differential/run.py: its last line, and the findings."""
     total = re.search(r"^\d+ scenes, \d+ comparisons$", output, re.M)
     return total[0] if total else "", re.findall(r"^(scene \d+, .+)$", output, re.M)
 
 
 def tried(output):
-    """What differential/pieces.py said: its last line, and the finds."""
+    """From the output of differential/pieces.py: its last line, and the findings."""
     total = re.search(r"^\d+ command lines, .*$", output, re.M)
     return total[0] if total else "", re.findall(r"^(line \d+: .+)$", output, re.M)
 
 
 def with_the_days_seeds(name, read, options, command):
-    """A script of differential/ and its arguments, of which `command` makes a list from the build folder. What `read` tells
-    of its output: its last line, and the finds."""
+    """Runs a script of differential/ with arguments, which `command` lists for a build folder. Returns what `read`
+    finds in the output: its last line, and the findings."""
     folder = build("release", options.out / f"{name}-build.log", "lacuna_tools")
     log = options.out / f"{name}.log"
     script, *arguments = command(folder)

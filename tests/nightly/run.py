@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Sanitizers, an old processor, fuzzers, faults, random scenes and command lines, quick studies and a long render, one
-after the other, and one page of what came out.
+after the other, and one page of the results.
 
     bash tests/nightly.sh                                       all of it: hours
     bash tests/nightly.sh --only fuzz --executions 20000        a part of it
@@ -28,7 +28,7 @@ import pages  # noqa: E402
 
 
 def run(name, options):
-    """What a part found; a part that cannot run has failed as well."""
+    """Runs a part and returns what it found; a part that cannot run has failed."""
     begin = time.monotonic()
     print(f"== {name}", file=sys.stderr, flush=True)
     try:

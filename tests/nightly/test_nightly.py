@@ -1,4 +1,4 @@
-"""What is read off the programs' outputs, and the page that is made of it."""
+"""Tests how the programs' outputs are read, and the page that is made of them."""
 
 import math
 import sys
@@ -46,7 +46,7 @@ class Outputs(unittest.TestCase):
 
 class LongRender(unittest.TestCase):
     def test_memory(self):
-        # 1, 2, 4, 8 iterations: one sum. 3, 5, 6, 9: two. What two cost more than one is no growth.
+        # 1, 2, 4, 8 iterations have one sum; 3, 5, 6, 9 have two. The memory of a second sum is no growth.
         flat = [(1, 100), (2, 100), (3, 150), (4, 100), (5, 150), (6, 150), (8, 100), (9, 150)]
         self.assertAlmostEqual(long_render.growth(flat), 1.0)
         self.assertAlmostEqual(long_render.growth([(n, m + 3 * (n > 4)) for n, m in flat]), 1.025)
@@ -72,7 +72,7 @@ class LongRender(unittest.TestCase):
         for falls in (0.5, 0.3):
             errors = [(n, 0.1 * n ** -falls * (1 - n / last) ** 0.5) for n in (80, 160, 320, 500)]
             self.assertAlmostEqual(long_render.slope(errors, last), -falls)
-            # What few iterations have is no matter.
+            # The errors of few iterations do not count.
             self.assertAlmostEqual(long_render.slope([(10, 0.001), *errors], last), -falls)
         self.assertTrue(math.isnan(long_render.slope([(10, 0.1)], 100)))
 

@@ -1,4 +1,4 @@
-"""What the tests of the Python package share; importing it ends with 77 where nothing is built."""
+"""Shared parts of the Python package's tests; importing it exits with 77 if the package is not built."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def program(*arguments) -> None:
 
 
 class InFolder(unittest.TestCase):
-    """Has a folder of its own, where the user's caches lie as well."""
+    """A test with a folder of its own, which also holds the user's caches."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="lacuna-python-"))

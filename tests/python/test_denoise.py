@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""python3 -m lacuna.denoise, against a program that stands in for oidnDenoise: it is not in Debian 12.
+"""python3 -m lacuna.denoise, with a stand-in for oidnDenoise, which is not in Debian 12.
 
   PYTHONPATH=build/python python3 tests/python/test_denoise.py
 """
@@ -15,7 +15,7 @@ from package import CORNELL, InFolder, program
 import lacuna
 import numpy as np
 
-# Checks what it is given as Open Image Denoise asks for it, and halves the picture.
+# Checks that its inputs are as Open Image Denoise wants them, and halves the picture.
 DOUBLE = """#!{python}
 import sys
 import lacuna

@@ -84,7 +84,7 @@ class Pixels(InFolder):
 
 
 def square(**material):
-    """Two by two, facing +Z, seen from so near that it fills the picture."""
+    """A square of two by two that faces +Z, seen from so near that it fills the picture."""
     scene = lacuna.Scene()
     scene.add_mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]],
                    material=scene.add_material(**material))
@@ -166,7 +166,7 @@ class Images(InFolder):
         before = rgb.copy(), depth.copy()
         del image
         gc.collect()
-        np.ones((64, 64, 3), np.float32)  # what would be put in their place
+        np.ones((64, 64, 3), np.float32)  # would reuse their memory
         np.testing.assert_array_equal(rgb, before[0])
         np.testing.assert_array_equal(depth, before[1])
 
@@ -235,7 +235,7 @@ class Errors(InFolder):
     def test_warnings_are_python_s(self):
         with self.assertWarnsRegex(lacuna.LacunaWarning, "(?i)light") as caught:
             small(square(), iterations=1)
-        self.assertEqual(Path(caught.filename).name, "package.py")  # who called render()
+        self.assertEqual(Path(caught.filename).name, "package.py")  # the caller of render()
 
     def test_methods_have_their_parameters(self):
         rows = {row["name"]: row for row in lacuna.methods()}
@@ -329,7 +329,7 @@ class Callbacks(InFolder):
             over.set()
             thread.join()
         self.assertGreaterEqual(image.statistics["seconds"], 0.4)
-        self.assertGreater(during, 20)  # of 500 on an idle machine, one where the lock is kept
+        self.assertGreater(during, 20)  # about 500 on an idle machine, one if the lock is kept
 
 
 INTERRUPTED = """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""lacuna.study: what lacuna-study finds, as dicts and arrays; its errors and interrupts.
+"""lacuna.study: the results of lacuna-study as dicts and arrays; its errors and interrupts.
 
   PYTHONPATH=build/python python3 tests/python/test_study.py
 """
@@ -68,7 +68,7 @@ class Study(InFolder):
         self.assertGreater(results["costs"]["box"]["pt"]["rays"]["eye"], 0)
         self.assertTrue(all(len(row) == len(table["columns"])
                             for table in results["tables"] for row in table["rows"]))
-        # The same again is read, not rendered; --quick has one seed of them.
+        # The same study again is read, not rendered; --quick has one of its seeds.
         changed = os.stat(run["image"]).st_mtime_ns
         quick = lacuna.study(self.folder / "out" / "study.json", "out", quick=True, threads=2)
         self.assertEqual([r["seed"] for r in quick["runs"]], [1, 1])

@@ -58,7 +58,7 @@ TEST(SurfacePoint, AgainstExactTransforms) {
                 // Corners are rounded too, which tilts small faces more.
                 const double smallest = t.name == "tiny" || t.name == "nearly flat" ? 6e-5 : 0.1;
                 ASSERT_LT(length(Vec3d(hit->ng) - e.ng), 4e-6 / smallest * 0.6);
-                if (smallest < 0.1) continue;  // the hit's barycentrics are too inexact for the rest
+                if (smallest < 0.1) continue;  // barycentrics are too inexact for the rest
                 ASSERT_LT(length(Vec3d(hit->ns) - e.ns), 1e-3);
                 ASSERT_NEAR(hit->uv.x, e.uv.x, 1e-3);
                 ASSERT_NEAR(hit->uv.y, e.uv.y, 1e-3);
