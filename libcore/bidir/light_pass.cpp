@@ -9,18 +9,32 @@ namespace lacuna {
 
 namespace {
 constexpr std::uint64_t kPathsPerTask = 1024;
-constexpr std::uint64_t kPathsPerBatch = 1 << 18;  // between two additions of splats: bounds memory
+// Of a batch, between two additions to pool and picture. What few tasks leave is still in the cache
+// then, and memory that the next batch can have.
+constexpr std::uint64_t kTasksPerThread = 16;
+constexpr std::uint64_t kMostTasks = 256;
+
+std::size_t pooledVertices(std::span<const TaskResult> results) {
+    std::size_t sum = 0;
+    for (const TaskResult& r : results) sum += r.pooled.size();
+    return sum;
+}
 }  // namespace
 
-bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const {
+bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) {
     pool.reset(purpose.pooled, iteration.counts.merges);
     const std::uint64_t total = std::max(purpose.pooled, purpose.splats);
-    for (std::uint64_t begin = 0; begin < total; begin += kPathsPerBatch) {
-        const std::uint64_t end = std::min(total, begin + kPathsPerBatch);
+    const std::uint64_t batch =
+        kPathsPerTask *
+        std::min(kMostTasks, kTasksPerThread * std::uint64_t(setup_.threads.threads()));
+    for (std::uint64_t begin = 0; begin < total; begin += batch) {
+        const std::uint64_t end = std::min(total, begin + batch);
         std::vector<TaskResult> results((end - begin + kPathsPerTask - 1) / kPathsPerTask);
+        memory_.resize(std::max(memory_.size(), results.size()));
         setup_.threads.forEach(results.size(), [&](std::size_t task) {
             if (iteration.cancel) return;
             delivery_.begin(results[task]);
+            results[task].pooled.swap(memory_[task]);
             Worker& worker = workers_.own();
             const std::uint64_t first = begin + task * kPathsPerTask;
             const std::uint64_t last = std::min(end, first + kPathsPerTask);
@@ -34,8 +48,15 @@ bool LightPass::run(const Iteration& iteration, const Purpose& purpose, LightPoo
         });
         if (iteration.cancel) return false;
 
-        for (const TaskResult& r : results) {
+        if (begin == 0 && purpose.pooled > 0) {
+            const double traced = double(std::min(end, purpose.pooled));
+            pool.reserve(double(pooledVertices(results)) * double(purpose.pooled) / traced);
+        }
+        for (std::size_t task = 0; task < results.size(); ++task) {
+            TaskResult& r = results[task];
             pool.add(r.pooled, setup_.settings.limits.maxDepth, r.pooledLengths);
+            r.pooled.clear();
+            r.pooled.swap(memory_[task]);
         }
         delivery_.collect(results, iteration.statistics);
         delivery_.addSplats(results, iteration);

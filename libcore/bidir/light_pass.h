@@ -24,7 +24,7 @@ class LightPass {
 
     /// Replaces the pool, and splats into the iteration's pixels. Leaves out the subpaths that pixels trace for
     /// themselves; pooled ones the pixels take from the pool. False if cancelled.
-    bool run(const Iteration& iteration, const Purpose& purpose, LightPool& pool) const;
+    bool run(const Iteration& iteration, const Purpose& purpose, LightPool& pool);
 
     /// Traces subpaths into worker.light, at most kTile of them, labels them where they are kept,
     /// and uses each for its purpose.
@@ -40,6 +40,8 @@ class LightPass {
     const RenderSetup& setup_;
     Delivery& delivery_;
     const Workers& workers_;
+    /// By task of a batch: memory for vertices. It is kept, because new memory costs more than tracing.
+    std::vector<std::vector<PathVertex>> memory_;
 };
 
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "libcore/base/large_pages.h"
 #include "libcore/bidir/merging.h"
 #include "libcore/bidir/path.h"
 
@@ -34,6 +35,15 @@ class LightPool {
         photons_.clear();
         subpaths_ = subpaths;
         merges_ = merges;
+    }
+    /// Makes room for `expected` vertices, and some more: growing would copy all of them several
+    /// times over, and later iterations, which have about as many, need no new memory.
+    void reserve(double expected) {
+        if (expected < double(vertices_.capacity())) return;
+        const auto all = std::size_t(1.1 * expected);
+        vertices_.reserve(all);
+        connectable_.reserve(all);
+        if (merges_ != Merges::Nowhere) photons_.reserve(all);
     }
     /// Adds whole subpaths, one after the other. With maxDepth edges, y_{s-1} can be connected
     /// while s + t - 1 <= maxDepth for t = 2. `lengths` are the numbers of vertices of all
@@ -87,7 +97,7 @@ class LightPool {
     }
 
   private:
-    std::vector<PathVertex> vertices_;
+    std::vector<PathVertex, LargePages<PathVertex>> vertices_;
     std::vector<Entry> connectable_;
     std::vector<std::size_t> begins_;  // of subpaths in vertices_, where lengths were given
     std::vector<std::uint32_t> photons_;
