@@ -1,12 +1,17 @@
-"""Compares a point light behind glass, seen through glass, with lamps that shrink to it: writes a page of tests/results.
+"""What only specular chains make of lights without a size, beside what other techniques make: writes a page of tests/results.
 
     python3 tests/calibration/glass_limit.py build/render/lacuna-render DIRECTORY PAGE
 
-A room of three metres, half of it behind a pane of solid glass. There are a lamp, a ball of glass below it, and a block. The
-camera is in front of the pane, so that no edge of light through the ball can be joined. `pt` and `bpt` render the lamp as a
-point, `bpt` also as a ball of the same power, with and without next event through glass. The noise is the variance of a
-pixel times the seconds of rendering, for all pixels and without the noisiest hundredth. DIRECTORY keeps scenes and pictures.
-Needs NumPy.
+First a room of three metres, half of it behind a pane of solid glass. There are a lamp, a ball of glass below it, and a block.
+The camera is in front of the pane, so that no edge of light through the ball can be joined. `pt` and `bpt` render the lamp as
+a point, `bpt` also as a ball of the same power, with and without next event through glass.
+
+Then a torus in a block of glass under a sun, which fills the picture. `pt` and `bpt` find the sun by chains. `ppm` makes the
+same picture with photons within ever smaller radii. `pt` without chains makes it by eye subpaths that hit a lamp of the same
+irradiance in the sun's place.
+
+The noise is the variance of a pixel times the seconds of rendering, for all pixels and without the noisiest hundredth.
+DIRECTORY keeps scenes and pictures. Needs NumPy.
 """
 
 import datetime
@@ -27,18 +32,33 @@ sys.path[:0] = [str(ROOT / "scenes"), str(ROOT / "tests")]
 import pages  # noqa: E402
 from generator import materials as m  # noqa: E402
 from generator.glb import SceneFile  # noqa: E402
-from generator.mesh import box, sphere  # noqa: E402
-from generator.vector import about_y  # noqa: E402
+from generator.mesh import box, quad, sphere, torus  # noqa: E402
+from generator.vector import about_x, about_y, towards  # noqa: E402
+
+SEEDS = (1, 2, 3, 4)
+OPTIONS_OF_HITS = ["--effect", "chains=off", "--effect", "refractions=off"]
 
 INTENSITY = 3.0  # W/sr
 ROOM = 3.0  # m
 LAMP = (0.55, 2.6, -0.7)  # out of sight, as the ball of glass below it is: no lens sees a point
 RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}  # of the ball, as a share of the room
-SEEDS = (1, 2, 3, 4)
-ITERATIONS = 48
-# The rows that render the point lamp, and those that render balls:
-OF_POINTS = {"pt": ["--method", "pt"], "bpt": ["--method", "bpt"]}
-OF_BALLS = {"bpt": ["--method", "bpt"], "bpt, refractions=off": ["--method", "bpt", "--effect", "refractions=off"]}
+# The rows that render the point lamp, and those that render balls, with how many iterations:
+OF_POINTS = {"pt": (48, ["--method", "pt"]), "bpt": (48, ["--method", "bpt"])}
+OF_BALLS = {"bpt": (480, ["--method", "bpt"]), "bpt, refractions=off": (480, ["--method", "bpt", "--effect", "refractions=off"])}
+
+IRRADIANCE = 3.0  # W/m^2, of the sun on what faces it
+SUN = (-0.55, -1.0, -0.45)  # the way of its light
+FAR = 30.0  # m, to the lamp in the sun's place
+ANGLES = {"four degrees": 4.0, "two degrees": 2.0}  # how wide that lamp is
+
+
+def of_photons(radius):
+    return 96, ["--method", "ppm", *OPTIONS_OF_HITS, "--set", f"radius={radius}", "--set", "photons=400000"]
+
+
+OF_SUN = {"pt": (96, ["--method", "pt"]), "bpt": (96, ["--method", "bpt"]), "ppm, 8 mm": of_photons(0.008),
+          "ppm, 4 mm": of_photons(0.004), "ppm, 2 mm": of_photons(0.002)}
+OF_WIDE_SUNS = {"pt, refractions=off, chains=off": (1536, ["--method", "pt", *OPTIONS_OF_HITS])}
 
 
 def area(mesh):
@@ -47,8 +67,8 @@ def area(mesh):
     return numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2
 
 
-def scene(radius):
-    """The scene; its lamp is a point if `radius` is 0."""
+def room(radius):
+    """The room; the lamp is a point where `radius` is 0."""
     s = SceneFile("glass-limit", "Lamp, ball of glass and block behind a pane of solid glass", 160, 90, 8)
     wall = s.material(m.lambert("wall", (0.6, 0.6, 0.55)))
     blue = s.material(m.lambert("blue", (0.2, 0.3, 0.6)))
@@ -68,8 +88,28 @@ def scene(radius):
     return s.glb()
 
 
-def render(program, file, options, seed, target):
-    subprocess.run([str(part) for part in [program, file, *options, "--iterations", ITERATIONS, "--seed", seed, "-o", target,
+def block(degrees):
+    """Torus in a block; the sun is so many degrees wide."""
+    s = SceneFile("torus-limit", "Torus in a block of solid glass under a sun", 160, 90, 8)
+    floor = s.material(m.lambert("floor", (0.62, 0.60, 0.56)))
+    red = s.material(m.lambert("red", (0.75, 0.28, 0.16)))
+    s.add("floor", quad((-3, 0, 3), (6, 0, 0), (0, 0, -6)), floor)
+    s.add("block", box((-0.45, -0.3, -0.45), (0.45, 0.3, 0.45)), s.material(m.glass("glass")), at=(0, 0.3005, 0), turned=about_y(24))
+    s.add("torus", torus(0.2, 0.075, 24, 12), red, at=(0, 0.31, 0), turned=about_x(62))
+    if degrees:
+        half = FAR * math.tan(math.radians(degrees / 2))
+        radiance = IRRADIANCE * FAR ** 2 / (2 * half) ** 2
+        away = numpy.array(SUN) / numpy.linalg.norm(SUN) * -FAR
+        s.add("lamp", quad((-half, -half, 0), (0, 2 * half, 0), (2 * half, 0, 0)),
+              s.material(m.emitter("lamp", (radiance, radiance, radiance))), at=tuple(away), turned=towards(SUN))
+    else:
+        s.light("sun", "directional", IRRADIANCE, (1, 1, 1), turned=towards(SUN))
+    s.camera((0.5, 1.25, 2.3), (0.0, 0.3, 0.0), 8.0)
+    return s.glb()
+
+
+def render(program, file, options, iterations, seed, target):
+    subprocess.run([str(part) for part in [program, file, *options, "--iterations", iterations, "--seed", seed, "-o", target,
                                            "--json", target.with_suffix(".json"), "--quiet"]],
                    check=True, stdout=subprocess.DEVNULL)
     told = json.loads(target.with_suffix(".json").read_text())
@@ -77,12 +117,13 @@ def render(program, file, options, seed, target):
 
 
 def relative_variance(found, mean):
-    """The variance of each pixel over the square of the picture's mean. (A pixel's own mean is too noisy.)"""
+    """Of each pixel, over the square of the picture's mean: what a pixel shows itself is as noisy."""
     return (numpy.var(found, axis=0, ddof=1) / mean.mean() ** 2).mean(axis=-1)
 
 
-def measure(program, file, options, target):
-    found, seconds = zip(*(render(program, file, options, seed, target) for seed in SEEDS))
+def measure(program, file, row, target):
+    iterations, options = row
+    found, seconds = zip(*(render(program, file, options, iterations, seed, target) for seed in SEEDS))
     means = [picture.mean() for picture in found]
     noise = numpy.sort(relative_variance(found, numpy.mean(found, axis=0)).ravel())
     spent = statistics.median(seconds)
@@ -90,33 +131,47 @@ def measure(program, file, options, target):
             "noise": noise.mean() * spent, "most": noise[:-len(noise) // 100].mean() * spent}
 
 
-def line(lamp, row, found, limit):
-    times = [found[part] / limit[part] for part in ("noise", "most")]
-    return (f"| {lamp} | {row} | {found['mean']:.5f} | {found['error']:.5f} | {found['seconds']:.1f} | {found['noise']:.3g} "
-            f"| {times[0]:.3g} | {times[1]:.3g} |")
+def line(lamp, name, iterations, found, first):
+    off = (found["mean"] - first["mean"]) / first["mean"]
+    times = [found[part] / first[part] for part in ("noise", "most")]
+    return [lamp, name, iterations, f"{found['mean']:.5f}", f"{100 * found['error'] / found['mean']:.2g} %", f"{100 * off:+.2f} %",
+            f"{found['seconds']:.1f}", f"{times[0]:.3g}", f"{times[1]:.3g}"]
+
+
+def rows(program, directory, make, lamps):
+    """Of a table: what each row makes of each lamp; `lamps`: by name, what `make` takes, and the rows."""
+    lines, first = [], None
+    for lamp, (size, of_lamp) in lamps.items():
+        file = directory / f"{make.__name__}-{size}.glb"
+        file.write_bytes(make(size))
+        for name, row in of_lamp.items():
+            found = measure(program, file, row, directory / "picture.pfm")
+            first = first or found
+            lines.append(line(lamp, name, row[0], found, first))
+            print(*lines[-1], sep=" | ", flush=True)
+    return lines
 
 
 def main():
     program, directory, page = sys.argv[1:]
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    lamps = [("a point", 0, OF_POINTS)] + [(name, radius, OF_BALLS) for name, radius in RADII.items()]
-    lines, limit = [], None
-    for lamp, radius, rows in lamps:
-        file = directory / f"{lamp.replace(' ', '-')}.glb"
-        file.write_bytes(scene(radius))
-        for row, options in rows.items():
-            found = measure(program, file, options, directory / "picture.pfm")
-            limit = limit or found
-            lines.append(line(lamp, row, found, limit))
-            print(lines[-1], flush=True)
+    load = pages.load()
+    lamps = {"a point": (0, OF_POINTS)} | {name: (radius, OF_BALLS) for name, radius in RADII.items()}
+    suns = {"a sun": (0, OF_SUN)} | {name: (angle, OF_WIDE_SUNS) for name, angle in ANGLES.items()}
+    head = ["lamp", "row", "iterations", "mean", "standard error", "against the first line", "seconds", "noise, times", "without the worst"]
     pathlib.Path(page).write_text("\n".join([
-        "# A point light behind glass, seen through glass", "",
-        f"By `python3 tests/calibration/glass_limit.py`, {datetime.date.today()}, commit {pages.commit()}, on {pages.machine()}: {ITERATIONS} iterations,",
-        f"160 x 90 pixels, {len(SEEDS)} seeds. The lamp is a point, or a ball of the same power with a radius of so much of the room. Mean: of all",
-        "pixels, with its standard error. Noise: the variance of a pixel over the squared mean, times the seconds; then over that of",
-        "the first line, and the same without the hundredth of the pixels that has the most. No figure of a paper.", "",
-        "| lamp | row | mean | error | seconds | noise | times | without the worst |", "|---" * 8 + "|", *lines, ""]))
+        "# Lights without a size behind glass, seen through glass", "",
+        *pages.origin("python3 tests/calibration/glass_limit.py build/render/lacuna-render DIRECTORY PAGE", load),
+        f"160 x 90 pixels, {len(SEEDS)} seeds. Mean: of all pixels. Noise: the variance of a pixel over the squared mean, times the seconds,",
+        "over that of the first line; then the same without the hundredth of the pixels that has the most. No figure of a paper.", "",
+        "## A point light and a ball of glass behind a pane", "",
+        "The lamp is a point, or a ball of the same power with a radius of so much of the room.", "",
+        *pages.table([head, *rows(program, directory, room, lamps)]),
+        "## A torus in a block of glass", "",
+        "The sun is a direction, or a square lamp of the same irradiance that is so wide. The radii of `ppm` are those of the first",
+        "iteration; it blurs, and loses light at edges, in proportion to them.", "",
+        *pages.table([head, *rows(program, directory, block, suns)])]))
 
 
 if __name__ == "__main__":
