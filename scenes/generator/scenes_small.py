@@ -60,6 +60,30 @@ def ring_caustic() -> SceneFile:
     return s
 
 
+def mirror_caustic() -> SceneFile:
+    """Cornell box in the manner of SmallVCM's with both small balls and the point light: the caustic of the glass ball is
+    seen on the floor and again in the mirror ball, where no light path can be joined to the camera."""
+    s = SceneFile("mirror-caustic", "Box with a glossy floor, a mirror ball, a glass ball and a point light", 512, 512)
+    white = s.material(m.lambert("white"))
+    red = s.material(m.lambert("red", (0.60, 0.06, 0.05)))
+    blue = s.material(m.lambert("blue", (0.08, 0.12, 0.55)))
+    floor = s.material(m.coated("floor", (0.45, 0.43, 0.40), 0.25))
+    mirror = s.material(m.metal("mirror", (0.95, 0.95, 0.95), 0.0))
+    glass = s.material(m.glass("glass"))
+    w, h, d = 1.28, 2.56, 1.28
+    s.add("floor", quad((-w, 0, d), (2 * w, 0, 0), (0, 0, -2 * d)), floor)
+    s.add("shell", merged([quad((-w, h, -d), (2 * w, 0, 0), (0, 0, 2 * d)),
+                           quad((-w, 0, -d), (2 * w, 0, 0), (0, h, 0))]), white)
+    s.add("left wall", quad((-w, 0, d), (0, 0, -2 * d), (0, h, 0)), red)
+    s.add("right wall", quad((w, 0, -d), (0, 0, 2 * d), (0, h, 0)), blue)
+    ball = sphere(0.5, 20, 40)
+    s.add("mirror ball", ball, mirror, at=(-0.58, 0.5005, -0.42))
+    s.add("glass ball", ball, glass, at=(0.52, 0.5005, 0.36))
+    s.light("light", "point", 30.0, (1.0, 0.96, 0.88), at=(0.1, 2.3, -0.1))
+    s.camera((0.0, 1.28, 5.8), (0.0, 1.22, 0.0), 31.0)
+    return s
+
+
 def torus_in_glass() -> SceneFile:
     """The torus floats inside the block, so that no edge of L S D S E ends at a point that light or lens can be joined
     to. A sun cannot be hit either: only specular chains and merging show the torus lit directly."""
@@ -153,5 +177,5 @@ def light_mesh_instanced() -> SceneFile:
     return s
 
 
-SCENES = [cornell_box, furnace, ring_caustic, torus_in_glass, light_quad, light_sphere, light_two_sided, light_point, light_spot,
+SCENES = [cornell_box, furnace, ring_caustic, mirror_caustic, torus_in_glass, light_quad, light_sphere, light_two_sided, light_point, light_spot,
           light_directional, light_environment, light_mesh_instanced]
