@@ -67,8 +67,8 @@ TEST(GlassEffort, ofChainsIsLittleWhereFewPlacesGetAnyOfIt) {
     EXPECT_GE(effort, 1.0 / 8);
 }
 
-/// Rows that splat make the caustics that the lens sees directly. They search for fewer chains, only for caustics seen
-/// in mirrors.
+/// Rows that splat make the caustics that the lens sees directly. Their chains are those of caustics seen in mirrors
+/// alone, so what the search is worth is another figure.
 TEST(GlassEffort, ofChainsIsAnotherForRowsThatSplat) {
     const auto scene = floorUnderALamp(false, true, LampKind::Point).build();
     const auto of = [&](const char* method) { return effortIn(*scene, 2, {}, method).chains; };

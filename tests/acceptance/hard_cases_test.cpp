@@ -211,7 +211,6 @@ TEST_P(HardCases, cropIsThatPartOfTheWholePicture) {
     shot.crop = {3, 11, 2, 9};
     shot.seed = 2;
     const Picture part = render(*scene, row(), shot);
-    Picture cut(shot.crop);
     // Means and variances of the same pixels of both pictures.
     const Image image = whole.pixels.image(), variance = whole.pixels.variance();
     const Image partImage = part.pixels.image(), partVariance = part.pixels.variance();

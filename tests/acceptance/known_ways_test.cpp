@@ -148,7 +148,7 @@ TEST(KnownWays, countTheSameFromBothSides) {
 }
 
 /// Of the light that walks bring from the lamp by reflections, the technique could make most.
-TEST(KnownWays, areNearlyAll) {
+TEST(KnownWays, areMost) {
     const auto scene = mirrorAndBlock(0.3f);
     Shot shot = quickShot(3000);
     shot.maxDepth = 8;

@@ -186,7 +186,7 @@ TEST(Merging, theOtherSideOfAThinSheetStaysDark) {
 }
 
 /// The radius of an iteration depends only on its number in the render.
-TEST(Merging, theRadiusOfAnIterationIsTheSameInEveryBlock) {
+TEST(Merging, theRadiusDependsOnTheIterationAlone) {
     const auto scene = ballCaustic().build();
     const MethodRow row = rowNamed("vcm");
     std::vector<double> samples;

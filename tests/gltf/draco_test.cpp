@@ -40,7 +40,7 @@ TEST(Draco, PredictedTextureCoordinatesAreNear) {
     expectSameTriangles(plain, b.load(), 1.0f / 4095);
 }
 
-TEST(Draco, NoFourBytesCostSeconds) {
+TEST(Draco, AnyFourBytesLoadOrAreRefused) {
     // Any four bytes may be a count: of triangles, symbols or flags. Here they become 2^31 - 1.
     const TempDir dir;
     GridBuilder b(2, true);

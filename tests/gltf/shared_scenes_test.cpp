@@ -15,7 +15,7 @@ fs::path sharedScenes() {
     return fs::path(__FILE__).parent_path() / "../../../shared/scenes";
 }
 
-TEST(SharedScenes, LoadQuickly) {
+TEST(SharedScenes, AreWhatTheirReadmeSays) {
     const fs::path folder = sharedScenes();
     if (!fs::is_directory(folder)) {
         GTEST_SKIP() << "no scenes in " << folder << " (set LACUNA_SHARED_SCENES)";

@@ -132,7 +132,7 @@ TEST(CombinedPmf, tiesGoToTheFirstAndTargetsWithoutWeightAreLeftOut) {
 }
 
 /// Targets without a common outcome: the sum of maxima is their number.
-TEST(CombinedPmf, maximaAreBetweenOneAndTheNumberOfTargets) {
+TEST(CombinedPmf, maximaOfDisjointTargetsAreTheirNumber) {
     EXPECT_DOUBLE_EQ(combined({{1, 0, 0}, {0, 7, 0}, {0, 0, 1e-300}}).maxima(), 3.0);
 }
 

@@ -126,7 +126,7 @@ TEST(LightTree, threadsChangeNothing) {
 }
 
 /// A near cluster is cut more finely than one of the same power far away.
-TEST(LightTree, cutsAreFineWhereLightIsNearAndBright) {
+TEST(LightTree, cutsAreFineWhereLightIsNear) {
     const ThreadPool threads(1);
     LightPool pool;
     pool.reset(200);

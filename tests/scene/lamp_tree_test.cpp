@@ -388,7 +388,6 @@ TEST(LampTree, lightsInOnePlaceAndWithoutPowerDoNoHarm) {
 
 TEST(LampTree, powersOfTwoInSizeChangeNoBit) {
     SomeLights lamps = allKinds(21);
-    const Lights lights = lamps.lights();
     for (const float scale : {0x1p-20f, 0x1p30f}) {
         SomeLights other = allKinds(21);
         for (EmissiveTriangle& t : other.triangles) {

@@ -80,7 +80,6 @@ TEST(Emission, ProfileAndDensity) {
         constexpr int kSamples = 50'000;
         std::vector<std::uint64_t> counts(bins.size() + 1);
         int none = 0;
-        Rgb sent{};
         for (unsigned i = 0; i < kSamples; ++i) {
             Rng rng(2, 0, StreamKind::User, i);
             const auto ray = lights.sampleEmission(point, rng);
