@@ -44,7 +44,7 @@ LAMP = (0.55, 2.6, -0.7)  # out of sight, as the ball of glass below it is: no l
 RADII = {"a hundredth": ROOM / 100, "a thirtieth": ROOM / 30}  # of the ball, as a share of the room
 # The rows that render the point lamp, and those that render balls, with how many iterations:
 OF_POINTS = {"pt": (48, ["--method", "pt"]), "bpt": (48, ["--method", "bpt"])}
-OF_BALLS = {"bpt": (480, ["--method", "bpt"]), "bpt, refractions=off": (480, ["--method", "bpt", "--effect", "refractions=off"])}
+OF_BALLS = {"bpt": (192, ["--method", "bpt"]), "bpt, refractions=off": (192, ["--method", "bpt", "--effect", "refractions=off"])}
 
 IRRADIANCE = 3.0  # W/m^2, of the sun on what faces it
 SUN = (-0.55, -1.0, -0.45)  # the way of its light
@@ -53,12 +53,12 @@ ANGLES = {"four degrees": 4.0, "two degrees": 2.0}  # how wide that lamp is
 
 
 def of_photons(radius):
-    return 96, ["--method", "ppm", *OPTIONS_OF_HITS, "--set", f"radius={radius}", "--set", "photons=400000"]
+    return 48, ["--method", "ppm", *OPTIONS_OF_HITS, "--set", f"radius={radius}", "--set", "photons=400000"]
 
 
 OF_SUN = {"pt": (96, ["--method", "pt"]), "bpt": (96, ["--method", "bpt"]), "ppm, 8 mm": of_photons(0.008),
           "ppm, 4 mm": of_photons(0.004), "ppm, 2 mm": of_photons(0.002)}
-OF_WIDE_SUNS = {"pt, refractions=off, chains=off": (1536, ["--method", "pt", *OPTIONS_OF_HITS])}
+OF_WIDE_SUNS = {"pt, refractions=off, chains=off": (1024, ["--method", "pt", *OPTIONS_OF_HITS])}
 
 
 def area(mesh):
