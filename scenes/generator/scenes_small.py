@@ -79,7 +79,7 @@ def mirror_caustic() -> SceneFile:
     ball = sphere(0.5, 20, 40)
     s.add("mirror ball", ball, mirror, at=(-0.58, 0.5005, -0.42))
     s.add("glass ball", ball, glass, at=(0.52, 0.5005, 0.36))
-    s.light("light", "point", 30.0, (1.0, 0.96, 0.88), at=(0.1, 2.3, -0.1))
+    s.light("light", "point", 24.0, (1.0, 0.96, 0.88), at=(1.0, 1.8, 0.9))
     s.camera((0.0, 1.28, 5.8), (0.0, 1.22, 0.0), 31.0)
     return s
 

@@ -92,6 +92,43 @@ TEST(Merging, photonMappingLooksIntoPolishedMetal) {
     EXPECT_NEAR(photons.mean(), exact.mean(), 4.5 * error + 0.02 * exact.mean());
 }
 
+/// What SmallVCM shows: of a caustic under a point light, path tracing makes nothing, bidirectional path tracing what is
+/// seen directly but nothing of what is seen in a mirror, and merging both. Specular chains make both without merging.
+TEST(MergingSlow, causticsInMirrorsNeedMergesOrChains) {
+    for (const bool reflected : {false, true}) {
+        SCOPED_TRACE(reflected ? "in a mirror" : "directly");
+        SceneBuilder b;
+        b.d.materials[0] = matte(Rgb(0.6f));
+        b.add(quad({-1.5f, 0, 1.5f}, {3, 0, 0}, {0, 0, -3}));
+        b.add(sphere({0, 0.55f, 0}, 0.4f, 24, b.add(glass()), true));
+        b.add(quad({-1.5f, 0, -1.4f}, {3, 0, 0}, {0, 2, 0}, b.add(mirror())));
+        b.add(pointLight({0, 2.2, 0}, Rgb(2.0f)));
+        // The caustic is around the origin; its image is as far behind the mirror.
+        b.add(lookAt({1.2, 0.35, 0}, {0, 0, reflected ? -2.8 : 0.0}, 8));
+        const auto scene = b.build();
+        const auto picture = [&](const char* name, int iterations, bool chains) {
+            Shot shot = quickShot(iterations);
+            shot.maxDepth = 5;
+            shot.radius = 0.03;  // a tenth of what the picture shows
+            if (name == std::string("ppm")) shot.settings = {"photons=20000"};
+            MethodRow row = rowNamed(name);
+            if (!chains) row.techniques.chains = false;
+            return render(*scene, row, shot);
+        };
+        const Picture merged = picture("ppm", 200, false);
+        EXPECT_LT(picture("pt", 20, false).mean(), 0.5 * merged.mean());
+        if (reflected) {
+            EXPECT_LT(picture("bpt", 20, false).mean(), 0.5 * merged.mean());
+        } else {
+            expectSame(picture("bpt", 2000, false), merged, "bpt without chains", Judge::MeanOnly);
+        }
+        expectSame(picture("vcm", 2000, false), merged, "vcm", Judge::MeanOnly);
+        for (const char* row : {"pt", "bpt"}) {
+            expectSame(picture(row, 1000, true), merged, row, Judge::MeanOnly);
+        }
+    }
+}
+
 /// Rows that merge on demand make the same light as hits of a lamp with a size.
 TEST(Merging, onDemandMeetsPathTracingUnderGlass) {
     SceneBuilder b = underGlass();
