@@ -53,14 +53,12 @@ std::string methodHelp(const MethodRow& row) {
     if (t.connects && t.chains) {
         text +=
             "\n  chains          mirrors and smooth glass between a light without a size and an "
-            "eye "
-            "vertex, where nothing else joins the path";
+            "eye vertex, where nothing else joins the path";
     }
     if (t.hits && t.connects && t.refractions) {
         text +=
             "\n  refractions     smooth or nearly smooth glass between a lamp or the sky and an "
-            "eye "
-            "vertex, and mirrors where nothing else joins the path";
+            "eye vertex, and mirrors where nothing else joins the path";
     }
     const Merges merges = row.create(resolve(row, {}))->merging().where;
     if (merges != Merges::Nowhere) {

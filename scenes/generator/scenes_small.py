@@ -177,5 +177,5 @@ def light_mesh_instanced() -> SceneFile:
     return s
 
 
-SCENES = [cornell_box, furnace, ring_caustic, mirror_caustic, torus_in_glass, light_quad, light_sphere, light_two_sided, light_point, light_spot,
-          light_directional, light_environment, light_mesh_instanced]
+SCENES = [cornell_box, furnace, ring_caustic, mirror_caustic, torus_in_glass, light_quad, light_sphere, light_two_sided,
+          light_point, light_spot, light_directional, light_environment, light_mesh_instanced]

@@ -109,7 +109,7 @@ TEST(MergingSlow, causticsInMirrorsNeedMergesOrChains) {
         const auto picture = [&](const char* name, int iterations, bool chains) {
             Shot shot = quickShot(iterations);
             shot.maxDepth = 5;
-            shot.radius = 0.03;  // a tenth of what the picture shows
+            shot.radius = 0.03;  // the caustic is larger
             if (name == std::string("ppm")) shot.settings = {"photons=20000"};
             MethodRow row = rowNamed(name);
             if (!chains) row.techniques.chains = false;

@@ -7,8 +7,8 @@ The camera is in front of the pane, so that no edge of light through the ball ca
 a point, `bpt` also as a ball of the same power, with and without next event through glass.
 
 Then a torus in a block of glass under a sun, which fills the picture. `pt` and `bpt` find the sun by chains. `ppm` makes the
-same picture with photons within ever smaller radii. `pt` without chains makes it by eye subpaths that hit a lamp of the same
-irradiance in the sun's place.
+same picture with photons within ever smaller radii. `pt` without chains makes it by eye subpaths that run into a sky with a
+bright disk of the same irradiance.
 
 The noise is the variance of a pixel times the seconds of rendering, for all pixels and without the noisiest hundredth.
 DIRECTORY keeps scenes and pictures. Needs NumPy.
@@ -30,13 +30,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scenes"), str(ROOT / "tests")]
 
 import pages  # noqa: E402
-from generator import materials as m  # noqa: E402
+from generator import materials as m, pictures as painted  # noqa: E402
 from generator.glb import SceneFile  # noqa: E402
 from generator.mesh import box, quad, sphere, torus  # noqa: E402
 from generator.vector import about_x, about_y, towards  # noqa: E402
 
 SEEDS = (1, 2, 3, 4)
-OPTIONS_OF_HITS = ["--effect", "chains=off", "--effect", "refractions=off"]
+WITHOUT_CHAINS = ["--effect", "chains=off", "--effect", "refractions=off"]
 
 INTENSITY = 3.0  # W/sr
 ROOM = 3.0  # m
@@ -48,17 +48,17 @@ OF_BALLS = {"bpt": (192, ["--method", "bpt"]), "bpt, refractions=off": (192, ["-
 
 IRRADIANCE = 3.0  # W/m^2, of the sun on what faces it
 SUN = (-0.55, -1.0, -0.45)  # the way of its light
-FAR = 30.0  # m, to the lamp in the sun's place
-ANGLES = {"four degrees": 4.0, "two degrees": 2.0}  # how wide that lamp is
+ANGLES = {"four degrees": 4.0, "two degrees": 2.0}  # how wide the disk in its place is
+WIDTH, HEIGHT = 1440, 720  # pixels of the sky, a quarter of a degree each
 
 
 def of_photons(radius):
-    return 48, ["--method", "ppm", *OPTIONS_OF_HITS, "--set", f"radius={radius}", "--set", "photons=400000"]
+    return 48, ["--method", "ppm", *WITHOUT_CHAINS, "--set", f"radius={radius}", "--set", "photons=400000"]
 
 
 OF_SUN = {"pt": (96, ["--method", "pt"]), "bpt": (96, ["--method", "bpt"]), "ppm, 8 mm": of_photons(0.008),
           "ppm, 4 mm": of_photons(0.004), "ppm, 2 mm": of_photons(0.002)}
-OF_WIDE_SUNS = {"pt, refractions=off, chains=off": (1024, ["--method", "pt", *OPTIONS_OF_HITS])}
+OF_WIDE_SUNS = {"pt, refractions=off, chains=off": (1024, ["--method", "pt", *WITHOUT_CHAINS])}
 
 
 def area(mesh):
@@ -88,6 +88,35 @@ def room(radius):
     return s.glb()
 
 
+def cosine_to_sun(direction):
+    """`direction`: unit, x, y, z along the first axis."""
+    return -numpy.tensordot(SUN, direction, 1) / numpy.linalg.norm(SUN)
+
+
+def rim(degrees):
+    """cosine_to_sun at the rim of a disk that is so wide."""
+    return math.cos(math.radians(degrees / 2))
+
+
+def sky_of(degrees):
+    return f"disk-{degrees}.hdr"
+
+
+def paint_sky(degrees):
+    """The disk has radiance 1, the rest is black."""
+    return painted.hdr(WIDTH, HEIGHT, lambda direction: [float(cosine_to_sun(direction) > rim(degrees))] * 3)
+
+
+def irradiance_of(degrees):
+    """On a surface that faces the disk, summed up over the sky's pixels."""
+    polar = math.pi * (numpy.arange(HEIGHT)[:, None] + 0.5) / HEIGHT
+    turn = 2 * math.pi * ((numpy.arange(WIDTH) + 0.5) / WIDTH - 0.5)
+    cosines = cosine_to_sun(numpy.stack(numpy.broadcast_arrays(
+        numpy.sin(polar) * numpy.sin(turn), numpy.cos(polar), -numpy.sin(polar) * numpy.cos(turn))))
+    solid_angles = numpy.sin(polar) * (math.pi / HEIGHT) * (2 * math.pi / WIDTH)
+    return (solid_angles * cosines)[cosines > rim(degrees)].sum()
+
+
 def block(degrees):
     """Torus in a block; the sun is so many degrees wide."""
     s = SceneFile("torus-limit", "Torus in a block of solid glass under a sun", 160, 90, 8)
@@ -97,11 +126,7 @@ def block(degrees):
     s.add("block", box((-0.45, -0.3, -0.45), (0.45, 0.3, 0.45)), s.material(m.glass("glass")), at=(0, 0.3005, 0), turned=about_y(24))
     s.add("torus", torus(0.2, 0.075, 24, 12), red, at=(0, 0.31, 0), turned=about_x(62))
     if degrees:
-        half = FAR * math.tan(math.radians(degrees / 2))
-        radiance = IRRADIANCE * FAR ** 2 / (2 * half) ** 2
-        away = numpy.array(SUN) / numpy.linalg.norm(SUN) * -FAR
-        s.add("lamp", quad((-half, -half, 0), (0, 2 * half, 0), (2 * half, 0, 0)),
-              s.material(m.emitter("lamp", (radiance, radiance, radiance))), at=tuple(away), turned=towards(SUN))
+        s.environment(sky_of(degrees), IRRADIANCE / irradiance_of(degrees))
     else:
         s.light("sun", "directional", IRRADIANCE, (1, 1, 1), turned=towards(SUN))
     s.camera((0.5, 1.25, 2.3), (0.0, 0.3, 0.0), 8.0)
@@ -157,6 +182,8 @@ def main():
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     load = pages.load()
+    for degrees in ANGLES.values():
+        (directory / sky_of(degrees)).write_bytes(paint_sky(degrees))
     lamps = {"a point": (0, OF_POINTS)} | {name: (radius, OF_BALLS) for name, radius in RADII.items()}
     suns = {"a sun": (0, OF_SUN)} | {name: (angle, OF_WIDE_SUNS) for name, angle in ANGLES.items()}
     head = ["lamp", "row", "iterations", "mean", "standard error", "against the first line", "seconds", "noise, times", "without the worst"]
@@ -169,7 +196,7 @@ def main():
         "The lamp is a point, or a ball of the same power with a radius of so much of the room.", "",
         *pages.table([head, *rows(program, directory, room, lamps)]),
         "## A torus in a block of glass", "",
-        "The sun is a direction, or a square lamp of the same irradiance that is so wide. The radii of `ppm` are those of the first",
+        "The sun is a direction, or a disk in the sky that is so wide and has the same irradiance. The radii of `ppm` are those of the first",
         "iteration; it blurs, and loses light at edges, in proportion to them.", "",
         *pages.table([head, *rows(program, directory, block, suns)])]))
 

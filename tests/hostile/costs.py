@@ -121,8 +121,8 @@ def text(start: Cost, found: list[Cost], load: str, command: str) -> str:
     return "\n".join([
         "# Costs of refusals", "",
         *pages.origin(command, load),
-        f"What `lacuna-render` takes until it refuses a scene, by `tests/hostile/costs.py`: processor time and memory at the peak. An empty "
-        f"file takes {start.seconds:.2f} s and {start.memory / 1e6:.0f} MB, which are not counted for each byte.", "",
+        f"What `lacuna-render` takes until it refuses a scene, by `tests/hostile/costs.py`: processor time and memory at the peak. A file of "
+        f"one byte takes {start.seconds:.2f} s and {start.memory / 1e6:.0f} MB, which are not counted for each byte.", "",
         *pages.table(table(start, found))])
 
 
