@@ -197,7 +197,7 @@ def main():
         *pages.table([head, *rows(program, directory, room, lamps)]),
         "## A torus in a block of glass", "",
         "The sun is a direction, or a disk in the sky that is so wide and has the same irradiance. The radii of `ppm` are those of the first",
-        "iteration; it blurs, and loses light at edges, in proportion to them.", "",
+        "iteration: what it blurs changes the mean, and the less the smaller they are.", "",
         *pages.table([head, *rows(program, directory, block, suns)])]))
 
 
