@@ -47,6 +47,7 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
     : setup_(scene, camera, techniques, settings, threads),
       method_(&method),
       workers_(threads, settings.limits.maxDepth),
+      deltas_(scene.hasAny(mayBeSpecular)),
       ways_(waysOf(setup_)),
       chains_(chainsOf(setup_, ways_)),
       refractedLamps_(refractedLampsOf(setup_)),
@@ -65,7 +66,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     counts.splats = setup_.techniques.splats ? double(setup_.lightPaths) : 0.0;
     const ConnectionDensity& density = method_->freeze(iteration);
     if (setup_.techniques.connects) counts.connectThrough(density, setup_.walker);
-    counts.merges = method_->merging().where;
+    counts.merges = merging().where;
     counts.mergeSamples = double(pooledSubpaths()) * mergeArea(mergeRadius);
     counts.refractedLamps = refractedLamps_.get();
     if (counts.merges == Merges::Nowhere) counts.knownWays = knownWays_.get();
@@ -74,12 +75,18 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
     return counts;
 }
 
+/// The merges that the method asks for, less those that this scene has no place for.
+Merging BidirIntegrator::merging() const {
+    const Merging asked = method_->merging();
+    return asked.where == Merges::BetweenDeltas && !deltas_ ? Merging{} : asked;
+}
+
 /// The merging radius R. It begins with two footprints of a pixel: a smaller blur is not seen.
 double BidirIntegrator::radiusOf(std::uint32_t iteration) {
     constexpr double kFootprints = 2.0;
-    const Merging merging = method_->merging();
-    if (merging.where == Merges::Nowhere) return 0.0;
-    if (merging.radius > 0.0) return lacuna::mergeRadius(merging.radius, iteration);
+    const Merging merged = merging();
+    if (merged.where == Merges::Nowhere) return 0.0;
+    if (merged.radius > 0.0) return lacuna::mergeRadius(merged.radius, iteration);
     if (!footprint_) footprint_ = medianFootprint(setup_.walker);
     return lacuna::mergeRadius(kFootprints * *footprint_, iteration);
 }

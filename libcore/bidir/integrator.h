@@ -58,6 +58,7 @@ class BidirIntegrator {
     Iteration begin(std::uint32_t number, std::span<Rgb> pixels, IterationStatistics& statistics,
                     const std::atomic<bool>& cancel);
     TechniqueCounts freeze(std::uint32_t iteration, double mergeRadius);
+    Merging merging() const;
     double radiusOf(std::uint32_t iteration);
     std::uint64_t pooledSubpaths() const;
     void findPhotons(const Iteration& iteration);
@@ -68,6 +69,7 @@ class BidirIntegrator {
     RenderSetup setup_;
     Method* method_;  ///< of the block
     Workers workers_;
+    const bool deltas_;  // whether anything scatters as a delta
     Delivery delivery_{setup_};
     LightPass lightPass_{setup_, delivery_, workers_};
     CoverageFilm* coverage_ = nullptr;

@@ -62,6 +62,8 @@ class Scene {
         return surfaces_.blocking(pool);
     }
 
+    /// Whether a mesh of the scene has a material that `wanted` accepts.
+    bool hasAny(bool (*wanted)(const Material&)) const { return surfaces_.any(wanted); }
     /// The triangles of those materials that `wanted` accepts, likewise.
     std::vector<std::array<Vec3, 3>> trianglesOf(bool (*wanted)(const Material&)) const {
         return surfaces_.of(wanted);

@@ -1,5 +1,6 @@
 #include "libcore/scene/surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
@@ -245,6 +246,11 @@ std::vector<std::array<Vec3, 3>> Surfaces::ofObjects(const Wanted& wanted) const
         for (std::uint32_t k = 0; k < triangles; ++k) all.push_back(baked_.corners(object, k));
     }
     return all;
+}
+
+bool Surfaces::any(bool (*wanted)(const Material&)) const {
+    return std::ranges::any_of(
+        baked_.objects, [&](const SceneObject& object) { return wanted(materialOf(object)); });
 }
 
 std::vector<std::array<Vec3, 3>> Surfaces::of(bool (*wanted)(const Material&)) const {

@@ -55,6 +55,8 @@ class Surfaces {
 
     /// Scene::blockingTriangles.
     std::vector<std::array<Vec3, 3>> blocking(const ThreadPool& pool) const;
+    /// Scene::hasAny.
+    bool any(bool (*wanted)(const Material&)) const;
     /// Scene::trianglesOf.
     std::vector<std::array<Vec3, 3>> of(bool (*wanted)(const Material&)) const;
     std::vector<std::array<Vec3, 3>> of(std::size_t material) const;

@@ -164,14 +164,14 @@ TEST(Merging, makesWhatNothingElseDoes) {
     }
 }
 
-/// Where no subpath has a delta event, merging on demand keeps no photons and changes no pixel.
+/// Where nothing scatters as a delta, merging on demand looks for no photons and changes no pixel.
 TEST(Merging, onDemandIsNothingWithoutDeltas) {
     const auto scene = glossyBox().builder.build();
     for (const std::string& name : rowsWithMerge()) {
         Shot shot = quickShot(3);
         const Picture plain = render(*scene, rowNamed(name), shot);
         const Picture merging = render(*scene, mergingRow(name), shot);
-        EXPECT_EQ(merging.statistics.held.at("photons"), 0u) << name;
+        EXPECT_EQ(merging.statistics.held.count("photons"), 0u) << name;
         const Image a = plain.pixels.image(), b = merging.pixels.image();
         for (std::size_t i = 0; i < a.pixels.size(); ++i) {
             EXPECT_EQ(a.pixels[i], b.pixels[i]) << name << " " << i;
