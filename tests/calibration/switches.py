@@ -26,7 +26,7 @@ SEARCHING = {"pt": [], "bpt": [], "spcbpt": TRAINED}
 SWITCHES = ("chains", "refractions")
 SIZE = "64x36"
 ITERATIONS = 8
-NEEDED_BY = re.compile(r"^simulated +(mirror|smooth_refraction|rough_refraction) ", re.MULTILINE)
+NEEDED_BY = re.compile(r"^simulated +(mirror|smooth_refraction|rough_refraction|smooth_thin_transmission) ", re.MULTILINE)
 
 
 def needs_neither(program, scene):
