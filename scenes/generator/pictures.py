@@ -95,16 +95,18 @@ def _run_lengths(values: Sequence[int]) -> bytes:
     return out + flush()
 
 
+def direction_of(x: int, y: int, width: int, height: int) -> Rgb:
+    """The direction of a pixel's centre in a latitude-longitude picture: centre -Z, right half +X, top row +Y."""
+    polar = math.pi * (y + 0.5) / height
+    turn = 2 * math.pi * ((x + 0.5) / width - 0.5)
+    return math.sin(polar) * math.sin(turn), math.cos(polar), -math.sin(polar) * math.cos(turn)
+
+
 def hdr(width: int, height: int, radiance: Callable[[Rgb], Rgb]) -> bytes:
-    """Latitude-longitude picture of radiance(direction): centre -Z, right half +X, top row +Y."""
+    """Latitude-longitude picture of radiance(direction_of(..))."""
     out = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
     for y in range(height):
-        polar = math.pi * (y + 0.5) / height
-        row = []
-        for x in range(width):
-            turn = 2 * math.pi * ((x + 0.5) / width - 0.5)
-            row.append(_rgbe(radiance((math.sin(polar) * math.sin(turn), math.cos(polar),
-                                       -math.sin(polar) * math.cos(turn)))))
+        row = [_rgbe(radiance(direction_of(x, y, width, height))) for x in range(width)]
         out += bytes([2, 2, width >> 8, width & 255]) + b"".join(_run_lengths([p[k] for p in row]) for k in range(4))
     return out
 

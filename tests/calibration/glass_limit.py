@@ -89,8 +89,7 @@ def room(radius):
 
 
 def cosine_to_sun(direction):
-    """`direction`: unit, x, y, z along the first axis."""
-    return -numpy.tensordot(SUN, direction, 1) / numpy.linalg.norm(SUN)
+    return -sum(a * b for a, b in zip(SUN, direction)) / math.hypot(*SUN)
 
 
 def rim(degrees):
@@ -109,12 +108,9 @@ def paint_sky(degrees):
 
 def irradiance_of(degrees):
     """On a surface that faces the disk, summed up over the sky's pixels."""
-    polar = math.pi * (numpy.arange(HEIGHT)[:, None] + 0.5) / HEIGHT
-    turn = 2 * math.pi * ((numpy.arange(WIDTH) + 0.5) / WIDTH - 0.5)
-    cosines = cosine_to_sun(numpy.stack(numpy.broadcast_arrays(
-        numpy.sin(polar) * numpy.sin(turn), numpy.cos(polar), -numpy.sin(polar) * numpy.cos(turn))))
-    solid_angles = numpy.sin(polar) * (math.pi / HEIGHT) * (2 * math.pi / WIDTH)
-    return (solid_angles * cosines)[cosines > rim(degrees)].sum()
+    pixel = (math.pi / HEIGHT) * (2 * math.pi / WIDTH)  # sr, on the horizon
+    directions = (painted.direction_of(x, y, WIDTH, HEIGHT) for y in range(HEIGHT) for x in range(WIDTH))
+    return sum(pixel * math.hypot(d[0], d[2]) * cosine_to_sun(d) for d in directions if cosine_to_sun(d) > rim(degrees))
 
 
 def block(degrees):

@@ -41,20 +41,15 @@ def instructions(command):
     return int(re.search(r"Collected : (\d+)", found.stderr)[1])
 
 
-def counted(program, directory, name, scene, row, settings, switch):
-    """Instructions, and the picture's bytes."""
-    picture = directory / "out.pfm"
-    command = [program, *scene, "--method", row, *(word for text in settings for word in ("--set", text)), *switch,
-               "--size", SIZE, "--iterations", ITERATIONS, "--threads", 1, "--quiet", "--cache", directory / name,
-               "-o", picture]
-    subprocess.run([*map(str, command), "--prepare"], check=True, stderr=subprocess.DEVNULL)
-    return instructions(command), picture.read_bytes()
-
-
 def ratio(program, directory, name, scene, row, settings, without, with_it):
     """Instructions with over those without. Fails if the two pictures differ."""
-    (before, old), (after, new) = (counted(program, directory, name, scene, row, settings, switch)
-                                   for switch in (without, with_it))
+    picture = directory / "out.pfm"
+    command = [program, *scene, "--method", row, *(word for text in settings for word in ("--set", text)),
+               "--size", SIZE, "--iterations", ITERATIONS, "--threads", 1, "--quiet", "--cache", directory / name,
+               "-o", picture]
+    subprocess.run([*map(str, command), "--prepare"], check=True, stderr=subprocess.DEVNULL)  # caches are not counted
+    before, old = instructions([*command, *without]), picture.read_bytes()
+    after, new = instructions([*command, *with_it]), picture.read_bytes()
     if old != new:
         raise SystemExit(f"{name}, {row}, {' '.join(with_it)}: expected the picture that is made without, found another")
     return after / before
