@@ -15,13 +15,12 @@ namespace {
 
 constexpr std::size_t kPixelsPerTask = 1 << 14;
 
-/// Calls body(i) for all pixels, in tasks of kPixelsPerTask.
+/// Calls body(first, end) for pieces of kPixelsPerTask pixels.
 template <class Body>
-void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) {
+void forPieces(std::size_t pixels, const ThreadPool* threads, const Body& body) {
     const std::size_t tasks = (pixels + kPixelsPerTask - 1) / kPixelsPerTask;
     const auto piece = [&](std::size_t task) {
-        const std::size_t end = std::min(pixels, (task + 1) * kPixelsPerTask);
-        for (std::size_t i = task * kPixelsPerTask; i < end; ++i) body(i);
+        body(task * kPixelsPerTask, std::min(pixels, (task + 1) * kPixelsPerTask));
     };
     if (threads && tasks > 1) {
         threads->forEach(tasks, piece);
@@ -30,8 +29,8 @@ void forPixels(std::size_t pixels, const ThreadPool* threads, const Body& body) 
     }
 }
 
-/// Joins the means and spreads of two sums, one number at a time. Only the results are
-/// rounded to float.
+/// Joins the means and spreads of two sums. Only the results are rounded to float. The loops have no
+/// branches: they run over several numbers at once.
 struct Joint {
     Joint(const FilmSum& left, const FilmSum& right, SumRelation relation)
         : nLeft(double(left.iterations)),
@@ -45,11 +44,26 @@ struct Joint {
     double squares(double left, double right, double distance) const {
         return left + right + between * distance * distance;
     }
-    void join(float& mean_, float& spread, float mean2, float spread2) const {
-        const double a = double(mean_), b = double(mean2);
-        spread = float(std::sqrt(
-            squares(double(spread) * double(spread), double(spread2) * double(spread2), b - a)));
-        mean_ = float(mean(a, b));
+    void joinMeans(std::span<float> means, std::span<const float> means2) const {
+        for (std::size_t i = 0; i < means.size(); ++i) {
+            means[i] = float(mean(double(means[i]), double(means2[i])));
+        }
+    }
+    /// To be called before the means are joined. `spread2` may be empty.
+    void joinSpreads(std::span<float> spread, std::span<const float> spread2,
+                     std::span<const float> means, std::span<const float> means2) const {
+        const auto joinAll = [&](const auto& right) {
+            for (std::size_t i = 0; i < spread.size(); ++i) {
+                const double s = double(spread[i]), s2 = right(i);
+                spread[i] =
+                    float(std::sqrt(squares(s * s, s2 * s2, double(means2[i]) - double(means[i]))));
+            }
+        };
+        if (spread2.empty()) {
+            joinAll([](std::size_t) { return 0.0; });
+        } else {
+            joinAll([&](std::size_t i) { return double(spread2[i]); });
+        }
     }
 
     const double nLeft, nRight;
@@ -159,13 +173,19 @@ void join(FilmSum& left, const FilmSum& right, SumRelation relation, const Threa
     const bool isKept = !isForgotten(right), hasRight = isKept && !right.spread.empty();
     const bool spreads = relation != SumRelation::OfAlikeSample || !left.spread.empty() || hasRight;
     if (spreads) left.spread.resize(left.mean.size());
-    forPixels(left.mean.size(), threads, [&](std::size_t i) {
-        Rgb unused, none;
-        Rgb &m = left.mean[i], &s = spreads ? left.spread[i] : unused;
-        const Rgb &m2 = right.mean[i], &s2 = hasRight ? right.spread[i] : none;
-        joint.join(m.r, s.r, m2.r, s2.r);
-        joint.join(m.g, s.g, m2.g, s2.g);
-        joint.join(m.b, s.b, m2.b, s2.b);
+    forPieces(left.mean.size(), threads, [&](std::size_t first, std::size_t end) {
+        const auto channelsOf = [&](auto& pixels) {
+            static_assert(sizeof(Rgb) == 3 * sizeof(float));  // one behind the other in memory
+            return std::span(&pixels[first].r, 3 * (end - first));
+        };
+        const auto means = channelsOf(left.mean);
+        const auto means2 = channelsOf(right.mean);
+        if (spreads) {
+            std::span<const float> spread2;
+            if (hasRight) spread2 = channelsOf(right.spread);
+            joint.joinSpreads(channelsOf(left.spread), spread2, means, means2);
+        }
+        joint.joinMeans(means, means2);
     });
     for (std::size_t c = 0; c < 3; ++c) {
         left.wholeSquares[c] =
