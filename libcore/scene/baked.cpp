@@ -108,16 +108,6 @@ bool BakedMesh::hasVertexAlpha() const {
     return std::any_of(colors.begin(), colors.end(), [](const auto& c) { return c[3] < 1.0f; });
 }
 
-std::array<Vec3, 3> BakedScene::corners(const SceneObject& object, std::uint32_t triangle) const {
-    const BakedMesh& mesh = meshes[object.mesh];
-    std::array<Vec3, 3> c;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 p = mesh.positions[mesh.triangles[triangle][i]];
-        c[i] = object.instanced ? object.point(p) : p;
-    }
-    return c;
-}
-
 namespace {
 
 /// How often a mesh is used, and the transform of its vertices.

@@ -72,7 +72,13 @@ struct BakedScene {
     std::vector<SceneObject> objects;
 
     /// World-space corners, in the mesh's order.
-    std::array<Vec3, 3> corners(const SceneObject& object, std::uint32_t triangle) const;
+    std::array<Vec3, 3> corners(const SceneObject& object, std::uint32_t triangle) const {
+        const BakedMesh& mesh = meshes[object.mesh];
+        const std::array<std::uint32_t, 3>& t = mesh.triangles[triangle];
+        std::array<Vec3, 3> c{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+        if (object.instanced) c = {object.point(c[0]), object.point(c[1]), object.point(c[2])};
+        return c;
+    }
 };
 
 /// Moves the geometry out of the description. Meshes that are used once are transformed to world space; the others are
