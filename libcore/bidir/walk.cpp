@@ -33,8 +33,8 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
 
 double Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
     if (lights_.empty()) return 0.0;
-    const auto seen = lights_.sampleSeenPoint(viewpointOf(eye), rng);
-    return seen && setLightVertex(seen->point, out) ? seen->samples : 0.0;
+    const Lights::SeenPoint seen = lights_.sampleSeenPoint(viewpointOf(eye), rng);
+    return seen.samples > 0.0 && setLightVertex(seen.point, out) ? seen.samples : 0.0;
 }
 
 bool Walker::placeLight(std::uint32_t light, double pmf, PathVertex& out) const {

@@ -199,6 +199,7 @@ void Lights::drawSky(Environment::SkyPart part) {
         kept_ = selection_.before(environmentIndex_) + skyKept_ * selection_.pmf(environmentIndex_);
     }
     tree_ = std::make_shared<const LampTree>(makeTree());
+    sightMatters_ = picksBySight() || skyPart_ != Environment::SkyPart::Whole;
 }
 
 /// pdfA of the triangle's points, selection included. A triangle without area is never picked, but
@@ -434,44 +435,51 @@ float Lights::guidedRayPdf(const LightPlace& y0, const Vec3& direction, const Ve
     return rays ? float(rays->at(raySquare(y0, direction, x1)).pdf) : 1.0f;
 }
 
-LightPoint Lights::samplePoint(Rng& rng) const {
-    const Rng::Draw draw = rng.evenDraw();
+LightPoint Lights::pointOf(const Rng::Draw& draw) const {
     const DiscreteDistribution::Pick pick = selection_.sample(draw.pick);
     return pointOn(pick.index, pick.remapped(), draw);
 }
 
-std::optional<Lights::SeenPoint> Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
+LightPoint Lights::samplePoint(Rng& rng) const {
+    return pointOf(rng.evenDraw());
+}
+
+Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
-    if (!(kept_ > 0.0)) return std::nullopt;
+    if (!(kept_ > 0.0)) return {};
+    if (!sightMatters_) return {pointOf(draw), 1.0};
     if (picksBySight() && draw.pick >= kByPower) {
         const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
-        const auto point = seenPointOn(pick.light, pick.remapped, draw, from.position);
-        if (!point) return std::nullopt;
-        const double samples =
-            pickSamples(point->light, pick.pmf) * pointSamples(*point, from.position);
-        return SeenPoint{*point, samples};
+        SeenPoint seen = seenPointOn(pick.light, pick.remapped, draw, from.position);
+        if (seen.samples > 0.0) {
+            seen.samples =
+                pickSamples(seen.point.light, pick.pmf) * pointSamples(seen.point, from.position);
+        }
+        return seen;
     }
     const double u = picksBySight() ? draw.pick / kByPower : draw.pick;
     // The sky is the last light: the end of the table is the part of it that is left out.
     const DiscreteDistribution::Pick pick = selection_.sample(u * kept_);
     const double kept = pick.index == environmentIndex_ ? skyKept_ : 1.0;
     const double rest = below1(pick.remapped() / kept);
-    const auto point = seenPointOn(pick.index, rest, draw, from.position);
-    if (!point) return std::nullopt;
-    return SeenPoint{*point, seenSamples(*point, from)};
+    SeenPoint seen = seenPointOn(pick.index, rest, draw, from.position);
+    if (seen.samples > 0.0) seen.samples = seenSamples(seen.point, from);
+    return seen;
 }
 
-/// Samples a point for next-event estimation on the light, or on the ball that contains it.
-std::optional<LightPoint> Lights::seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
-                                              const Vec3& from) const {
+/// Samples a point for next-event estimation on the light, or on the ball that contains it. `samples` is 1, or 0 if the
+/// sample misses the ball.
+Lights::SeenPoint Lights::seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                                      const Vec3& from) const {
     const BallLamp* ball = ballOf(light);
-    if (!ball) return pointOn(light, u, draw, skyPart_);
+    if (!ball) return {pointOn(light, u, draw, skyPart_), 1.0};
     const auto found = ball->sample(from, u, draw.u1, draw.u2);
-    if (!found) return std::nullopt;
-    return pointOnTriangle(found->light, found->uv);
+    if (!found) return {};
+    return {pointOnTriangle(found->light, found->uv), 1.0};
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
+    if (!sightMatters_) return selection_.pmf(y0.light) > 0.0 ? 1.0 : 0.0;
     const double ofPoint = pointSamples(y0, from.position);
     if (!(ofPoint > 0.0)) return 0.0;  // saves the query of the tree
     if (!picksBySight()) return pickSamples(y0.light, 0.0) * ofPoint;
@@ -501,11 +509,6 @@ double Lights::pointSamples(const LightPlace& y0, const Vec3& from) const {
     }
     if (y0.light != environmentIndex_ || skyPart_ == Environment::SkyPart::Whole) return 1.0;
     return environment_->aboveMean(y0.position);
-}
-
-LightPoint Lights::pointOnTriangle(std::uint32_t light, Vec2 uv) const {
-    const AreaLight& a = area_[light];
-    return areaPoint(light, a.corner + a.edge1 * uv.x + a.edge2 * uv.y, a.ng, uv);
 }
 
 /// Samples a point on the light. `u` picks among an environment's texels.

@@ -130,12 +130,12 @@ class Lights {
     /// Samples a point for next-event estimation. Lights are picked by the light that `from` may receive from them, and
     /// a BallLamp is picked as one light. Of a sky, only the part above its mean is sampled; with a guide and
     /// withoutHits(), the whole sky is. The point's pdf is still that of samplePoint; `samples` is the ratio of the
-    /// true density to that pdf. Empty if the sample misses the lamp or nothing can be sampled.
+    /// true density to that pdf. It is 0 if the sample misses the lamp or nothing can be sampled.
     struct SeenPoint {
         LightPoint point;
-        double samples;
+        double samples = 0.0;
     };
-    std::optional<SeenPoint> sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
+    SeenPoint sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
     /// The density of sampleSeenPoint over that of samplePoint. It depends on the light alone, except on a BallLamp and
     /// in a sky. For all other lights with power it is at least kByPower.
     double seenSamples(const LightPlace& y0, const Viewpoint& from) const;
@@ -235,11 +235,15 @@ class Lights {
     void findBalls();
     void sumBalls();
     LampTree makeTree() const;
+    LightPoint pointOf(const Rng::Draw& draw) const;
     LightPoint pointOn(std::uint32_t light, double u, const Rng::Draw& draw,
                        Environment::SkyPart sky = Environment::SkyPart::Whole) const;
-    std::optional<LightPoint> seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
-                                          const Vec3& from) const;
-    LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const;
+    SeenPoint seenPointOn(std::uint32_t light, double u, const Rng::Draw& draw,
+                          const Vec3& from) const;
+    LightPoint pointOnTriangle(std::uint32_t light, Vec2 uv) const {
+        const AreaLight& a = area_[light];
+        return areaPoint(light, a.corner + a.edge1 * uv.x + a.edge2 * uv.y, a.ng, uv);
+    }
     const BallLamp* ballOf(std::uint32_t light) const {
         const std::uint32_t ball = balls_->of[light];
         return ball == kNone ? nullptr : &balls_->lamps[ball];
@@ -299,6 +303,7 @@ class Lights {
     std::shared_ptr<const Balls> balls_;
     std::vector<double> ballPmfs_;          // total pmf of each ball's triangles
     std::shared_ptr<const LampTree> tree_;  // a ball is its first light
+    bool sightMatters_ = false;             // whether sampleSeenPoint differs from samplePoint
     // The part of the sky for next-event estimation, its share of the sky's power, and the share of
     // the probability of all lights that remains.
     Environment::SkyPart skyPart_ = Environment::SkyPart::Whole;

@@ -181,14 +181,13 @@ TEST(BallLamp, everyPointBringsTheSame) {
     double sum = 0.0, squares = 0.0;
     constexpr int kDraws = 20'000;
     for (int n = 0; n < kDraws; ++n) {
-        const auto seen = lights.sampleSeenPoint(from, rng);
-        if (!seen) continue;
-        EXPECT_NEAR(seen->samples / lights.seenSamples(seen->point, from), 1.0, 1e-12);
-        const Vec3 d = seen->point.position - from.position;
-        const double cosine = -double(dot(seen->point.ng, normalize(d)));
+        const Lights::SeenPoint seen = lights.sampleSeenPoint(from, rng);
+        if (seen.samples == 0.0) continue;
+        EXPECT_NEAR(seen.samples / lights.seenSamples(seen.point, from), 1.0, 1e-12);
+        const Vec3 d = seen.point.position - from.position;
+        const double cosine = -double(dot(seen.point.ng, normalize(d)));
         if (cosine <= 0.0) continue;
-        const double brought =
-            cosine / double(dot(d, d)) / (double(seen->point.pdf) * seen->samples);
+        const double brought = cosine / double(dot(d, d)) / (double(seen.point.pdf) * seen.samples);
         sum += brought;
         squares += brought * brought;
     }
