@@ -1,7 +1,12 @@
 // lacuna-render: a picture of a glTF scene by any row of the registry of methods.
 #include <CLI/CLI.hpp>
+#include <climits>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
@@ -62,9 +67,19 @@ int print(const RenderOptions& options) {
     return replay(options, row, settings, ThreadPool(options.common.threads));
 }
 
+/// Keeps freed memory in the process. Every iteration adds a film and frees it, and where pages are dear (in virtual
+/// machines) new ones take longer than the sums that are made in them.
+void keepFreedMemory() {
+#if defined(__GLIBC__)
+    mallopt(M_MMAP_THRESHOLD, INT_MAX);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
+}
+
 }  // namespace
 
 int renderTool(int argc, char** argv) {
+    keepFreedMemory();
     const Ranks ranks;
     // Only rank 0 prints.
     if (!ranks.leads()) {
