@@ -79,7 +79,8 @@ def text(of_speed: Measured, of_pools: Measured, large: list[list[str]], repetit
         f"256 x 256 pixels, paths of up to 16 edges, all threads, medians of {repetitions}. *Rate*: rays per second over those of bare "
         "Embree with the same rays in the same order. *Samples*: millions per second. *Forced*: time with textures, emissive textures, "
         "normal maps, masks, vertex colours and attenuation forced on, over the time with what the scene calls for. *Coated*: time with a "
-        "clearcoat of weight 1e-4 on every material, over the time with it left out by `--tolerance 0.001`. They are taken without the first look, by which `lacuna-render` uses techniques over mirrors less often where they do not pay.", "",
+        "clearcoat of weight 1e-4 on every material, over the time with it left out by `--tolerance 0.001`. They are taken without the "
+        "first look, by which `lacuna-render` uses techniques over mirrors less often where they do not pay.", "",
         *pages.table(speeds(of_speed)),
         "## Pools", "", "A million light subpaths of `lvcbpt`; bytes of a vertex and of its entry in the list of what can be connected.", "",
         *pages.table(pools(of_pools)),
