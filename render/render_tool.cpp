@@ -1,18 +1,14 @@
 // lacuna-render: a picture of a glTF scene by any row of the registry of methods.
 #include <CLI/CLI.hpp>
-#include <climits>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 
 #include "libcore/base/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "libcore/tool/early_interrupt.h"
 #include "libcore/tool/interrupt.h"
 #include "libcore/tool/scene_stage.h"
+#include "render/freed_memory.h"
 #include "render/method_help.h"
 #include "render/options.h"
 #include "render/picture.h"
@@ -65,15 +61,6 @@ int print(const RenderOptions& options) {
     const MethodRow& row = findMethod(options.method, "--method");
     const Settings settings = resolve(row, options.assignments, "--set ");
     return replay(options, row, settings, ThreadPool(options.common.threads));
-}
-
-/// Keeps freed memory in the process. Every iteration adds a film and frees it, and where pages are dear (in virtual
-/// machines) new ones take longer than the sums that are made in them.
-void keepFreedMemory() {
-#if defined(__GLIBC__)
-    mallopt(M_MMAP_THRESHOLD, INT_MAX);
-    mallopt(M_TRIM_THRESHOLD, INT_MAX);
-#endif
 }
 
 }  // namespace

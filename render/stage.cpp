@@ -5,6 +5,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/methods/glass_effort.h"
+#include "render/freed_memory.h"
 
 namespace lacuna {
 namespace {
@@ -33,6 +34,7 @@ Stage loadStage(const RenderOptions& options, const MethodRow& method, const Set
     SceneDescription description;
     pool.run([&] { description = describeScene(options); });
     const double loadSeconds = secondsSince(start);
+    returnFreedMemory();  // the file's bytes: Embree's hierarchy does not come from the same heap
     // Everything that may reject the command line comes before the long work.
     const PixelRect crop = chooseCrop(options, filmOf(options, description));
 
