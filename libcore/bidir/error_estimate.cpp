@@ -10,6 +10,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/bidir/half_models.h"
+#include "libcore/image/channels.h"
 
 namespace lacuna {
 namespace {
@@ -60,7 +61,7 @@ using Strip = std::array<float, std::size_t(3 * kSide)>;
 /// The channels of the pixels from `first` on, which lie one behind the other in memory.
 const float* stripAt(std::span<const Rgb> pixels, std::size_t first) {
     static_assert(sizeof(Strip) == sizeof(Rgb) * std::size_t(kSide));
-    return &pixels[first].r;
+    return channelsOf(pixels).data() + 3 * first;
 }
 
 /// Masks, indexed by the bits of a row: 1 for the channels of pixels whose bit is

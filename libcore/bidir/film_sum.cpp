@@ -9,6 +9,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/bidir/error_estimate.h"
+#include "libcore/image/channels.h"
 
 namespace lacuna {
 namespace {
@@ -174,16 +175,15 @@ void join(FilmSum& left, const FilmSum& right, SumRelation relation, const Threa
     const bool spreads = relation != SumRelation::OfAlikeSample || !left.spread.empty() || hasRight;
     if (spreads) left.spread.resize(left.mean.size());
     forPieces(left.mean.size(), threads, [&](std::size_t first, std::size_t end) {
-        const auto channelsOf = [&](auto& pixels) {
-            static_assert(sizeof(Rgb) == 3 * sizeof(float));  // one behind the other in memory
-            return std::span(&pixels[first].r, 3 * (end - first));
+        const auto pieceOf = [&](auto& pixels) {
+            return channelsOf(std::span(pixels).subspan(first, end - first));
         };
-        const auto means = channelsOf(left.mean);
-        const auto means2 = channelsOf(right.mean);
+        const auto means = pieceOf(left.mean);
+        const auto means2 = pieceOf(right.mean);
         if (spreads) {
             std::span<const float> spread2;
-            if (hasRight) spread2 = channelsOf(right.spread);
-            joint.joinSpreads(channelsOf(left.spread), spread2, means, means2);
+            if (hasRight) spread2 = pieceOf(right.spread);
+            joint.joinSpreads(pieceOf(left.spread), spread2, means, means2);
         }
         joint.joinMeans(means, means2);
     });

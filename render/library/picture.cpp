@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/image/channels.h"
 #include "libcore/image/error_metrics.h"
 #include "libcore/image/exr.h"
 #include "libcore/image/image.h"
@@ -28,7 +29,6 @@ struct Picture::Content {
     Image rgb;
     std::string statistics;
 };
-static_assert(sizeof(Rgb) == 3 * sizeof(float), "rgb() shows pixels as three floats each");
 
 Picture::Picture(LayeredImage image, std::string statistics) {
     Image rgb = image.rgb();
@@ -80,8 +80,7 @@ int Picture::height() const {
 }
 
 std::span<const float> Picture::rgb() const {
-    const std::vector<Rgb>& pixels = content_->rgb.pixels;
-    return {&pixels.data()->r, 3 * pixels.size()};
+    return channelsOf(std::span(content_->rgb.pixels));
 }
 
 std::vector<std::string> Picture::channels() const {
