@@ -199,7 +199,6 @@ void Lights::drawSky(Environment::SkyPart part) {
         kept_ = selection_.before(environmentIndex_) + skyKept_ * selection_.pmf(environmentIndex_);
     }
     tree_ = std::make_shared<const LampTree>(makeTree());
-    sightMatters_ = picksBySight() || skyPart_ != Environment::SkyPart::Whole;
 }
 
 /// pdfA of the triangle's points, selection included. A triangle without area is never picked, but
@@ -446,8 +445,8 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 
 Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
     const Rng::Draw draw = rng.evenDraw();
+    if (picksAsWalks()) return {pointOf(draw), 1.0};
     if (!(kept_ > 0.0)) return {};
-    if (!sightMatters_) return {pointOf(draw), 1.0};
     if (picksBySight() && draw.pick >= kByPower) {
         const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
         SeenPoint seen = seenPointOn(pick.light, pick.remapped, draw, from.position);
@@ -479,7 +478,7 @@ Lights::SeenPoint Lights::seenPointOn(std::uint32_t light, double u, const Rng::
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {
-    if (!sightMatters_) return selection_.pmf(y0.light) > 0.0 ? 1.0 : 0.0;
+    if (picksAsWalks()) return selection_.pmf(y0.light) > 0.0 ? 1.0 : 0.0;
     const double ofPoint = pointSamples(y0, from.position);
     if (!(ofPoint > 0.0)) return 0.0;  // saves the query of the tree
     if (!picksBySight()) return pickSamples(y0.light, 0.0) * ofPoint;

@@ -250,6 +250,8 @@ class Lights {
     }
     /// Whether the choice of a light depends on the viewpoint.
     bool picksBySight() const { return tree_->chooses() || !balls_->lamps.empty(); }
+    /// Whether sampleSeenPoint draws as samplePoint does.
+    bool picksAsWalks() const { return !picksBySight() && skyPart_ == Environment::SkyPart::Whole; }
     double pickSamples(std::uint32_t light, double pmfOfTree) const;
     double pointSamples(const LightPlace& y0, const Vec3& from) const;
     Rgb skyExitance(const Rgb& radiance) const;
@@ -303,7 +305,6 @@ class Lights {
     std::shared_ptr<const Balls> balls_;
     std::vector<double> ballPmfs_;          // total pmf of each ball's triangles
     std::shared_ptr<const LampTree> tree_;  // a ball is its first light
-    bool sightMatters_ = false;             // whether sampleSeenPoint differs from samplePoint
     // The part of the sky for next-event estimation, its share of the sky's power, and the share of
     // the probability of all lights that remains.
     Environment::SkyPart skyPart_ = Environment::SkyPart::Whole;
