@@ -47,6 +47,7 @@ BidirIntegrator::BidirIntegrator(const Scene& scene, const Camera& camera, Techn
     : setup_(scene, camera, techniques, settings, threads),
       method_(&method),
       workers_(threads, settings.limits.maxDepth),
+      deltas_(scene.hasAny(mayBeSpecular)),
       ways_(waysOf(setup_)),
       chains_(chainsOf(setup_, ways_)),
       refractedLamps_(refractedLampsOf(setup_)),
@@ -77,8 +78,7 @@ TechniqueCounts BidirIntegrator::freeze(std::uint32_t iteration, double mergeRad
 /// The merges that the method asks for, less those that this scene has no place for.
 Merging BidirIntegrator::merging() const {
     const Merging asked = method_->merging();
-    const bool betweenDeltas = asked.where == Merges::BetweenDeltas;
-    return betweenDeltas && !setup_.scene.hasAny(mayBeSpecular) ? Merging{} : asked;
+    return asked.where == Merges::BetweenDeltas && !deltas_ ? Merging{} : asked;
 }
 
 /// The merging radius R. It begins with two footprints of a pixel: a smaller blur is not seen.

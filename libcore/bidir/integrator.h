@@ -69,6 +69,7 @@ class BidirIntegrator {
     RenderSetup setup_;
     Method* method_;  ///< of the block
     Workers workers_;
+    const bool deltas_;  // whether anything scatters as a delta: asks all objects, maybe millions
     Delivery delivery_{setup_};
     LightPass lightPass_{setup_, delivery_, workers_};
     CoverageFilm* coverage_ = nullptr;
