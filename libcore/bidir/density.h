@@ -44,6 +44,9 @@ enum class Lamps {
     Seen,   ///< by what the eye vertex can see of it
 };
 
+/// The lights for whose direct light weights have b = 2 (theory.md, "Weights").
+enum class SquaredLights { None, Hittable, All };
+
 /// The effective number of samples n r that strategy (s, t) has for a connection (theory.md,
 /// "Weights"); positive only where the selector can pick the vertex.
 class ConnectionDensity {
@@ -61,6 +64,10 @@ class ConnectionDensity {
     /// With Lamps::Seen, what effectiveSamples and constants say of s = 1 is still to be multiplied
     /// by LightSampler::seenSamples.
     virtual Lamps lamps() const { return Lamps::Power; }
+    /// Where lamps are picked by sight, s = 1 has little variance.
+    virtual SquaredLights squaredLights() const {
+        return lamps() == Lamps::Seen ? SquaredLights::All : SquaredLights::None;
+    }
 
     /// Whether the density keeps labels. A label (of a cache point, a node, a subspace) is what the
     /// density knows a vertex by; it is looked up once and not once per path. It is a function of

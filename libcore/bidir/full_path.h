@@ -74,6 +74,8 @@ struct FullPath {
         }
         return true;
     }
+    /// Whether the light shines on what the lens sees, itself or as in a mirror.
+    bool isDirectLight() const { return isSeenNearlySpecularly(1); }
     /// Connection::order where the eye's end is x_i.
     int orderOf(int i) const {
         return 1 + int(std::count(delta.begin() + i + 1, delta.begin() + edges, false));

@@ -90,7 +90,15 @@ double refractedSamples(const FullPath& path, const TechniqueCounts& counts) {
 
 namespace {
 
-/// The balance heuristic, with n r of each strategy by `countOf`, and with merges or without any.
+/// Whether b = 2.
+bool squaresSamples(const FullPath& path, const TechniqueCounts& counts) {
+    const bool squared = counts.squared == SquaredLights::All ||
+                         (counts.squared == SquaredLights::Hittable && path.hittable);
+    return squared && path.isDirectLight();
+}
+
+/// Weight by the balance heuristic or the power heuristic, with n r of each strategy by `countOf`, and with merges or
+/// without any.
 template <bool kMerges, class CountOf>
 double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made,
              const CountOf& countOf) {
@@ -103,35 +111,37 @@ double sweep(const FullPath& path, const TechniqueCounts& counts, Technique made
         return path.lightPdfA[i] * path.lightRoulette(i, rouletteDepth);
     };
     const auto eyePdf = [&](int i) { return path.eyePdfA[i] * path.eyeRoulette(i, rouletteDepth); };
+    const bool squares = squaresSamples(path, counts);
+    const auto term = [squares](double samples) { return squares ? samples * samples : samples; };
     const double refracted = refractedSamples(path, counts);
     const double ofStrategy = countOf(t);
     const double own = made.merges()     ? mergedSamples(path, counts, k - t) * eyePdf(k - t)
                        : made.refracts() ? refracted
                                          : ofStrategy;
     if (own <= 0.0) return 0.0;
-    double sum = ofStrategy;
+    double sum = term(ofStrategy);
 
     // Towards the light: the eye takes over x_{k-t}, x_{k-t-1}, .. x_0. Where both walks make x_i, the two are merged.
     double ratio = 1.0;
     for (int i = k - t; i >= 0; --i) {
         const double eye = eyePdf(i);
-        if (kMerges && i > 0) sum += ratio * eye * mergedSamples(path, counts, i);
+        if (kMerges && i > 0) sum += term(ratio * eye * mergedSamples(path, counts, i));
         ratio *= eye / lightPdf(i);
         if (!(ratio > 0.0)) break;  // all further strategies have this zero as a factor
-        sum += ratio * countOf(k - i + 1);
+        sum += term(ratio * countOf(k - i + 1));
     }
-    if (refracted > 0.0 && ratio > 0.0) sum += ratio * refracted;  // beside s = 0
+    if (refracted > 0.0 && ratio > 0.0) sum += term(ratio * refracted);  // beside s = 0
     // Towards the lens: light takes over x_{k-t+1} .. x_{k-1}, or x_0 at most.
     const int last = counts.onlyDirect() ? 0 : k - 1;
     ratio = 1.0;
     for (int i = k - t + 1; i <= last; ++i) {
         const double light = lightPdf(i);
-        if (kMerges && i > 0) sum += ratio * light * mergedSamples(path, counts, i);
+        if (kMerges && i > 0) sum += term(ratio * light * mergedSamples(path, counts, i));
         ratio *= light / eyePdf(i);
         if (!(ratio > 0.0)) break;
-        sum += ratio * countOf(k - i);
+        sum += term(ratio * countOf(k - i));
     }
-    return own / sum;
+    return term(own) / sum;
 }
 
 template <class CountOf>

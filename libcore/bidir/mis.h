@@ -1,8 +1,8 @@
-// The balance heuristic over all strategies of one full path: the only place where weights are
-// made.
+// The weights over all strategies of one full path: the only place where they are made.
 //
-//     w_t(x) = n_t p_t(x) r_t(x) / sum_i n_i p_i(x) r_i(x)            (theory.md, "Weights")
+//     w_t(x) = (n_t p_t(x) r_t(x))^b / sum_i (n_i p_i(x) r_i(x))^b            (theory.md, "Weights")
 //
+// b = 1, the balance heuristic, or for direct light 2, the power heuristic.
 // Path x_0 (light) .. x_k (lens); strategy t takes the last t vertices from the eye, t = 1 .. k
 // + 1. Neighbouring strategies differ in one vertex: p_{t+1} / p_t = pE(x_{k-t}) / pL(x_{k-t}), so the sum is a sweep
 // of ratios in double. Products of densities, which leave a float's range within ten vertices, never occur. A merge at
@@ -47,12 +47,13 @@ struct TechniqueCounts {
     double splats = 0;  ///< t = 1: light paths that splat (L); 0: there is no such technique
     const ConnectionDensity* connections = nullptr;  ///< t >= 2, s >= 1; null: none
     /// connections->constants(), looked up once. connectThrough sets it, and connections,
-    /// labels and seen.
+    /// labels, squared and seen.
     std::optional<ConnectionDensity::Constants> constants = std::nullopt;
     bool labels = false;  ///< connections->keepsLabels(), likewise
     /// Its seenSamples multiply the count of s = 1. Null: s = 1 draws y_0 as light walks do.
     const LightSampler* seen = nullptr;
-    Merges merges = Merges::Nowhere;  ///< where paths are merged
+    SquaredLights squared = SquaredLights::None;  ///< connections->squaredLights(), likewise
+    Merges merges = Merges::Nowhere;              ///< where paths are merged
     /// n_m pi R^2 of a merge: light subpaths times the area around an eye vertex in which photons count. Times the
     /// densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;
@@ -74,6 +75,7 @@ struct TechniqueCounts {
         connections = &density;
         constants = density.constants();
         labels = density.keepsLabels();
+        squared = density.squaredLights();
         seen = density.lamps() == Lamps::Seen ? &lights : nullptr;
     }
     /// The factor that n r of s = 1 is still to be multiplied by, from y_0 and the eye's end.

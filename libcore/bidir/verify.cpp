@@ -50,9 +50,11 @@ class Products {
                            : made_.refracts() ? refracted
                                               : logTerm(made_.t);
         if (own == kNever) return 0.0;
-        double sum = (made_.chains() ? 1.0 : 0.0) + std::exp(refracted - own);
-        for (int i = 1; i <= k_ + 1; ++i) sum += std::exp(logTerm(i) - own);
-        for (int i = 1; i < k_; ++i) sum += std::exp(logMerge(i) - own);
+        const double power = squares() ? 2.0 : 1.0;
+        const auto relative = [&](double term) { return std::exp(power * (term - own)); };
+        double sum = (made_.chains() ? 1.0 : 0.0) + relative(refracted);
+        for (int i = 1; i <= k_ + 1; ++i) sum += relative(logTerm(i));
+        for (int i = 1; i < k_; ++i) sum += relative(logMerge(i));
         return 1.0 / sum;
     }
 
@@ -174,6 +176,14 @@ class Products {
     }
 
     bool smooth(int i) const { return !isDelta(event_[std::size_t(i)]); }
+    bool squares() const {
+        if (counts_.squared == SquaredLights::None) return false;
+        if (counts_.squared == SquaredLights::Hittable && !isHittable(source_.kind)) return false;
+        for (int i = 2; i < k_; ++i) {
+            if (smooth(i) && !x(i).bsdf.isNarrow()) return false;
+        }
+        return true;
+    }
     /// Connection::order of x_i.
     int orderOf(int i) const {
         int order = 1;

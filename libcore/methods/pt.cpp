@@ -34,8 +34,7 @@ MethodRow ptRow() {
     return methodRow(
         {.name = "pt",
          .reference = "Veach97",
-         .summary =
-             "path tracing: next event estimation and hits, combined by the balance heuristic",
+         .summary = "path tracing: next event estimation and hits, combined by MIS weights",
          .techniques = {.hits = true, .connects = true}},
         table, [](const Options& o) { return std::make_unique<PathTracing>(o); });
 }

@@ -86,6 +86,12 @@ class SubspaceDensity final : public ConnectionDensity {
         tables_.labels.labelEnds(connections);
     }
 
+    /// Hits of lights in plain sight have little variance; a pick has more.
+    SquaredLights squaredLights() const override {
+        const bool papers = weights_ == SubspaceWeights::Paper;
+        return papers ? SquaredLights::None : SquaredLights::Hittable;
+    }
+
     double effectiveSamples(const Connection& c) const override {
         const auto beta = double(mean(c.beta));
         if (!(beta > 0.0)) return 0.0;  // never picked in stage 2

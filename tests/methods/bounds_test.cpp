@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "libcore/base/parallel.h"
 #include "libcore/methods/registry.h"
@@ -104,6 +105,31 @@ TEST(Beliefs, neverExceedTheLightSubpathsThatAreKept) {
         const double bound = kManySubpaths * windows[i];
         for (const double samples : n) EXPECT_LE(samples, bound * (1.0 + 1e-9));
         EXPECT_GT(n.back(), 0.8 * bound);
+    }
+}
+
+/// Light is squared where one of the strategies has little variance, and never in the papers' forms.
+TEST(Beliefs, squareDirectLightWhereItIsPickedBySight) {
+    const std::tuple<const char*, std::vector<std::string>, SquaredLights> cases[] = {
+        {"pt", {}, SquaredLights::All},
+        {"bpt", {}, SquaredLights::All},
+        {"vcm", {}, SquaredLights::All},
+        {"pt", {"lamps=power"}, SquaredLights::None},
+        {"bpt", {"lamps=power"}, SquaredLights::None},
+        {"spcbpt", {}, SquaredLights::Hittable},
+        {"sharebpt", {}, SquaredLights::Hittable},
+        {"spcbpt", {"weights=paper"}, SquaredLights::None},
+    };
+    for (const auto& [name, settings, expected] : cases) {
+        const MethodRow& row = findMethod(name);
+        const auto method = row.create(resolve(row, settings));
+        EXPECT_EQ(method->freeze(0).squaredLights(), expected) << name << ", " << settings.size();
+    }
+    const std::vector<std::string> papers = {"preset=paper"};
+    for (const char* name : {"pcbpt", "risbpt", "icbpt", "tsrbpt", "spcbpt"}) {
+        const MethodRow& row = findMethod(name);
+        const auto method = row.create(resolve(row, papers));
+        EXPECT_EQ(method->freeze(0).squaredLights(), SquaredLights::None) << name;
     }
 }
 

@@ -216,7 +216,13 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
             space.fill(x, path);
             path.fillLightThroughputs(counts.rouletteDepth);
 
-            // n p r of every strategy, as full products.
+            // (n p r)^b of every strategy, as full products.
+            bool squares = counts.squared == SquaredLights::All ||
+                           (counts.squared == SquaredLights::Hittable && path.hittable);
+            for (int i = 2; i < k; ++i) {
+                squares &= path.delta[i] || !path.vertex[i]->scattersWidely();
+            }
+            const double power = squares ? 2.0 : 1.0;
             std::vector<double> product(std::size_t(k) + 2, 0.0);
             double sum = 0.0;
             for (int t = 1; t <= k + 1; ++t) {
@@ -227,7 +233,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
                 for (int i = k - t + 1; i <= k; ++i) {
                     p *= double(path.eyePdfA[i]) * path.eyeRoulette(i, counts.rouletteDepth);
                 }
-                sum += product[t] = p;
+                sum += product[t] = std::pow(p, power);
             }
             std::vector<double> merged(std::size_t(k) + 1, 0.0);
             for (int i = 1; i < k; ++i) {
@@ -238,7 +244,7 @@ TEST(FiniteSpace, weightsSumToOneAndMeetFullProducts) {
                 for (int j = i; j <= k; ++j) {
                     p *= double(path.eyePdfA[j]) * path.eyeRoulette(j, counts.rouletteDepth);
                 }
-                sum += merged[i] = p;
+                sum += merged[i] = std::pow(p, power);
             }
             if (sum <= 0.0) continue;
             ++judged;
