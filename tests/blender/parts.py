@@ -36,7 +36,7 @@ class Shapes(unittest.TestCase):
             corners, triangles = shape
             a, b, c = (corners[triangles[i::3]] for i in range(3))
             self.assertTrue((numpy.cross(b - a, c - a)[:, 2] < 0).all(), "faces -z")
-        corners, triangles = shapes.sphere(2)
+        corners, triangles = shapes.sphere(2, 3)
         self.assertAlmostEqual(shapes.area(corners, triangles), 16 * math.pi, delta=2)
         a, b, c = (corners[triangles[i::3]] for i in range(3))
         self.assertTrue((numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), a) > 0).all(), "faces outwards")

@@ -7,6 +7,8 @@ from .sockets import Sockets, source_of
 
 SPOT_SAMPLES = 32  # points that represent a spot's disk
 SMALL_SUN, SUN_SAMPLES = math.radians(2), (16, 64)  # directions that represent a sun, below and above SMALL_SUN
+# A ray towards a ball misses its edge where the faces lie inside of it: 1.9 % of the rays with 320 faces, which is noise, and .1 % with 5120.
+BALLS_BY_HALVINGS = ((16, 4), (64, 3), (math.inf, 2))  # how finely the first balls are made, the next ones and all others
 SPOT_RAMP = 0.75  # of Blender's ramp in the cosine: glTF's squared ramp then passes as much light
 
 
@@ -15,6 +17,7 @@ class Lights:
 
     def __init__(self, glb, root, materials, notes, cycles):
         self._glb, self._root, self._materials, self._notes, self._cycles = glb, root, materials, notes, cycles
+        self._balls = 0
 
     def add(self, thing, matrix):
         """Adds an evaluated lamp object. `matrix`: its transform to world space (mathutils.Matrix)."""
@@ -79,7 +82,9 @@ class Lights:
         if lamp.shadow_soft_size > 0:
             # Cycles: radiance = W / (4 pi^2 r^2) on the ball, that is W / pi over the ball's area
             # of 4 pi r^2.
-            self._shape(lamp, name, *shapes.sphere(lamp.shadow_soft_size), at, [p / math.pi for p in power])
+            halvings = next(h for most, h in BALLS_BY_HALVINGS if self._balls < most)
+            self._balls += 1
+            self._shape(lamp, name, *shapes.sphere(lamp.shadow_soft_size, halvings), at, [p / math.pi for p in power])
         else:
             self._punctual(name, at, {"type": "point"}, [p / (4 * math.pi) for p in power])
 

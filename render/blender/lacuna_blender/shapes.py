@@ -22,7 +22,7 @@ def ellipse(width, height, sides=48):
     return corners, triangles.ravel().astype(numpy.uint32)
 
 
-def sphere(radius, halvings=2):
+def sphere(radius, halvings):
     """The same for a ball around the origin, facing outwards: an icosahedron whose edges are halved `halvings`
     times."""
     g = (1 + math.sqrt(5)) / 2
