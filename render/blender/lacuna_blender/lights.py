@@ -7,8 +7,9 @@ from .sockets import Sockets, source_of
 
 SPOT_SAMPLES = 32  # points that represent a spot's disk
 SMALL_SUN, SUN_SAMPLES = math.radians(2), (16, 64)  # directions that represent a sun, below and above SMALL_SUN
-# A ray towards a ball misses its edge where the faces lie inside of it: 1.9 % of the rays with 320 faces, which is noise, and .1 % with 5120.
-BALLS_BY_HALVINGS = ((16, 4), (64, 3), (math.inf, 2))  # how finely the first balls are made, the next ones and all others
+# A ray towards a ball misses its edge where the faces lie inside of it: 1.9 % of the rays with 320 faces, which is noise, and .5 % with 1280.
+# Lacuna takes no more than 4096 faces for one ball.
+FINE_BALLS = 64
 SPOT_RAMP = 0.75  # of Blender's ramp in the cosine: glTF's squared ramp then passes as much light
 
 
@@ -82,7 +83,7 @@ class Lights:
         if lamp.shadow_soft_size > 0:
             # Cycles: radiance = W / (4 pi^2 r^2) on the ball, that is W / pi over the ball's area
             # of 4 pi r^2.
-            halvings = next(h for most, h in BALLS_BY_HALVINGS if self._balls < most)
+            halvings = 3 if self._balls < FINE_BALLS else 2
             self._balls += 1
             self._shape(lamp, name, *shapes.sphere(lamp.shadow_soft_size, halvings), at, [p / math.pi for p in power])
         else:
