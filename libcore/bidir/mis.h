@@ -49,11 +49,11 @@ struct TechniqueCounts {
     /// connections->constants(), looked up once. connectThrough sets it, and connections,
     /// labels, squared and seen.
     std::optional<ConnectionDensity::Constants> constants = std::nullopt;
-    bool labels = false;  ///< connections->keepsLabels(), likewise
+    bool labels = false;                          ///< connections->keepsLabels(), likewise
+    SquaredLights squared = SquaredLights::None;  ///< connections->squaredLights(), likewise
     /// Its seenSamples multiply the count of s = 1. Null: s = 1 draws y_0 as light walks do.
     const LightSampler* seen = nullptr;
-    SquaredLights squared = SquaredLights::None;  ///< connections->squaredLights(), likewise
-    Merges merges = Merges::Nowhere;              ///< where paths are merged
+    Merges merges = Merges::Nowhere;  ///< where paths are merged
     /// n_m pi R^2 of a merge: light subpaths times the area around an eye vertex in which photons count. Times the
     /// densities of both walks at x_i it counts like n r.
     double mergeSamples = 0;

@@ -176,11 +176,15 @@ class Products {
     }
 
     bool smooth(int i) const { return !isDelta(event_[std::size_t(i)]); }
+    /// Whether b = 2.
     bool squares() const {
         if (counts_.squared == SquaredLights::None) return false;
         if (counts_.squared == SquaredLights::Hittable && !isHittable(source_.kind)) return false;
-        for (int i = 2; i < k_; ++i) {
-            if (smooth(i) && !x(i).bsdf.isNarrow()) return false;
+        return isSeenNearlySpecularly(1);
+    }
+    bool isSeenNearlySpecularly(int i) const {
+        for (int j = i + 1; j < k_; ++j) {
+            if (smooth(j) && !x(j).bsdf.isNarrow()) return false;
         }
         return true;
     }
@@ -268,10 +272,7 @@ class Products {
             case Merges::Everywhere:
                 return true;
             case Merges::FirstFromEye:
-                for (int j = i + 1; j < k_; ++j) {
-                    if (smooth(j) && !x(j).bsdf.isNarrow()) return false;
-                }
-                return true;
+                return isSeenNearlySpecularly(i);
             case Merges::BetweenDeltas:
                 return i > 1 && i < k_ - 1 && !smooth(i - 1) && !smooth(i + 1);
         }
