@@ -8,7 +8,7 @@ namespace {
 
 FeatureLayers featuresOf(Stage& stage, const ThreadPool& pool,
                          const std::atomic<bool>& interrupted) {
-    const Stopwatch watch(stage.phaseSeconds["features"]);
+    const Stopwatch watch(stage.setupSeconds), phase(stage.phaseSeconds["features"]);
     std::atomic<bool> over = false;
     const Grace grace(interrupted, over);
     return renderFeatures(*stage.scene, *stage.camera, stage.settings.crop, stage.settings.seed,

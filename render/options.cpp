@@ -110,7 +110,8 @@ void declareOptions(CLI::App& app, RenderOptions& o) {
         ->type_name("NAME")
         ->take_last()
         ->group(effort);
-    app.add_flag("--count-setup", o.countSetup, "Count loading and building in --time too")
+    app.add_flag("--count-setup", o.countSetup,
+                 "Count all before the first iteration in --time too")
         ->group(effort);
     app.add_flag("--prepare", o.prepare, "Build missing or stale caches first")->group(effort);
 

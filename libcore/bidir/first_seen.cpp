@@ -14,6 +14,7 @@ Sight sightThrough(const Camera& camera, Vec2 raster, Vec2 u) {
 std::optional<SurfacePoint> firstSeen(const Scene& scene, const Sight& sight, RayTally& tally) {
     auto hit = scene.intersect(sight.origin, sight.ng, sight.direction, sight.kind, tally);
     for (int i = 0; hit && i < kMostPanes; ++i) {
+        if (!scene.description().materials[hit->material].pane) break;
         if (!(scene.bsdfAt(*hit).passing(sight.direction) > 0.0f)) break;
         hit = scene.intersect(hit->position, hit->ng, sight.direction, sight.kind, tally);
     }
