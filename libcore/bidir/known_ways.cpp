@@ -69,7 +69,8 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
     const double expected = most * shareOfSamples(ways);
     if (u >= expected) return;
     PathVertex y0;
-    const double samples = expected * walker_.sampleSeenLight(z, rng, y0);
+    const LightSampler::Seen draw = walker_.sampleSeenLight(z, rng, y0);
+    const double samples = expected * draw.samples;
     if (!(samples > 0.0) || !isHittable(walker_.lights().kind(y0.light))) return;
 
     const ChainQuery query = queryOf(z, side, y0);
@@ -83,7 +84,7 @@ void KnownWays::sample(Subpath eye, const TechniqueCounts& counts, Rng& rng, Ray
             isUsual ? Known{found, true, 1.0}
                     : knownOf(path, found.chain.size(), query, ways, tally);
         if (!known || known->isUsual != isUsual) return;
-        event->closed.contribution *= float(1.0 / (samples * known->pmf));
+        event->closed.contribution *= float(draw.weight() / (expected * known->pmf));
         path.refracted = {samples * densityOf(*known, y0) / event->eyePdfW,
                           int(found.chain.size())};
         deliver(event->closed);

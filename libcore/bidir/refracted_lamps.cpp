@@ -246,9 +246,8 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     const double expected = samplesAt(z, connectionOrder(eye));
     if (rng.uniformDouble() >= expected) return std::nullopt;
     PathVertex y0;
-    const double seenSamples = walker_.sampleSeenLight(z, rng, y0);
-    const double samples = expected * seenSamples;
-    if (!(samples > 0.0) || !mayReach(y0.light, glass_->hasFacets())) return std::nullopt;
+    const LightSampler::Seen draw = walker_.sampleSeenLight(z, rng, y0);
+    if (!(draw.samples > 0.0) || !mayReach(y0.light, glass_->hasFacets())) return std::nullopt;
     const auto smooth = drawBetween(z, y0, rng.uniformDouble(), tally);
     if (!smooth || int(smooth->found.chain.size()) > left) return std::nullopt;
     Facets facets;
@@ -261,7 +260,7 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
     if (refracts(z, false, z.toPrevious, Vec3(chain.firstDirection()))) return std::nullopt;
     auto event = closeNextEvent(walker_, joined->found, y0, eye, tally, light, path);
     if (!event) return std::nullopt;
-    event->closed.contribution *= float(1.0 / (samples * joined->pmf));
+    event->closed.contribution *= float(draw.weight() / (expected * joined->pmf));
     if (hasFacets(chain)) {
         // The ratio as other techniques compute it: with facets from the path's
         // directions in float.
@@ -269,11 +268,11 @@ std::optional<Closed> RefractedLamps::sample(Subpath eye, Rng& rng, RayTally& ta
         if (!known) return std::nullopt;
         const std::size_t count = known->size();
         path.refracted = ratioBy(path, int(count),
-                                 densityOver(*smooth, seenSamples, z, y0, *path.vertex[count],
+                                 densityOver(*smooth, draw.samples, z, y0, *path.vertex[count],
                                              *known, -path.directionOf(int(count)), tally));
         if (!(path.refracted.ratio > 0.0)) return std::nullopt;
     } else {
-        path.refracted = {expected * densityAt(y0, seenSamples, *joined) / event->eyePdfW,
+        path.refracted = {expected * densityAt(y0, draw.samples, *joined) / event->eyePdfW,
                           int(chain.size())};
     }
     return event->closed;

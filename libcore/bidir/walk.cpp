@@ -31,10 +31,11 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
     return p;
 }
 
-double Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
-    if (lights_.empty()) return 0.0;
+LightSampler::Seen Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
+    if (lights_.empty()) return {};
     const Lights::SeenPoint seen = lights_.sampleSeenPoint(viewpointOf(eye), rng);
-    return seen.samples > 0.0 && setLightVertex(seen.point, out) ? seen.samples : 0.0;
+    if (!(seen.samples > 0.0) || !setLightVertex(seen.point, out)) return {};
+    return {seen.samples, seen.factor};
 }
 
 bool Walker::placeLight(std::uint32_t light, double pmf, PathVertex& out) const {

@@ -70,7 +70,7 @@ class Walker final : public LightSampler {
     void finish(std::span<Walk> walks, RayTally& tally) const;
 
     bool sampleLight(Rng& rng, PathVertex& out) const override;
-    double sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
+    Seen sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const override;
     double seenSamples(const PathVertex& light, const PathVertex& eye) const override;
     /// Makes y_0 on a light without an extent that was picked with probability `pmf`. False where
     /// the light is dark.

@@ -29,10 +29,13 @@ void takePickable(const LightPool& pool, bool direct, std::vector<LightPool::Ent
 
 void proposeFreshLight(const EyeContext& context, Lamps lamps, Rng& rng, ProposalSink& sink) {
     PathVertex& y0 = sink.newVertex();
-    const double samples = lamps == Lamps::Seen
-                               ? context.lights.sampleSeenLight(context.vertex, rng, y0)
-                               : double(context.lights.sampleLight(rng, y0));
-    if (samples > 0.0) sink.add({Subpath(&y0, 1), 1.0 / samples, 0});
+    LightSampler::Seen draw;
+    if (lamps == Lamps::Seen) {
+        draw = context.lights.sampleSeenLight(context.vertex, rng, y0);
+    } else if (context.lights.sampleLight(rng, y0)) {
+        draw.samples = 1.0;
+    }
+    if (draw.samples > 0.0) sink.add({Subpath(&y0, 1), draw.weight(), 0});
 }
 
 }  // namespace lacuna

@@ -20,6 +20,14 @@ constexpr float kRounding = 1e-5f;
 /// to it the lamp does not look like a ball.
 constexpr double kOutside = 1.0001;
 
+/// Directions that are tried where some of them miss the lamp.
+constexpr std::size_t kTries = 8;
+
+/// 1 - cos of an angle whose sine has this square, without cancellation.
+double versineOf(double sine2) {
+    return sine2 / (1.0 + std::sqrt(1.0 - sine2));
+}
+
 }  // namespace
 
 /// It emits about equally to all sides: its projected area is a quarter of its surface.
@@ -32,11 +40,42 @@ bool BallLamp::isOutside(const Vec3d& toMiddle) const {
     return lengthSquared(toMiddle) > kOutside * radius_ * radius_;
 }
 
-/// 1 - cos of the half angle of the sphere's cone, without cancellation.
-double BallLamp::versineOfCone(const Vec3d& toMiddle) const {
-    const double sine2 = radius_ * radius_ / lengthSquared(toMiddle);
-    return sine2 / (1.0 + std::sqrt(1.0 - sine2));
-}
+/// The cone of the sphere, seen from a point outside.
+class BallLamp::Cone {
+  public:
+    Cone(const BallLamp& lamp, const Vec3d& toMiddle)
+        : distance_(length(toMiddle)),
+          radii_(distance_ / lamp.radius_),
+          versine_(versineOf(1.0 / (radii_ * radii_))),
+          sure_(versineOf(lamp.within_ * lamp.within_ / (radii_ * radii_)) / versine_),
+          frame_(Vec3(toMiddle * (1.0 / distance_))) {}
+
+    /// The square of the distance on the disk up to which directions meet the lamp, because it contains a sphere of
+    /// within_ radii.
+    double surelyHit() const { return sure_; }
+
+    struct Ray {
+        Vec3 closest;  ///< point closest to the centre, relative to it and in radii
+        Vec3 direction;
+    };
+    /// Maps a uniform point of the unit disk to a uniform direction: 1 - cos is proportional to the square of the
+    /// distance on the disk.
+    Ray ray(double diskX, double diskY) const {
+        const double off = versine_ * (diskX * diskX + diskY * diskY);
+        const double stretch = std::sqrt(versine_ * (2.0 - off));
+        const double x = diskX * stretch, y = diskY * stretch, cosine = 1.0 - off;
+        return {world(radii_ * cosine * x, radii_ * cosine * y, -radii_ * (x * x + y * y)),
+                world(x, y, cosine)};
+    }
+
+  private:
+    Vec3 world(double x, double y, double z) const {
+        return frame_.toWorld({float(x), float(y), float(z)});
+    }
+
+    double distance_, radii_, versine_, sure_;
+    Frame frame_;
+};
 
 std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, float u1,
                                                 float u2) const {
@@ -44,22 +83,44 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
     if (!isOutside(toMiddle)) {
         return Point{lights_[byArea_.sample(u).index], uniformTriangle(u1, u2)};
     }
-    // A uniform point of the disk becomes uniform over the cap if 1 - cos is proportional to the
-    // square of the radius on the disk.
-    const double distance = length(toMiddle), versine = versineOfCone(toMiddle);
-    const Vec2 onDisk = concentricDisk(u1, u2);
-    const double off = versine * double(onDisk.x * onDisk.x + onDisk.y * onDisk.y);
-    const double stretch = std::sqrt(versine * (2.0 - off));
-    const double x = double(onDisk.x) * stretch, y = double(onDisk.y) * stretch;
-    const double cosine = 1.0 - off, radii = distance / radius_;
-    const Frame frame(Vec3(toMiddle * (1.0 / distance)));
-    const auto world = [&](double a, double b, double c) {
-        return frame.toWorld({float(a), float(b), float(c)});
+    const Cone cone(*this, toMiddle);
+    const auto enterAt = [&](double diskX, double diskY) {
+        const Cone::Ray ray = cone.ray(diskX, diskY);
+        return enter(ray.closest, ray.direction);
     };
-    const Vec3 closest = world(radii * cosine * x, radii * cosine * y, -radii * (x * x + y * y));
-    const std::optional<Entry> entry = enter(closest, world(x, y, cosine));
-    if (!entry) return std::nullopt;
-    return Point{lights_[entry->face], entry->uv};
+    const Vec2 onDisk = concentricDisk(u1, u2);
+    const double x = double(onDisk.x), y = double(onDisk.y), square = x * x + y * y;
+    // The rim has as much of the draws as it is expected to have of the lamp.
+    const double sure = cone.surelyHit(), used = sure + (1.0 - sure) * rimShare_;
+    if (square * used <= sure) {
+        const double shrink = std::sqrt(used);
+        const std::optional<Entry> entry = enterAt(x * shrink, y * shrink);
+        if (!entry) return std::nullopt;  // by rounding
+        return Point{lights_[entry->face], entry->uv};
+    }
+    // Each try is uniform in the rim by itself; together they are spread over it.
+    std::array<Entry, kTries> met;
+    std::size_t hits = 0;
+    const double part = (square * used - sure) / (used - sure), angle = std::atan2(y, x);
+    for (std::size_t i = 0; i < kTries; ++i) {
+        const double shifted = part + std::numbers::phi * double(i);
+        const double r = std::sqrt(std::lerp(sure, 1.0, shifted - std::floor(shifted)));
+        const double at = angle + 2.0 * std::numbers::pi * double(i) / double(kTries);
+        if (const auto entry = enterAt(r * std::cos(at), r * std::sin(at))) met[hits++] = *entry;
+    }
+    if (hits == 0) return std::nullopt;
+    const Entry& one = met[std::min(std::size_t(u * double(hits)), hits - 1)];
+    return Point{lights_[one.face], one.uv, float(double(hits) / (rimShare_ * double(kTries)))};
+}
+
+/// The solid angle of the lamp as the sampled directions take it, from where the sphere has a cone with this square of
+/// the sine of half its angle.
+double BallLamp::expectedSolidAngle(double sine2) const {
+    // A lerp of versineOf for both spheres, with one division.
+    const double w2 = within_ * within_;
+    const double inner = 1.0 + std::sqrt(1.0 - w2 * sine2), outer = 1.0 + std::sqrt(1.0 - sine2);
+    const double lerped = (1.0 - rimShare_) * w2 * outer + rimShare_ * inner;
+    return 2.0 * std::numbers::pi * sine2 * lerped / (inner * outer);
 }
 
 double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const {
@@ -69,7 +130,7 @@ double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal
     const double distance2 = lengthSquared(back);
     const double cosine = dot(Vec3d(normal), back) / std::sqrt(distance2);
     if (!(cosine > 0.0)) return 0.0;
-    return cosine / (2.0 * std::numbers::pi * versineOfCone(toMiddle) * distance2);
+    return cosine / (expectedSolidAngle(radius_ * radius_ / lengthSquared(toMiddle)) * distance2);
 }
 
 /// The point where a ray enters the lamp. `closest`: the ray's point closest to the centre.

@@ -30,14 +30,16 @@ class BallLamp {
 
     struct Point {
         std::uint32_t light;
-        Vec2 uv;  ///< barycentric
+        Vec2 uv;              ///< barycentric
+        float factor = 1.0f;  ///< of what the point brings; positive
     };
     /// Samples a point that `from` may see; u, u1, u2 in [0, 1). Outside the sphere it samples a direction uniformly in
-    /// the sphere's cone and returns the first point of the lamp on it; empty if the direction misses the lamp, which
-    /// is smaller than the sphere. Inside the sphere it samples uniformly by area.
+    /// the sphere's cone and returns the first point of the lamp on it. The lamp is smaller than the sphere, so near the
+    /// rim directions may miss it. There, several are tried, and one that meets it is returned, with a factor for how
+    /// many do; empty if none does. Inside the sphere it samples uniformly by area.
     std::optional<Point> sample(const Vec3& from, double u, float u1, float u2) const;
-    /// The density of such a point, per area. From outside, it is zero on faces turned away. `position`: a point on the
-    /// lamp; `normal`: unit normal of its triangle.
+    /// The density of such a point, per area, where a point counts as often as its factor says. From outside, it is zero
+    /// on faces turned away. `position`: a point on the lamp; `normal`: unit normal of its triangle.
     double pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const;
 
   private:
@@ -52,6 +54,7 @@ class BallLamp {
         std::uint32_t face;
         Vec2 uv;
     };
+    class Cone;
     class Mesh;  // connected triangles, while lamps are being found
 
     explicit BallLamp(const Mesh& mesh);
@@ -61,10 +64,13 @@ class BallLamp {
     std::optional<Entry> enterFrom(std::uint32_t face, const Vec3& closest,
                                    const Vec3& direction) const;
     bool isOutside(const Vec3d& toMiddle) const;
-    double versineOfCone(const Vec3d& toMiddle) const;
+    double expectedSolidAngle(double sine2) const;
 
     Vec3d middle_;
     double radius_ = 0.0;  // of the sphere through the farthest corners
+    double within_ = 0.0;  // radius of the sphere that touches the nearest face, over radius_
+    double rimShare_ =
+        0.0;  // expected share of directions between the two spheres that meet the lamp
     double area_ = 0.0;
     Vec3 low_, high_;
     std::vector<std::uint32_t> lights_;  // by face

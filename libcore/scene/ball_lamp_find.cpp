@@ -84,6 +84,7 @@ class BallLamp::Mesh {
     Vec3 low, high;
     Vec3d middle;
     double radius = 0.0;
+    double within = 1.0;  // least distance of a face from the middle, in radii
 
   private:
     const std::array<Vec3, 3>& places(std::size_t face) const { return all_[lights[face]].corners; }
@@ -114,8 +115,9 @@ bool BallLamp::Mesh::isBall(double step) {
     double solidAngle = 0.0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         solidAngle += addFace(i);
-        if (dot(faces[i].normal, faces[i].corner) < float(kRoundness)) return false;
+        within = std::min(within, double(dot(faces[i].normal, faces[i].corner)));
     }
+    if (within < kRoundness) return false;
     if (std::abs(solidAngle - 4.0 * std::numbers::pi) > 0.01) return false;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -186,12 +188,16 @@ bool BallLamp::Mesh::isDentedAt(std::size_t face, std::size_t corner) const {
 BallLamp::BallLamp(const Mesh& mesh)
     : middle_(mesh.middle),
       radius_(mesh.radius),
+      within_(mesh.within),
       area_(std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0)),
       low_(mesh.low),
       high_(mesh.high),
       lights_(mesh.lights),
       faces_(mesh.faces),
       byArea_(mesh.areas) {
+    // From afar, a convex body has a quarter of its surface as its outline in the mean over all sides [Cauchy].
+    const double outline = area_ / (4.0 * std::numbers::pi * radius_ * radius_);
+    rimShare_ = (outline - within_ * within_) / (1.0 - within_ * within_);
     makeStarts();
 }
 

@@ -474,7 +474,7 @@ Lights::SeenPoint Lights::seenPointOn(std::uint32_t light, double u, const Rng::
     if (!ball) return {pointOn(light, u, draw, skyPart_), 1.0};
     const auto found = ball->sample(from, u, draw.u1, draw.u2);
     if (!found) return {};
-    return {pointOnTriangle(found->light, found->uv), 1.0};
+    return {pointOnTriangle(found->light, found->uv), 1.0, found->factor};
 }
 
 double Lights::seenSamples(const LightPlace& y0, const Viewpoint& from) const {

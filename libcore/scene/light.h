@@ -130,10 +130,12 @@ class Lights {
     /// Samples a point for next-event estimation. Lights are picked by the light that `from` may receive from them, and
     /// a BallLamp is picked as one light. Of a sky, only the part above its mean is sampled; with a guide and
     /// withoutHits(), the whole sky is. The point's pdf is still that of samplePoint; `samples` is the ratio of the
-    /// true density to that pdf. It is 0 if the sample misses the lamp or nothing can be sampled.
+    /// true density to that pdf. It is 0 if the sample misses the lamp or nothing can be sampled. `factor` is a
+    /// factor of what the point brings (BallLamp::sample).
     struct SeenPoint {
         LightPoint point;
         double samples = 0.0;
+        float factor = 1.0f;
     };
     SeenPoint sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
     /// The density of sampleSeenPoint over that of samplePoint. It depends on the light alone, except on a BallLamp and

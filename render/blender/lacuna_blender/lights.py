@@ -7,8 +7,8 @@ from .sockets import Sockets, source_of
 
 SPOT_SAMPLES = 32  # points that represent a spot's disk
 SMALL_SUN, SUN_SAMPLES = math.radians(2), (16, 64)  # directions that represent a sun, below and above SMALL_SUN
-# A ray towards a ball misses its edge where the faces lie inside of it: 1.9 % of the rays with 320 faces, which is noise, and .5 % with 1280.
-# Lacuna takes no more than 4096 faces for one ball.
+# A ball's outline has corners, where rays to it miss: a little noise with 320 faces, a quarter of that with 1280. Lacuna takes no more than
+# 4096 faces for one ball.
 FINE_BALLS = 64
 SPOT_RAMP = 0.75  # of Blender's ramp in the cosine: glTF's squared ramp then passes as much light
 
