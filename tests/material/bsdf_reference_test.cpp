@@ -495,8 +495,14 @@ void expectSame(const Bsdf::Parameters& a, const Bsdf::Parameters& b, const std:
         ASSERT_EQ(p.f, q.f);
         ASSERT_EQ(p.pdfWToEye, q.pdfWToEye);
         ASSERT_EQ(p.pdfWToLight, q.pdfWToLight);
-        const auto s = x.sample(Side::Eye, e, random.next(), random.next(), random.next());
-        ASSERT_FALSE(s && x.isBlack());
+        const float u = random.next(), u1 = random.next(), u2 = random.next();
+        const auto s = x.sample(Side::Eye, e, u, u1, u2), t = y.sample(Side::Eye, e, u, u1, u2);
+        ASSERT_EQ(s.has_value(), t.has_value());
+        if (!s) continue;
+        ASSERT_FALSE(x.isBlack());
+        ASSERT_EQ(s->to, t->to);
+        ASSERT_EQ(s->event, t->event);
+        ASSERT_EQ(s->evaluation.f, t->evaluation.f);
     }
 }
 

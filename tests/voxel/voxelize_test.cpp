@@ -67,6 +67,7 @@ TEST(Voxelize, everyVoxelThatATriangleTouches) {
 
 TEST(Voxelize, noLeakThroughSheetsInAnyDirection) {
     const ThreadPool pool(2);
+    int leaks = 0;
     for (int n = 0; n < 40; ++n) {
         Rng rng(2, 0, StreamKind::User, std::uint64_t(n));
         const Vec3d axis{rng.uniformDouble() - 0.5, rng.uniformDouble() - 0.5,
@@ -76,9 +77,11 @@ TEST(Voxelize, noLeakThroughSheetsInAnyDirection) {
         const VoxelShape shape = latticeExactlyOver({{-3, -3, -3}, {3, 3, 3}}, 17);
         std::vector<VoxelState> state(shape.count(), VoxelState::Empty);
         voxelize(sheet, shape, state, pool, kNever);
-        EXPECT_EQ(Components(shape, state, {}, Connectivity::Corners).count(), 2u) << n;
+        const std::size_t sides = Components(shape, state, {}, Connectivity::Corners).count();
+        EXPECT_EQ(sides, 2u) << n;
+        leaks += sides < 2 ? 1 : 0;
     }
-    stabilityCase("voxel-thin-walls", 0, "of 40 sheets leak");
+    stabilityCase("voxel-thin-walls", double(leaks), "of 40 sheets leak");
 }
 
 TEST(Voxelize, wallsOfTheDomainAreOneVoxelThick) {
