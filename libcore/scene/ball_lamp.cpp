@@ -23,11 +23,6 @@ constexpr double kOutside = 1.0001;
 /// Directions that are tried where some of them miss the lamp.
 constexpr std::size_t kTries = 8;
 
-/// 1 - cos of an angle whose sine has this square, without cancellation.
-double versineOf(double sine2) {
-    return sine2 / (1.0 + std::sqrt(1.0 - sine2));
-}
-
 }  // namespace
 
 /// It emits about equally to all sides: its projected area is a quarter of its surface.
@@ -37,30 +32,54 @@ PlacedLight BallLamp::placed() const {
 }
 
 bool BallLamp::isOutside(const Vec3d& toMiddle) const {
-    return lengthSquared(toMiddle) > kOutside * radius_ * radius_;
+    return lengthSquared(toMiddle) > kOutside * radius2_;
 }
 
-/// The cone of the sphere, seen from a point outside.
-class BallLamp::Cone {
+/// The cones of the sphere through the corners and of the one that touches the nearest face, seen from a point outside.
+/// A sphere of radius r at the distance d, whose tangents have the length t, has a cone with 1 - cos = r^2 / (d (d + t)).
+class BallLamp::Cones {
   public:
-    Cone(const BallLamp& lamp, const Vec3d& toMiddle)
-        : distance_(length(toMiddle)),
-          radii_(distance_ / lamp.radius_),
-          versine_(versineOf(1.0 / (radii_ * radii_))),
-          sure_(versineOf(lamp.within_ * lamp.within_ / (radii_ * radii_)) / versine_),
-          frame_(Vec3(toMiddle * (1.0 / distance_))) {}
+    Cones(const BallLamp& lamp, const Vec3d& toMiddle)
+        : lamp_(lamp),
+          distance2_(lengthSquared(toMiddle)),
+          distance_(std::sqrt(distance2_)),
+          outer_(distance_ + std::sqrt(distance2_ - lamp.radius2_)),
+          inner_(distance_ + std::sqrt(distance2_ - lamp.within2_ * lamp.radius2_)) {}
 
-    /// The square of the distance on the disk up to which directions meet the lamp, because it contains a sphere of
-    /// within_ radii.
-    double surelyHit() const { return sure_; }
+    double distance() const { return distance_; }
+    /// 1 - cos of the outer cone.
+    double versine() const { return lamp_.radius2_ / (distance_ * outer_); }
+    /// The inner cone as a share of the outer one: no direction in it misses the lamp.
+    double innerShare() const { return lamp_.within2_ * outer_ / inner_; }
+    /// The solid angle of the lamp as the sampled directions take it: the inner cone, and rimShare_ of what is around it.
+    double expectedSolidAngle() const {
+        // With one division.
+        const double parts =
+            (1.0 - lamp_.rimShare_) * lamp_.within2_ * outer_ + lamp_.rimShare_ * inner_;
+        return 2.0 * std::numbers::pi * lamp_.radius2_ * parts / (distance_ * inner_ * outer_);
+    }
+
+  private:
+    const BallLamp& lamp_;
+    double distance2_, distance_;
+    double outer_, inner_;  // d + t
+};
+
+/// Maps the unit disk to the rays in the outer cone.
+class BallLamp::Rays {
+  public:
+    Rays(const Cones& cones, double radius, const Vec3d& toMiddle)
+        : radii_(cones.distance() / radius),
+          versine_(cones.versine()),
+          frame_(Vec3(toMiddle * (1.0 / cones.distance()))) {}
 
     struct Ray {
         Vec3 closest;  ///< point closest to the centre, relative to it and in radii
         Vec3 direction;
     };
-    /// Maps a uniform point of the unit disk to a uniform direction: 1 - cos is proportional to the square of the
-    /// distance on the disk.
-    Ray ray(double diskX, double diskY) const {
+    /// A uniform point of the disk becomes a uniform direction: 1 - cos is proportional to the square of the distance on
+    /// the disk.
+    Ray at(double diskX, double diskY) const {
         const double off = versine_ * (diskX * diskX + diskY * diskY);
         const double stretch = std::sqrt(versine_ * (2.0 - off));
         const double x = diskX * stretch, y = diskY * stretch, cosine = 1.0 - off;
@@ -73,7 +92,7 @@ class BallLamp::Cone {
         return frame_.toWorld({float(x), float(y), float(z)});
     }
 
-    double distance_, radii_, versine_, sure_;
+    double radii_, versine_;
     Frame frame_;
 };
 
@@ -83,15 +102,16 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
     if (!isOutside(toMiddle)) {
         return Point{lights_[byArea_.sample(u).index], uniformTriangle(u1, u2)};
     }
-    const Cone cone(*this, toMiddle);
+    const Cones cones(*this, toMiddle);
+    const Rays rays(cones, radius_, toMiddle);
     const auto enterAt = [&](double diskX, double diskY) {
-        const Cone::Ray ray = cone.ray(diskX, diskY);
+        const Rays::Ray ray = rays.at(diskX, diskY);
         return enter(ray.closest, ray.direction);
     };
     const Vec2 onDisk = concentricDisk(u1, u2);
     const double x = double(onDisk.x), y = double(onDisk.y), square = x * x + y * y;
     // The rim has as much of the draws as it is expected to have of the lamp.
-    const double sure = cone.surelyHit(), used = sure + (1.0 - sure) * rimShare_;
+    const double sure = cones.innerShare(), used = sure + (1.0 - sure) * rimShare_;
     if (square * used <= sure) {
         const double shrink = std::sqrt(used);
         const std::optional<Entry> entry = enterAt(x * shrink, y * shrink);
@@ -113,24 +133,15 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
     return Point{lights_[one.face], one.uv, float(double(hits) / (rimShare_ * double(kTries)))};
 }
 
-/// The solid angle of the lamp as the sampled directions take it, from where the sphere has a cone with this square of
-/// the sine of half its angle.
-double BallLamp::expectedSolidAngle(double sine2) const {
-    // A lerp of versineOf for both spheres, with one division.
-    const double w2 = within_ * within_;
-    const double inner = 1.0 + std::sqrt(1.0 - w2 * sine2), outer = 1.0 + std::sqrt(1.0 - sine2);
-    const double lerped = (1.0 - rimShare_) * w2 * outer + rimShare_ * inner;
-    return 2.0 * std::numbers::pi * sine2 * lerped / (inner * outer);
-}
-
 double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const {
     const Vec3d toMiddle = middle_ - Vec3d(from);
     if (!isOutside(toMiddle)) return 1.0 / area_;
     const Vec3d back = Vec3d(from) - Vec3d(position);
+    const double facing = dot(Vec3d(normal), back);  // the cosine times the distance
+    if (!(facing > 0.0)) return 0.0;
     const double distance2 = lengthSquared(back);
-    const double cosine = dot(Vec3d(normal), back) / std::sqrt(distance2);
-    if (!(cosine > 0.0)) return 0.0;
-    return cosine / (expectedSolidAngle(radius_ * radius_ / lengthSquared(toMiddle)) * distance2);
+    const double solidAngle = Cones(*this, toMiddle).expectedSolidAngle();
+    return facing / (solidAngle * distance2 * std::sqrt(distance2));
 }
 
 /// The point where a ray enters the lamp. `closest`: the ray's point closest to the centre.

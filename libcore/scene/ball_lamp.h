@@ -54,7 +54,8 @@ class BallLamp {
         std::uint32_t face;
         Vec2 uv;
     };
-    class Cone;
+    class Cones;
+    class Rays;
     class Mesh;  // connected triangles, while lamps are being found
 
     explicit BallLamp(const Mesh& mesh);
@@ -64,11 +65,12 @@ class BallLamp {
     std::optional<Entry> enterFrom(std::uint32_t face, const Vec3& closest,
                                    const Vec3& direction) const;
     bool isOutside(const Vec3d& toMiddle) const;
-    double expectedSolidAngle(double sine2) const;
 
     Vec3d middle_;
     double radius_ = 0.0;  // of the sphere through the farthest corners
-    double within_ = 0.0;  // radius of the sphere that touches the nearest face, over radius_
+    double radius2_ = 0.0;
+    double within2_ =
+        0.0;  // the square of the radius of the sphere that touches the nearest face, over radius2_
     double rimShare_ =
         0.0;  // expected share of directions between the two spheres that meet the lamp
     double area_ = 0.0;

@@ -188,7 +188,8 @@ bool BallLamp::Mesh::isDentedAt(std::size_t face, std::size_t corner) const {
 BallLamp::BallLamp(const Mesh& mesh)
     : middle_(mesh.middle),
       radius_(mesh.radius),
-      within_(mesh.within),
+      radius2_(radius_ * radius_),
+      within2_(mesh.within * mesh.within),
       area_(std::accumulate(mesh.areas.begin(), mesh.areas.end(), 0.0)),
       low_(mesh.low),
       high_(mesh.high),
@@ -196,8 +197,8 @@ BallLamp::BallLamp(const Mesh& mesh)
       faces_(mesh.faces),
       byArea_(mesh.areas) {
     // From afar, a convex body has a quarter of its surface as its outline in the mean over all sides [Cauchy].
-    const double outline = area_ / (4.0 * std::numbers::pi * radius_ * radius_);
-    rimShare_ = (outline - within_ * within_) / (1.0 - within_ * within_);
+    const double outline = area_ / (4.0 * std::numbers::pi * radius2_);
+    rimShare_ = (outline - within2_) / (1.0 - within2_);
     makeStarts();
 }
 
