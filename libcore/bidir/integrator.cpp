@@ -26,12 +26,14 @@ std::unique_ptr<const SpecularChains> chainsOf(const RenderSetup& setup,
 std::unique_ptr<const KnownWays> knownWaysOf(const RenderSetup& setup,
                                              const std::shared_ptr<const ChainSeeds>& ways) {
     if (!setup.techniques.goKnownWays() || !ways->anyOfLamps()) return nullptr;
+    if (!setup.walker.lights().samplesSeenPoints()) return nullptr;
     return std::make_unique<const KnownWays>(setup.walker, ways,
                                              setup.settings.glassEffort.knownWays);
 }
 
 std::unique_ptr<const RefractedLamps> refractedLampsOf(const RenderSetup& setup) {
     if (!setup.techniques.refract()) return nullptr;
+    if (!setup.walker.lights().samplesSeenPoints()) return nullptr;
     std::shared_ptr<const SmoothGlass> glass = setup.settings.smoothGlass;
     if (!glass) glass = std::make_shared<const SmoothGlass>(setup.scene);
     if (glass->empty()) return nullptr;

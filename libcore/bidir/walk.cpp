@@ -32,7 +32,6 @@ std::optional<LightPoint> Walker::sampleLightPoint(Rng& rng, PathVertex& out) co
 }
 
 LightSampler::Seen Walker::sampleSeenLight(const PathVertex& eye, Rng& rng, PathVertex& out) const {
-    if (lights_.empty()) return {};
     const Lights::SeenPoint seen = lights_.sampleSeenPoint(viewpointOf(eye), rng);
     if (!(seen.samples > 0.0) || !setLightVertex(seen.point, out)) return {};
     return {seen.samples, seen.factor};

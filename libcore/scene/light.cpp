@@ -444,9 +444,9 @@ LightPoint Lights::samplePoint(Rng& rng) const {
 }
 
 Lights::SeenPoint Lights::sampleSeenPoint(const Viewpoint& from, Rng& rng) const {
+    if (!samplesSeenPoints()) return {};
     const Rng::Draw draw = rng.evenDraw();
     if (picksAsWalks()) return {pointOf(draw), 1.0};
-    if (!(kept_ > 0.0)) return {};
     if (picksBySight() && draw.pick >= kByPower) {
         const LampTree::Pick pick = tree_->pick(from, (draw.pick - kByPower) / (1.0 - kByPower));
         SeenPoint seen = seenPointOn(pick.light, pick.remapped, draw, from.position);

@@ -138,6 +138,8 @@ class Lights {
         float factor = 1.0f;
     };
     SeenPoint sampleSeenPoint(const Viewpoint& from, Rng& rng) const;
+    /// Whether sampleSeenPoint ever gives a point: not under an even sky alone.
+    bool samplesSeenPoints() const { return !empty() && kept_ > 0.0; }
     /// The density of sampleSeenPoint over that of samplePoint. It depends on the light alone, except on a BallLamp and
     /// in a sky. For all other lights with power it is at least kByPower.
     double seenSamples(const LightPlace& y0, const Viewpoint& from) const;
