@@ -4,7 +4,7 @@ Means are compared with those of bpt. If a row differs by SIEVE errors in a chan
 anew: with other random numbers, MORE times as long. If it still differs by CONFIRM errors, this is done once more. A
 row that differs three times is a find. The three are independent, so that the chances of a false alarm multiply. Tails,
 which make a short render's own error too small, are shorter in long renders, and a row that missed rare light meets it
-there.
+there. Light that is rarer still is met by some of SEEDS more renders, whose spread then says what their own errors do not.
 """
 
 import json
@@ -21,6 +21,7 @@ REFERENCE = 4  # times as many iterations for the reference
 SIEVE, CONFIRM, MORE = 3.0, 3.3, (16, 64)
 VERIFY = 1e-4  # what lacuna-render itself warns above
 ROUNDING = 2e-5
+SEEDS = 8  # of as many iterations as the last long render, before it is a find
 NOISE = 0.2  # a mean with a larger relative error has not met most of its light
 MOST_RAYS = 1e7  # of a long render, which is cut to this many
 SECONDS = 300  # for one render
@@ -145,9 +146,22 @@ class Judge:
         if abs(z) >= CONFIRM and noise(report) > NOISE:
             found["undecided"] = f"{z:.3g} errors after long renders that are nothing but noise"
         elif abs(z) >= CONFIRM:
+            spread = self.over_seeds(row.name, options, iterations)
+            if spread and abs(deviation(spread, reference, kind)) < CONFIRM:
+                found["undecided"] = f"{z:.3g} errors after long renders, but seeds differ: {text(spread)} over {SEEDS}"
+                return found
             self.find("mean", row.name, report["arguments"],
                       f"mean {text(report)} by {row.name}, {text(reference)} by bpt: {z:.3g} errors, expected {kind}")
         return found
+
+    def over_seeds(self, method, options, iterations):
+        """Mean and error of SEEDS renders, as in a report, the error from what they differ by. None if one is not there."""
+        reports = [self.render(method, options, iterations, self.r.randrange(2, 10 ** 6)) for _ in range(SEEDS)]
+        if not all(report and "slow" not in report for report in reports):
+            return None
+        channels = list(zip(*(numbers(report["mean_rgb"]) for report in reports)))
+        return {"mean_rgb": [statistics.mean(c) for c in channels],
+                "mean_rgb_stderr": [statistics.stdev(c) / math.sqrt(SEEDS) for c in channels]}
 
 
 def numbers(values):
