@@ -31,20 +31,20 @@ PlacedLight BallLamp::placed() const {
     return {lights_.front(), low_, high_, all, 0.25 * area_};
 }
 
-bool BallLamp::isOutside(const Vec3d& toMiddle) const {
-    return lengthSquared(toMiddle) > kOutside * radius2_;
+/// `distance2`: square of the distance from the middle.
+bool BallLamp::isOutside(double distance2) const {
+    return distance2 > kOutside * radius2_;
 }
 
 /// The cones of the sphere through the corners and of the one that touches the nearest face, seen from a point outside.
 /// A sphere of radius r at the distance d, whose tangents have the length t, has a cone with 1 - cos = r^2 / (d (d + t)).
 class BallLamp::Cones {
   public:
-    Cones(const BallLamp& lamp, const Vec3d& toMiddle)
+    Cones(const BallLamp& lamp, double distance2)
         : lamp_(lamp),
-          distance2_(lengthSquared(toMiddle)),
-          distance_(std::sqrt(distance2_)),
-          outer_(distance_ + std::sqrt(distance2_ - lamp.radius2_)),
-          inner_(distance_ + std::sqrt(distance2_ - lamp.within2_ * lamp.radius2_)) {}
+          distance_(std::sqrt(distance2)),
+          outer_(distance_ + std::sqrt(distance2 - lamp.radius2_)),
+          inner_(distance_ + std::sqrt(distance2 - lamp.within2_ * lamp.radius2_)) {}
 
     double distance() const { return distance_; }
     /// 1 - cos of the outer cone.
@@ -61,7 +61,7 @@ class BallLamp::Cones {
 
   private:
     const BallLamp& lamp_;
-    double distance2_, distance_;
+    double distance_;
     double outer_, inner_;  // d + t
 };
 
@@ -99,10 +99,11 @@ class BallLamp::Rays {
 std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, float u1,
                                                 float u2) const {
     const Vec3d toMiddle = middle_ - Vec3d(from);
-    if (!isOutside(toMiddle)) {
+    const double distance2 = lengthSquared(toMiddle);
+    if (!isOutside(distance2)) {
         return Point{lights_[byArea_.sample(u).index], uniformTriangle(u1, u2)};
     }
-    const Cones cones(*this, toMiddle);
+    const Cones cones(*this, distance2);
     const Rays rays(cones, radius_, toMiddle);
     const auto enterAt = [&](double diskX, double diskY) {
         const Rays::Ray ray = rays.at(diskX, diskY);
@@ -134,13 +135,13 @@ std::optional<BallLamp::Point> BallLamp::sample(const Vec3& from, double u, floa
 }
 
 double BallLamp::pdfA(const Vec3& from, const Vec3& position, const Vec3& normal) const {
-    const Vec3d toMiddle = middle_ - Vec3d(from);
-    if (!isOutside(toMiddle)) return 1.0 / area_;
+    const double toMiddle2 = lengthSquared(middle_ - Vec3d(from));
+    if (!isOutside(toMiddle2)) return 1.0 / area_;
     const Vec3d back = Vec3d(from) - Vec3d(position);
     const double facing = dot(Vec3d(normal), back);  // the cosine times the distance
     if (!(facing > 0.0)) return 0.0;
     const double distance2 = lengthSquared(back);
-    const double solidAngle = Cones(*this, toMiddle).expectedSolidAngle();
+    const double solidAngle = Cones(*this, toMiddle2).expectedSolidAngle();
     return facing / (solidAngle * distance2 * std::sqrt(distance2));
 }
 

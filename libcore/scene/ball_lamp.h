@@ -64,15 +64,15 @@ class BallLamp {
     std::optional<Entry> enter(const Vec3& closest, const Vec3& direction) const;
     std::optional<Entry> enterFrom(std::uint32_t face, const Vec3& closest,
                                    const Vec3& direction) const;
-    bool isOutside(const Vec3d& toMiddle) const;
+    bool isOutside(double distance2) const;
 
     Vec3d middle_;
     double radius_ = 0.0;  // of the sphere through the farthest corners
     double radius2_ = 0.0;
-    double within2_ =
-        0.0;  // the square of the radius of the sphere that touches the nearest face, over radius2_
-    double rimShare_ =
-        0.0;  // expected share of directions between the two spheres that meet the lamp
+    // The square of the radius of the sphere that touches the nearest face, over radius2_.
+    double within2_ = 0.0;
+    // The expected share of directions between the two spheres that meet the lamp.
+    double rimShare_ = 0.0;
     double area_ = 0.0;
     Vec3 low_, high_;
     std::vector<std::uint32_t> lights_;  // by face

@@ -48,7 +48,8 @@ def text(scenes, counts, known, command):
         "it is held against, by the mean of each channel. Who differs by "
         f"{judge.SIEVE:g} errors is rendered anew, {judge.MORE[0]} times as long, then {judge.MORE[1]} times (less, where that were more than "
         f"{judge.MOST_RAYS:.0e} rays), `bpt` as well, both with other random numbers, and is a find if it differs by {judge.CONFIRM} errors "
-        f"both times, and by the spread of {judge.SEEDS} more seeds. Were errors normal, the chance of one false alarm among all {comparisons} comparisons would be "
+        f"both times, and by the spread of {judge.SEEDS} more seeds. Were errors normal, the chance of one false alarm among all "
+        f"{comparisons} comparisons would be "
         f"{comparisons * judge.false_alarm():.1g}. No sample may be invalid, every weight is within {judge.VERIFY:g} of `--verify`'s, and one "
         "row of each scene makes the same picture by two threads.", "",
         f"{black} scenes are black (lamps out of sight, or paths too short): two rows each.", "",

@@ -198,7 +198,7 @@ FAULTS = [
           {"bidir": "ErrorEstimate.meetsTheErrorOfEvenNumbers"}),
     Fault("ball-cone-of-small-angles", "the cone around a ball of light is that of a far one",
           "libcore/scene/ball_lamp.cpp",
-          "return lamp_.radius2_ / (distance_ * outer_);", "return 0.5 * lamp_.radius2_ / distance2_;",
+          "return lamp_.radius2_ / (distance_ * outer_);", "return 0.5 * lamp_.radius2_ / (distance_ * distance_);",
           {"scene": "BallLamp.pointsComeByTheirDensity"}),
     Fault("ball-density-of-another-ray", "of a ball's points the density forgets which way their faces look",
           "libcore/scene/ball_lamp.cpp",
